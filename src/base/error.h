@@ -1,0 +1,39 @@
+/*
+ * Errors are values: a function that can fail returns bool or a pointer and takes GError
+ * ** last.
+ *
+ * The codes are the exit codes of the command line, so that the reason for a failure
+ * survives from the deepest reader up to the shell.
+ */
+#pragma once
+
+#include <glib.h>
+#include <stdbool.h>
+
+/** @brief Why a call failed. The values equal NephError in the installed header. */
+typedef enum error_code {
+    ERROR_INPUT = 1,     /**< a scene, image or value that came from outside is wrong */
+    ERROR_USAGE = 2,     /**< a call or a command line is wrong */
+    ERROR_FAILED = 3,    /**< memory, disk or another resource failed while running */
+    ERROR_CANCELLED = 4, /**< the caller's callback asked to stop */
+} error_code;
+
+/** @brief The GError domain of every error this library makes. */
+#define NEPH_ERROR (error_quark())
+GQuark error_quark(void);
+
+/** @brief A place in an input file; line 0: the whole file, file NULL: not from a file.
+ */
+typedef struct source_place {
+    const char *file; /**< interned (g_intern_string), never freed */
+    int line;         /**< from 1 */
+    int column;       /**< from 1 */
+} source_place;
+
+/** @brief Sets an ERROR_INPUT whose message begins with "file:line:column: ". */
+void error_at(GError **error, source_place place, const char *format, ...)
+    G_GNUC_PRINTF(3, 4);
+
+/** @brief Sets an error with the given code. */
+void error_set(GError **error, error_code code, const char *format, ...)
+    G_GNUC_PRINTF(3, 4);

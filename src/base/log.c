@@ -1,0 +1,12 @@
+#include "base/log.h"
+
+void log_message(const log_sink *sink, log_level level, const char *format, ...)
+{
+    if (!sink || !sink->write)
+        return;
+    va_list args;
+    va_start(args, format);
+    g_autofree char *text = g_strdup_vprintf(format, args);
+    va_end(args);
+    sink->write(level, text, sink->data);
+}

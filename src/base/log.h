@@ -1,0 +1,20 @@
+/*
+ * The library never prints: notes and warnings go to the sink that the program gave.
+ */
+#pragma once
+
+#include <glib.h>
+
+typedef enum log_level { LOG_NOTE, LOG_WARNING } log_level;
+
+/** @brief Where messages go; write NULL discards them. Called from the thread that calls
+ * us. */
+typedef struct log_sink {
+    void (*write)(log_level level, const char *text, void *data);
+    void *data;
+} log_sink;
+
+/** @brief Formats one line (without newline) and hands it to the sink, which may be NULL.
+ */
+void log_message(const log_sink *sink, log_level level, const char *format, ...)
+    G_GNUC_PRINTF(3, 4);

@@ -1,0 +1,34 @@
+/*
+ * Big arrays: aligned to a cache line, checked for overflow, and reported when refused.
+ *
+ * Small things (strings, lists) use GLib, which aborts when a few bytes are not to be
+ * had; arrays whose size depends on the input (photons, meshes, images) come from here
+ * and may fail.
+ */
+#pragma once
+
+#include "base/error.h"
+
+#include <stddef.h>
+
+/**
+ * @brief Allocates n * size zeroed bytes aligned to 64.
+ * @param what named in the error, e.g. "photons"
+ * @return the array, owned by the caller (big_free); NULL with ERROR_FAILED. n = 0 is
+ * allowed and gives a pointer that may be freed.
+ */
+void *big_alloc(size_t n, size_t size, const char *what, GError **error);
+
+/** @brief Grows an array from n_old to n_new elements, keeping the contents; the old one
+ * stays valid and owned by the caller when this fails. The new part is zeroed. */
+void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *what,
+               GError **error);
+
+/** @brief Frees what big_alloc or big_grow gave; NULL is allowed. */
+void big_free(void *array);
+
+/** @brief For tests: the n-th call from now (1 = next) fails once; 0 = never. */
+void big_alloc_fail_at(unsigned n);
+
+/** @brief Largest resident size of this process so far, in bytes. */
+size_t memory_peak(void);

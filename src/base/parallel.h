@@ -1,0 +1,42 @@
+/*
+ * Parallel loops whose result does not depend on the number of threads: the range is cut
+ * into chunks of fixed size, each chunk is one call, and a chunk writes only what is its
+ * own.
+ */
+#pragma once
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+/** @brief A flag that asks long work to stop soon. Set from any thread, read by all. */
+typedef struct cancel_flag {
+    atomic_bool set;
+} cancel_flag;
+
+/** @brief True if flag is not NULL and has been set. */
+static inline bool cancelled(const cancel_flag *flag)
+{
+    return flag &&
+           atomic_load_explicit(&((cancel_flag *)flag)->set, memory_order_relaxed);
+}
+
+/**
+ * @brief Work on elements [begin, end); chunk is begin / chunk_size; thread is in
+ * 0..threads-1.
+ */
+typedef void (*parallel_body)(size_t begin, size_t end, unsigned thread, void *data);
+
+/**
+ * @brief Calls body for every chunk of [0, n), in any order, on the given number of
+ * threads.
+ * @param threads 0 = one per processor
+ * @param cancel may be NULL; when set, chunks not yet begun are skipped
+ * @return false if cancelled before all chunks ran
+ */
+bool parallel_for(size_t n, size_t chunk_size, unsigned threads,
+                  const cancel_flag *cancel, parallel_body body, void *data);
+
+/** @brief The number of threads that a setting of n (0 = automatic) means on this
+ * machine. */
+unsigned parallel_threads(unsigned n);

@@ -1,0 +1,87 @@
+/*
+ * Curves: functions of wavelength, as scenes give them. A curve is an immutable value
+ * that any thread may evaluate; textures and materials hold curves and evaluate them at a
+ * pass' wavelengths.
+ */
+#pragma once
+
+#include "base/error.h"
+#include "color/wavelengths.h"
+
+/** @brief What a spectrum in a scene file stands for: it decides how an RGB triple is
+ * read. */
+typedef enum curve_role {
+    CURVE_ALBEDO,    /**< reflectance or transmittance in 0..1: RGB becomes a smooth curve
+                          (Jakob & Hanika 2019) */
+    CURVE_UNBOUNDED, /**< any non-negative quantity (eta, k): scale times a smooth curve
+                      */
+    CURVE_EMISSION,  /**< a light: RGB becomes scale * smooth curve * illuminant of the
+                        space */
+} curve_role;
+
+/** @brief A named RGB space with its white point. */
+typedef struct color_space color_space;
+
+/** @brief sRGB; also "rec2020", "dci-p3", "aces2065-1". NULL if the name is unknown. */
+const color_space *color_space_find(const char *name);
+const color_space *color_space_srgb(void);
+const char *color_space_name(const color_space *space);
+/** @brief Linear RGB of the space from XYZ, and back; out may be in. */
+void color_space_from_xyz(const color_space *space, const float xyz[3], float rgb[3]);
+void color_space_to_xyz(const color_space *space, const float rgb[3], float xyz[3]);
+/** @brief xy of red, green, blue and white, in that order (for EXR's chromaticities). */
+void color_space_chromaticities(const color_space *space, float xy[8]);
+
+/** @brief A function of wavelength. Opaque, immutable, reference counted. */
+typedef struct curve curve;
+
+curve *curve_constant(float value);
+/** @brief Piecewise linear through n >= 1 points (nm ascending), zero outside like pbrt's
+ *  PiecewiseLinearSpectrum when n > 1... constant ends are the caller's choice of points.
+ *  @return NULL with ERROR_INPUT if wavelengths do not ascend or a number is not finite.
+ */
+curve *curve_tabulated(const float *nm, const float *values, int n, GError **error);
+/** @brief An RGB triple read by role in the given space.
+ *  @return NULL with ERROR_INPUT if a component is negative, not finite, or > 1 for an
+ * albedo. */
+curve *curve_rgb(const color_space *space, const float rgb[3], curve_role role,
+                 GError **error);
+/** @brief Planck's law at kelvin > 0, normalised to a maximum of 1 like pbrt. */
+curve *curve_blackbody(float kelvin);
+/** @brief Sellmeier: n² = 1 + sum b[i] λ²/(λ² - c[i]), λ in µm, c in µm². */
+curve *curve_sellmeier(const double b[3], const double c[3]);
+/** @brief Cauchy: n = a + b/λ² + c/λ⁴, λ in µm. */
+curve *curve_cauchy(double a, double b, double c);
+/** @brief A named spectrum as pbrt knows them: "metal-Au-eta", "metal-Au-k", "glass-BK7",
+ *  "stdillum-D65", ... and ours (see the manual). NULL if unknown. */
+curve *curve_named(const char *name);
+/** @brief All names, NULL-terminated, static. */
+const char *const *curve_names(void);
+/** @brief scale times a curve (a new curve; takes a reference of its own on c). */
+curve *curve_scaled(const curve *c, float scale);
+
+curve *curve_ref(const curve *c);
+void curve_unref(curve *c); /**< NULL is allowed */
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(curve, curve_unref)
+
+/** @brief The curve at the eight wavelengths. Thread-safe. */
+spectrum curve_eval(const curve *c, const wavelengths *w);
+/** @brief The curve at one wavelength in nm (scalar; for tables and tests). */
+float curve_at(const curve *c, float nm);
+/** @brief True if the curve has one value at all wavelengths: such a glass does not
+ * disperse. */
+bool curve_is_constant(const curve *c);
+/** @brief Integral of ȳ c dλ over 360..830 nm: pbrt's SpectrumToPhotometric. For a
+ *  CURVE_EMISSION RGB curve it is that of the space's illuminant alone, as pbrt has it.
+ */
+float curve_photometric(const curve *c);
+/** @brief The curve seen under equal energy (or as itself for lights), as linear sRGB:
+ * for previews and `info`. */
+void curve_preview_rgb(const curve *c, float rgb[3]);
+
+/** @brief RGB texels to spectra: the three coefficients of the smooth curve of an albedo
+ * triple in [0,1], by table look-up; pair with smooth_eval. Thread-safe. */
+void smooth_from_rgb(const color_space *space, const float rgb[3], float coefficients[3]);
+/** @brief The smooth (sigmoid of a quadratic) curve at the eight wavelengths, in (0, 1).
+ */
+spectrum smooth_eval(const float coefficients[3], const wavelengths *w);

@@ -1,0 +1,74 @@
+/*
+ * Pixel buffers with named channels, and the table of file formats behind one pair of
+ * calls.
+ *
+ *   pixels[(y * width + x) * n_channels + c], row 0 at the top, float, linear unless
+ * said.
+ */
+#pragma once
+
+#include "base/error.h"
+
+#include <stddef.h>
+
+/** @brief An image. Owned by who made it; plain data, no locks. */
+typedef struct image {
+    int width, height, n_channels;
+    char *
+        *channels; /**< n_channels names, "R", "G", "B", "A", "direct.R", "depth.Z" ... */
+    float *pixels; /**< width * height * n_channels, big_alloc */
+    GHashTable *header; /**< char* -> char*: metadata, written to and read from EXR; may
+                           be NULL */
+    float
+        chromaticities[8]; /**< xy of R, G, B, white; all zero: not stated (then sRGB) */
+} image;
+
+/** @brief How the stored numbers of an 8-bit file become linear ones. */
+typedef enum image_encoding {
+    ENCODING_AUTO, /**< sRGB for 8-bit files, linear for float files */
+    ENCODING_SRGB,
+    ENCODING_LINEAR,
+    ENCODING_GAMMA, /**< a power, given apart */
+} image_encoding;
+
+typedef struct image_read_options {
+    image_encoding encoding;
+    float gamma; /**< for ENCODING_GAMMA */
+} image_read_options;
+
+typedef struct image_write_options {
+    float exposure; /**< stops applied to 8-bit output: value * 2^exposure */
+} image_write_options;
+
+/** @brief A black image with the given channels (names copied). NULL: absurd size or
+ * memory. */
+image *image_new(int width, int height, int n_channels, const char *const *channels,
+                 GError **error);
+void image_free(image *img);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(image, image_free)
+
+/** @brief Index of a channel by name, or -1. */
+int image_channel(const image *img, const char *name);
+/** @brief A string of the header, or NULL. */
+const char *image_header_get(const image *img, const char *key);
+void image_header_set(image *img, const char *key, const char *value);
+
+/** @brief Reads EXR, PNG (8/16 bit), JPEG, HDR (RGBE) or PFM, by content not by name.
+ *  @param options NULL = automatic. @return NULL with ERROR_INPUT naming the file. */
+image *image_read(const char *path, const image_read_options *options, GError **error);
+
+/** @brief Writes by the name's extension (.exr, .png, .jpg, .hdr, .pfm): to a temporary
+ * name beside it, synced and renamed, so that no partial file is ever seen under the
+ * name. Formats other than EXR write channels R, G, B (and A for PNG) only.
+ *  @param options NULL = exposure 0. @return false with ERROR_INPUT (unknown extension,
+ *  unwritable) or ERROR_FAILED (disk). */
+bool image_write(const image *img, const char *path, const image_write_options *options,
+                 GError **error);
+
+/** @brief Whether image_write knows the path's extension and its folder is writable:
+ * asked before a long render. */
+bool image_can_write(const char *path, GError **error);
+
+/** @brief sRGB's transfer functions (IEC 61966-2-1). */
+float srgb_encode(float linear);
+float srgb_decode(float encoded);

@@ -1,0 +1,99 @@
+/*
+ * Vectors of three floats in one SIMD register: `a + t * b` reads as in the paper.
+ * The fourth lane is unused and kept at zero by the functions here.
+ */
+#pragma once
+
+#include <math.h>
+#include <stdbool.h>
+
+/** @brief A point, vector or normal: x, y, z and an unused lane. 16 bytes, 16-aligned. */
+typedef float vec3 __attribute__((vector_size(16)));
+
+/** @brief Two plain floats: a random pair, a texture coordinate, a raster position. */
+typedef struct vec2 {
+    float x, y;
+} vec2;
+
+#define PI_F 3.14159265358979323846f
+#define INV_PI_F 0.31830988618379067154f
+
+static inline vec3 vec3_make(float x, float y, float z)
+{
+    return (vec3){x, y, z, 0.0f};
+}
+
+static inline float dot3(vec3 a, vec3 b)
+{
+    vec3 p = a * b;
+    return p[0] + p[1] + p[2];
+}
+
+static inline vec3 cross3(vec3 a, vec3 b)
+{
+    return vec3_make(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                     a[0] * b[1] - a[1] * b[0]);
+}
+
+static inline float length3_2(vec3 a)
+{
+    return dot3(a, a);
+}
+
+static inline float length3(vec3 a)
+{
+    return sqrtf(dot3(a, a));
+}
+
+/** @brief a / |a|; the zero vector stays zero. */
+static inline vec3 normalize3(vec3 a)
+{
+    float length = length3(a);
+    return length > 0.0f ? a / length : a;
+}
+
+/** @brief a turned, if need be, into the hemisphere around b. */
+static inline vec3 face_forward(vec3 a, vec3 b)
+{
+    return dot3(a, b) < 0.0f ? -a : a;
+}
+
+static inline float max_component3(vec3 a)
+{
+    return fmaxf(a[0], fmaxf(a[1], a[2]));
+}
+
+static inline vec3 abs3(vec3 a)
+{
+    return vec3_make(fabsf(a[0]), fabsf(a[1]), fabsf(a[2]));
+}
+
+static inline vec3 min3(vec3 a, vec3 b)
+{
+    return vec3_make(fminf(a[0], b[0]), fminf(a[1], b[1]), fminf(a[2], b[2]));
+}
+
+static inline vec3 max3(vec3 a, vec3 b)
+{
+    return vec3_make(fmaxf(a[0], b[0]), fmaxf(a[1], b[1]), fmaxf(a[2], b[2]));
+}
+
+static inline bool finite3(vec3 a)
+{
+    return isfinite(a[0]) && isfinite(a[1]) && isfinite(a[2]);
+}
+
+static inline float clampf(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+static inline float square(float x)
+{
+    return x * x;
+}
+
+static inline float lerpf(float a, float b, float t)
+{
+    return a + t * (b - a);
+}

@@ -1,0 +1,50 @@
+#include "math/warp.h"
+
+vec2 warp_disk(vec2 u)
+{
+    float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
+    if (!(fabsf(x) > 0.0f) && !(fabsf(y) > 0.0f))
+        return (vec2){0.0f, 0.0f};
+    bool wide = fabsf(x) > fabsf(y);
+    float r = wide ? x : y;
+    float angle = wide ? 0.25f * PI_F * (y / x) : 0.5f * PI_F - 0.25f * PI_F * (x / y);
+    return (vec2){r * cosf(angle), r * sinf(angle)};
+}
+
+vec3 warp_cosine_hemisphere(vec2 u)
+{
+    vec2 d = warp_disk(u);
+    return vec3_make(d.x, d.y, sqrtf(fmaxf(0.0f, 1.0f - d.x * d.x - d.y * d.y)));
+}
+
+vec3 warp_sphere(vec2 u)
+{
+    float z = 1.0f - 2.0f * u.x;
+    float r = 2.0f * sqrtf(fmaxf(0.0f, u.x * (1.0f - u.x)));
+    float phi = 2.0f * PI_F * u.y;
+    return vec3_make(r * cosf(phi), r * sinf(phi), z);
+}
+
+vec3 warp_cone(vec2 u, float one_minus_cos)
+{
+    float below_one = u.x * one_minus_cos;
+    float r = sqrtf(fmaxf(0.0f, below_one * (2.0f - below_one)));
+    float phi = 2.0f * PI_F * u.y;
+    return vec3_make(r * cosf(phi), r * sinf(phi), 1.0f - below_one);
+}
+
+float warp_cone_pdf(float one_minus_cos)
+{
+    return 1.0f / (2.0f * PI_F * one_minus_cos);
+}
+
+vec2 warp_triangle(vec2 u)
+{
+    /* Heitz, "A Low-Distortion Map Between Triangle and Square", 2019. */
+    if (u.y > u.x) {
+        float x = 0.5f * u.x;
+        return (vec2){x, u.y - x};
+    }
+    float y = 0.5f * u.y;
+    return (vec2){u.x - y, y};
+}

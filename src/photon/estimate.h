@@ -1,0 +1,54 @@
+/*
+ * The radiance estimate (Jensen 2001, §7): reflected radiance from the photons around a
+ * point.
+ *
+ *   L(x, wo) = Σ f(x, wi_p, wo) |wi_p·n|/|wi_p·n_geom| κ(d_p) Φ_p / ∫∫ κ(s) s ds dθ
+ *
+ * f is the full BSDF of the gathered lobes. The cosine ratio makes photons (a density
+ * over the true surface) see the shading normal as light does. Photons on the wrong side
+ * weigh zero through f and never shrink the radius.
+ */
+#pragma once
+
+#include "photon/kernel.h"
+#include "photon/map.h"
+#include "scene/bsdf.h"
+
+/** @brief How to estimate. */
+typedef struct estimate_options {
+    kernel kernel;
+    size_t nearest; /**< k; 0: all within radius */
+    float radius;   /**< m; with k nearest the largest allowed (INFINITY: none) */
+    float flatten;  /**< photons further than flatten * r from the tangent plane are left
+                       out,  without shrinking r; 1: a ball */
+    bool unbiased_nearest; /**< k nearest: r reaches to the k-th, which itself is not
+                              counted */
+    unsigned lobes;        /**< used for all photons, e.g. LOBE_GATHERED */
+    unsigned
+        delta_lobes; /**< added for photons flagged PHOTON_FROM_DELTA, e.g. LOBE_GLOSSY */
+} estimate_options;
+
+/** @brief Scratch of one thread, reused from query to query: zero-initialise, clear at
+ * the end. */
+typedef struct estimate_scratch {
+    photon_hits hits;
+    bool failed; /**< memory was refused in a query, which then gave zero */
+} estimate_scratch;
+
+void estimate_scratch_clear(estimate_scratch *scratch);
+
+/** @brief What an estimate saw, for statistics and the inspector. */
+typedef struct estimate_info {
+    size_t n_photons; /**< that weighed in */
+    float radius;     /**< used, m */
+} estimate_info;
+
+/** @brief Radiance leaving hit point p toward wo. info may be NULL. */
+spectrum photon_estimate(const photon_map *map, vec3 p, const bsdf *b, vec3 wo,
+                         const estimate_options *options, estimate_scratch *scratch,
+                         estimate_info *info);
+
+/** @brief Irradiance at p on the side of n_geom, W m⁻² nm⁻¹ (no BSDF). */
+spectrum photon_irradiance(const photon_map *map, vec3 p, vec3 n_geom,
+                           const estimate_options *options, estimate_scratch *scratch,
+                           estimate_info *info);

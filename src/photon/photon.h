@@ -1,0 +1,62 @@
+/*
+ * Photons: where light landed, from where, and how much of it.
+ *
+ * A photon stores its incident state, before the bounce: it travels along -wi. Stores
+ * keep arrays, not structs: positions apart from the rest, so that a distance test loads
+ * only what it needs.
+ *
+ *   x[] y[] z[]   4 bytes each   read for every candidate
+ *   wi[]          4 bytes        octahedral, 15 bits a coordinate, and the flags   } read
+ * for flux[]        32 bytes       eight wavelengths                                 }
+ * those in reach
+ *
+ * 48 bytes a photon. Indices are size_t throughout: 2³² photons are a matter of patience.
+ */
+#pragma once
+
+#include "base/error.h"
+#include "color/spectrum.h"
+#include "math/vec.h"
+
+#include <stdint.h>
+
+/** @brief What a photon did before it landed. Each class has its own map and budget. */
+typedef enum photon_class {
+    PHOTON_DIRECT,   /**< light → here */
+    PHOTON_INDIRECT, /**< at least one diffuse bounce before here */
+    PHOTON_CAUSTIC,  /**< light → specular or glossy bounces → here */
+    N_PHOTON_CLASSES
+} photon_class;
+
+/** @brief Came from a light no ray can hit (point, spot, distant) by specular bounces
+ * only: a camera path that meets it on a glossy lobe has no other way to find this light.
+ */
+enum { PHOTON_FROM_DELTA = 1u };
+
+/** @brief One photon, unpacked. */
+typedef struct photon {
+    vec3 p;
+    vec3 wi;        /**< unit, to where it came from */
+    spectrum flux;  /**< W per nm */
+    unsigned flags; /**< PHOTON_FROM_DELTA */
+} photon;
+
+/** @brief Photons as arrays of n, big_alloc'ed; capacity >= n, padded to a whole SIMD
+ * block. */
+typedef struct photon_store {
+    size_t n, capacity;
+    float *x, *y, *z;
+    uint32_t *wi;
+    spectrum *flux;
+} photon_store;
+
+bool photon_store_reserve(photon_store *store, size_t capacity, GError **error);
+/** @brief Appends; room must have been reserved. */
+void photon_store_put(photon_store *store, const photon *p);
+photon photon_store_get(const photon_store *store, size_t i);
+void photon_store_clear(photon_store *store);
+
+/** @brief Direction and flags in 32 bits; error below 1e-4 rad. */
+uint32_t direction_pack(vec3 w, unsigned flags);
+vec3 direction_unpack(uint32_t packed);
+unsigned direction_flags(uint32_t packed);

@@ -1,0 +1,35 @@
+/*
+ * The camera: from a place on the film to a ray.
+ *
+ * Raster coordinates: x to the right, y down, pixel (i, j) covers [i, i+1) x [j, j+1).
+ */
+#pragma once
+
+#include "math/transform.h"
+#include "scene/hit.h"
+#include "scene/params.h"
+
+/** @brief A perspective camera with a thin lens. Plain values, immutable in a committed
+ * scene. */
+typedef struct camera {
+    transform to_world;   /**< camera space (x right, y up, z forward) to world */
+    float screen[4];      /**< x_min, x_max, y_min, y_max at z = 1 */
+    float lens_radius;    /**< m; 0 = pinhole */
+    float focal_distance; /**< m */
+    float shutter_open, shutter_close;
+    int width, height; /**< of the film, pixels */
+} camera;
+
+/** @brief From pbrt's parameters: fov, screenwindow, frameaspectratio, lensradius,
+ * focaldistance, shutteropen, shutterclose. */
+bool camera_init(camera *c, const char *kind, const params *p, const transform *to_world,
+                 int width, int height, GError **error);
+/** @brief Changes the film's size, keeping the field of view as pbrt would for that size.
+ */
+void camera_resize(camera *c, int width, int height);
+ray camera_ray(const camera *c, vec2 raster, vec2 u_lens, float u_time);
+/** @brief Area on a plane facing the camera, at distance z along its axis, that one pixel
+ * covers. */
+float camera_pixel_area(const camera *c, float z);
+/** @brief Raster position of a world point; false if behind the camera. */
+bool camera_project(const camera *c, vec3 p, vec2 *raster);

@@ -1,0 +1,51 @@
+/*
+ * Rays and what they hit.
+ */
+#pragma once
+
+#include "math/frame.h"
+#include "math/vec.h"
+
+#include <stdint.h>
+
+/** @brief A half line; points are origin + t * direction, 0 < t < t_max. */
+typedef struct ray {
+    vec3 origin;
+    vec3 direction; /**< unit */
+    float t_max;
+    float time; /**< shutter time in 0..1, for moving scenes */
+} ray;
+
+enum { NO_INDEX = -1 };
+
+/** @brief A point on a surface. n_geom and n are unit and in one hemisphere; they are the
+ *  surface's own and are not turned towards the ray. */
+typedef struct surface_hit {
+    vec3 p;      /**< accurate to a few ulps of the largest coordinate */
+    vec3 n_geom; /**< true normal of the surface */
+    vec3 n;      /**< shading normal */
+    vec3 dpdu;   /**< tangent of the parametrisation, not unit */
+    vec2 uv;
+    float t; /**< distance along the ray */
+    float time;
+    int shape;          /**< index in scene->shapes */
+    uint32_t primitive; /**< triangle of a mesh, else 0 */
+    int material; /**< index in scene->materials, or NO_INDEX: an invisible interface */
+    int light;    /**< index in scene->lights of the area light here, or NO_INDEX */
+} surface_hit;
+
+/** @brief Where a ray that leaves the hit in the given direction must start so as not to
+ * meet the same surface: moved along n_geom by a distance that scales with the
+ * coordinates. */
+static inline vec3 hit_offset(const surface_hit *hit, vec3 direction)
+{
+    vec3 a = abs3(hit->p);
+    float scale = fmaxf(max_component3(a), 1e-3f * hit->t) * 4e-6f;
+    return hit->p + hit->n_geom * (dot3(direction, hit->n_geom) < 0.0f ? -scale : scale);
+}
+
+/** @brief The ray that leaves a hit. */
+static inline ray hit_ray(const surface_hit *hit, vec3 direction)
+{
+    return (ray){hit_offset(hit, direction), direction, INFINITY, hit->time};
+}

@@ -1,0 +1,47 @@
+/*
+ * Materials: what makes a bsdf at a hit. One file and one row of the kinds table each.
+ */
+#pragma once
+
+#include "scene/bsdf.h"
+#include "scene/params.h"
+#include "scene/texture.h"
+
+struct scene;
+
+/** @brief How bsdfs are to be made, by setting. */
+typedef struct bsdf_options {
+    bool deterministic; /**< multiple_samples off: rough is smooth, glass only refracts
+                           (or reflects totally), coats are dropped */
+} bsdf_options;
+
+typedef struct material_kind {
+    const char *name; /**< pbrt's, e.g. "coateddiffuse" */
+    void *(*create)(const struct scene *s, const params *p, GError **error);
+    void (*free)(void *self);
+    /** Fills ops, lobes, lambertian, rho, data; the frame, n_geom and lane are filled
+     * already. */
+    void (*make_bsdf)(const void *self, const surface_hit *hit, const wavelengths *w,
+                      const bsdf_options *options, bsdf *out);
+    /** Lobe classes and sides that may occur anywhere on it: SPECULAR or GLOSSY ones cast
+     *  caustics. */
+    unsigned (*possible_lobes)(const void *self);
+} material_kind;
+
+typedef struct material {
+    const material_kind *kind;
+    void *self;
+    char *name; /**< from MakeNamedMaterial; NULL if none */
+} material;
+
+material *material_new(const struct scene *s, const char *kind, const params *p,
+                       GError **error);
+void material_free(material *m);
+
+/** @brief The bsdf of a material at a hit.
+ *  @param lane ALL_LANES, or the lane a dispersed path has kept */
+void material_bsdf(const material *m, const surface_hit *hit, const wavelengths *w,
+                   int lane, const bsdf_options *options, bsdf *out);
+
+/** @brief True if light may leave a surface of it by a specular or glossy lobe. */
+bool material_casts_caustics(const material *m);

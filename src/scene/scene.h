@@ -1,0 +1,133 @@
+/*
+ * The world: built by calls, committed once, const afterwards.
+ *
+ *   scene_new ─► scene_add_* / scene_set_* (any order, one thread) ─► scene_commit ─►
+ * queries
+ *
+ * After the commit every query is const and thread-safe; what it finds goes to the
+ * caller's own struct. Calls before it return false or NO_INDEX with an ERROR_INPUT that
+ * names the place.
+ */
+#pragma once
+
+#include "base/log.h"
+#include "scene/accel.h"
+#include "scene/camera.h"
+#include "scene/filter.h"
+#include "scene/light.h"
+#include "scene/material.h"
+#include "scene/settings.h"
+#include "scene/texture.h"
+
+#include "math/distribution.h"
+
+/** @brief What the film directive asks for. */
+typedef struct film_settings {
+    int width, height;
+    char *filename; /**< absolute or relative to the working folder, NULL if not given */
+    float iso;      /**< pbrt's sensor speed; radiance is scaled by iso / 100 */
+    float exposure; /**< stops, for 8-bit output; 0 */
+    float crop[4];  /**< x0, x1, y0, y1 in 0..1 */
+    const color_space *space;
+} film_settings;
+
+typedef struct scene {
+    GPtrArray *shapes;                              /**< shape* */
+    GPtrArray *materials;                           /**< material* */
+    GPtrArray *lights;                              /**< light* */
+    GHashTable *float_textures, *spectrum_textures; /**< name -> texture* */
+    GHashTable *material_names;                     /**< name -> index + 1 */
+    camera camera;
+    bool has_camera;
+    film_settings film;
+    pixel_filter filter;
+    settings settings; /**< defaults, then what the file asks for */
+    log_sink log;
+
+    /* From here on valid once committed. */
+    bool committed;
+    accel *accel;
+    box3 bounds;              /**< of all shapes */
+    vec3 center;              /**< of the bounding sphere */
+    float radius;             /**< of the bounding sphere; > 0 also for an empty scene */
+    distribution light_power; /**< over lights, by power */
+    int *environments;        /**< indices of lights that are environments */
+    int n_environments;
+    int *caustic_shapes; /**< indices of shapes whose material casts caustics */
+    int n_caustic_shapes;
+    distribution caustic_area; /**< over caustic_shapes, by area */
+} scene;
+
+scene *scene_new(const log_sink *log);
+void scene_free(scene *s);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(scene, scene_free)
+
+bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spectrum,
+                       const params *p, GError **error);
+/** @brief name may be NULL. @return index, or NO_INDEX. */
+int scene_add_material(scene *s, const char *name, const char *kind, const params *p,
+                       GError **error);
+/** @brief Index of a named material, or NO_INDEX. */
+int scene_find_material(const scene *s, const char *name);
+bool scene_add_light(scene *s, const char *kind, const params *p,
+                     const transform *to_world, GError **error);
+/** @brief A shape from parameters; with at->area_light also its light. */
+bool scene_add_shape(scene *s, const char *kind, const params *p, const shape_place *at,
+                     GError **error);
+/** @brief A shape from a mesh in object space, whose arrays are taken. */
+bool scene_add_mesh(scene *s, mesh *m, const shape_place *at, source_place place,
+                    GError **error);
+bool scene_set_film(scene *s, const char *kind, const params *p, GError **error);
+bool scene_set_filter(scene *s, const char *kind, const params *p, GError **error);
+/** @brief The film must be set before (readers keep the directive until then). */
+bool scene_set_camera(scene *s, const char *kind, const params *p,
+                      const transform *to_world, GError **error);
+/** @brief Ends building. Checks what only the whole can tell: a camera, a light.
+ *  @param threads for the acceleration structure; 0 = all */
+bool scene_commit(scene *s, unsigned threads, GError **error);
+/** @brief Another image size; allowed before and after the commit, not while rendering.
+ */
+void scene_resize(scene *s, int width, int height);
+
+/* ---- Queries on a committed scene ---- */
+
+/** @brief Nearest hit of a ray, with material and light. */
+static inline bool scene_intersect(const scene *s, const ray *r, surface_hit *hit)
+{
+    if (!accel_intersect(s->accel, r, hit))
+        return false;
+    const shape *on = s->shapes->pdata[hit->shape];
+    hit->material = on->material;
+    hit->light = on->light;
+    return true;
+}
+
+/** @brief True if something stands on the ray. */
+static inline bool scene_occluded(const scene *s, const ray *r)
+{
+    return accel_occluded(s->accel, r);
+}
+
+static inline const light *scene_light(const scene *s, int i)
+{
+    return s->lights->pdata[i];
+}
+
+/** @brief Radiance that the surface itself sends from the hit to wo; zero if it does not
+ * shine. */
+spectrum scene_emitted(const scene *s, const surface_hit *hit, vec3 wo,
+                       const wavelengths *w);
+/** @brief Radiance of all environments arriving from direction d. */
+spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w);
+/** @brief The bsdf at a hit. @return false if the hit has no material (an interface). */
+bool scene_bsdf(const scene *s, const surface_hit *hit, const wavelengths *w, int lane,
+                const bsdf_options *options, bsdf *out);
+/** @brief One light by power and a direction to it. *light gets its index; out->pdf
+ * includes the probability of the choice. @return false if no light reaches ref that way.
+ */
+bool scene_sample_light(const scene *s, const wavelengths *w, vec3 ref, float u_light,
+                        float u_primitive, vec2 u, int *light, light_sample *out);
+/** @brief pdf_solid_angle with which scene_sample_light gives direction wi, which hits
+ * `hit` (an area light) or, with hit NULL, leaves the scene (environments). Includes the
+ * choice. */
+float scene_light_pdf(const scene *s, vec3 ref, vec3 wi, const surface_hit *hit);

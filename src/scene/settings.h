@@ -1,0 +1,90 @@
+/*
+ * The settings and the one table they are described by.
+ *
+ * The pbrt Integrator's parameters, the command line, the manual, range checks and file
+ * headers are all made from the table; adding a knob is adding a field and a row.
+ */
+#pragma once
+
+#include "base/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { N_CLASSES = 3 }; /**< direct, indirect, caustic: see photon/photon.h */
+
+typedef enum kernel_choice {
+    KERNEL_CONSTANT,
+    KERNEL_CONE,
+    KERNEL_GAUSSIAN,
+    KERNEL_EPANECHNIKOV
+} kernel_choice;
+typedef enum map_choice { MAP_LIST, MAP_KDTREE, MAP_GRID } map_choice;
+typedef enum roulette_choice { ROULETTE_MEAN, ROULETTE_MAX } roulette_choice;
+typedef enum emission_choice { EMISSION_UNIFORM, EMISSION_SPECULAR_AREA } emission_choice;
+typedef enum integrator_choice {
+    INTEGRATOR_PHOTONMAP,
+    INTEGRATOR_PATH
+} integrator_choice;
+
+/** @brief Every knob. Arrays are indexed by photon class. A plain value: copy it. */
+typedef struct settings {
+    int integrator; /**< integrator_choice */
+    int64_t passes;
+    int64_t spp; /**< camera samples a pixel in each pass */
+    int64_t max_backward_bounces, max_forward_bounces; /**< -1: unlimited */
+    bool final_gather;
+    int64_t gather_rays;
+    bool precompute_radiance;
+    bool direct_illumination;
+    bool shadow_rays;
+    int64_t photons; /**< emitted a pass, shared among the classes left at 0 */
+    int64_t class_photons[N_CLASSES]; /**< 0: a share of photons */
+    int64_t class_nearest[N_CLASSES]; /**< 0: fixed radius */
+    double radius;                    /**< m; 0: automatic */
+    int class_kernel[N_CLASSES];      /**< kernel_choice */
+    double class_cone_k[N_CLASSES];
+    int photon_map; /**< map_choice */
+    double flatten; /**< height of the neighbourhood over its radius, 0..1; 1: a ball */
+    int roulette;   /**< roulette_choice */
+    int caustic_emission; /**< emission_choice */
+    bool multiple_samples;
+    double alpha; /**< Knaus & Zwicker 2011 */
+    int64_t seed;
+    int64_t threads; /**< 0: one per processor */
+} settings;
+
+typedef enum setting_type {
+    SETTING_BOOL,
+    SETTING_COUNT,
+    SETTING_REAL,
+    SETTING_CHOICE
+} setting_type;
+
+/** @brief One row. */
+typedef struct setting_row {
+    const char *name;
+    setting_type type;
+    size_t offset;             /**< in struct settings */
+    const char *unit;          /**< "" if none */
+    double low, high, initial; /**< inclusive; index for a choice, 0/1 for a bool */
+    const char *const *words;  /**< of a choice, NULL-terminated */
+    const char *aliases;       /**< other accepted names, blank-separated, "" if none */
+    const char *users;         /**< which integrators read it */
+    const char *doc;           /**< one sentence */
+} setting_row;
+
+/** @brief The table. */
+const setting_row *settings_table(size_t *n);
+/** @brief A row by name or alias (case-sensitive for names, not for aliases), or NULL. */
+const setting_row *settings_find(const char *name);
+settings settings_default(void);
+/** @brief Sets from text, checked against type and range. ERROR_USAGE naming setting,
+ * what was expected and what was found. */
+bool settings_set(settings *s, const char *name, const char *value, GError **error);
+/** @brief The value as text that settings_set reads back to the same; owned by the
+ * caller. */
+char *settings_get(const settings *s, const setting_row *row);
+/** @brief Reads a file of "name = value" lines, '#' comments. Errors name
+ * file:line:column. */
+bool settings_load(settings *s, const char *path, GError **error);

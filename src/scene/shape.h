@@ -1,0 +1,90 @@
+/*
+ * Shapes. Curved ones are intersected exactly (in double precision), never tessellated:
+ * caustics show every facet.
+ */
+#pragma once
+
+#include "math/box.h"
+#include "math/transform.h"
+#include "scene/hit.h"
+#include "scene/params.h"
+
+/** @brief Where a shape stands and what it is made of. */
+typedef struct shape_place {
+    transform to_world;
+    bool reverse_orientation;
+    int material;             /**< index in scene->materials, or NO_INDEX */
+    const params *area_light; /**< borrowed; NULL: does not shine */
+} shape_place;
+
+/** @brief A triangle mesh in world space; arrays big_alloc'ed, owned. */
+typedef struct mesh {
+    size_t n_vertices, n_triangles;
+    float *positions; /**< 3 per vertex, one float of padding at the end (Embree) */
+    float *normals;   /**< 3 per vertex, unit; NULL: flat */
+    float *tangents;  /**< 3 per vertex; NULL */
+    vec2 *uvs;        /**< per vertex; NULL: pbrt's default (0,0) (1,0) (1,1) by corner */
+    uint32_t *indices; /**< 3 per triangle */
+} mesh;
+
+void mesh_clear(mesh *m);
+
+/** @brief A point drawn on a shape. */
+typedef struct shape_sample {
+    vec3 p, n; /**< n: geometric normal, as surface_hit's n_geom */
+    vec2 uv;
+    uint32_t primitive;
+    float pdf; /**< per area (m⁻²) or per solid angle, by the call that made it */
+} shape_sample;
+
+typedef struct shape shape;
+
+/** @brief What a kind of shape must do; one of traced by Embree as triangles or by
+ * intersect. */
+typedef struct shape_kind {
+    const char *name; /**< "sphere" */
+    /** From parameters. NULL with ERROR_INPUT. */
+    void *(*create)(const params *p, const shape_place *at, GError **error);
+    void (*free)(void *self);
+    box3 (*bounds)(const void *self);
+    /** The mesh to hand to Embree; NULL for kinds with intersect. */
+    const mesh *(*triangles)(const void *self);
+    /** Nearest t in (0, t_max); NULL for meshes. */
+    bool (*intersect)(const void *self, const ray *r, float *t, float *u, float *v);
+    /** Fills p, n_geom, n, dpdu, uv from the primitive and Embree's or intersect's u, v.
+     */
+    void (*fill_hit)(const void *self, const ray *r, float u, float v, surface_hit *hit);
+    float (*area)(const void *self); /**< m² in world space, one side */
+    /** Uniform by area; pdf per area. */
+    shape_sample (*sample_area)(const void *self, float u_primitive, vec2 u);
+    /** Toward ref; pdf per solid angle at ref. NULL: made from sample_area. */
+    bool (*sample_toward)(const void *self, vec3 ref, float u_primitive, vec2 u,
+                          shape_sample *out);
+    /** pdf_solid_angle of sample_toward for a hit on the shape seen from ref. NULL as
+     * above. */
+    float (*pdf_toward)(const void *self, vec3 ref, const surface_hit *hit);
+} shape_kind;
+
+struct shape {
+    const shape_kind *kind;
+    void *self;
+    int material;
+    int light; /**< index in scene->lights or NO_INDEX */
+    float area;
+    source_place place;
+};
+
+shape *shape_new(const char *kind, const params *p, const shape_place *at,
+                 GError **error);
+/** @brief A shape from a mesh in object space (moved to world space here; arrays are
+ * taken, also on failure). Checks indices, counts and finiteness, ERROR_INPUT at place
+ * otherwise. */
+shape *shape_new_mesh(mesh *m, const shape_place *at, source_place place, GError **error);
+void shape_free(shape *s);
+
+/** @brief Uniform by area; pdf per area. */
+shape_sample shape_sample_area(const shape *s, float u_primitive, vec2 u);
+/** @brief Toward ref; pdf per solid angle. false: cannot be seen from there. */
+bool shape_sample_toward(const shape *s, vec3 ref, float u_primitive, vec2 u,
+                         shape_sample *out);
+float shape_pdf_toward(const shape *s, vec3 ref, const surface_hit *hit);

@@ -1,0 +1,58 @@
+/*
+ * Textures: functions of the surface point, float- or spectrum-valued.
+ */
+#pragma once
+
+#include "color/curve.h"
+#include "scene/hit.h"
+#include "scene/params.h"
+
+struct scene;
+
+/** @brief A texture. Made by a row of the kinds table, immutable after. */
+typedef struct texture texture;
+
+/** @brief What a kind of texture must do. `create` reads the parameters it knows. */
+typedef struct texture_kind {
+    const char *name; /**< "constant", "imagemap" */
+    void *(*create)(const struct scene *s, bool is_spectrum, const params *p,
+                    GError **error);
+    void (*free)(void *self);
+    float (*eval_float)(const void *self, const surface_hit *hit);
+    spectrum (*eval_spectrum)(const void *self, const surface_hit *hit,
+                              const wavelengths *w, curve_role role);
+} texture_kind;
+
+texture *texture_new(const struct scene *s, const char *kind, bool is_spectrum,
+                     const params *p, GError **error);
+void texture_free(texture *t);
+bool texture_is_spectrum(const texture *t);
+
+/**
+ * @brief A material's input: a constant curve or number, or a texture (borrowed from the
+ * scene).
+ */
+typedef struct spectrum_input {
+    curve *constant;        /**< owned; NULL if textured */
+    const texture *texture; /**< borrowed */
+    curve_role role;
+} spectrum_input;
+
+typedef struct float_input {
+    float constant;
+    const texture *texture; /**< borrowed; NULL: constant */
+} float_input;
+
+/** @brief Reads parameter `name` (spectrum, rgb, ... or texture). Absent: fallback's
+ * reference is taken (NULL leaves the input empty). A texture must be named in the scene
+ * and of the type. */
+bool spectrum_input_init(spectrum_input *in, const struct scene *s, const params *p,
+                         const char *name, curve_role role, curve *fallback,
+                         GError **error);
+void spectrum_input_clear(spectrum_input *in);
+bool spectrum_input_given(const spectrum_input *in);
+spectrum spectrum_input_eval(const spectrum_input *in, const surface_hit *hit,
+                             const wavelengths *w);
+bool float_input_init(float_input *in, const struct scene *s, const params *p,
+                      const char *name, float fallback, GError **error);
+float float_input_eval(const float_input *in, const surface_hit *hit);

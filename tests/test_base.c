@@ -1,0 +1,81 @@
+/*
+ * base: errors carry their place, big allocations fail on demand, parallel loops cover
+ * each element once whatever the number of threads.
+ */
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+
+#include <stdint.h>
+
+static void test_error_names_its_place(void)
+{
+    g_autoptr(GError) error = NULL;
+    error_at(&error, (source_place){"box.pbrt", 7, 3}, "expected %s", "a number");
+    g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
+    g_assert_cmpstr(error->message, ==, "box.pbrt:7:3: expected a number");
+}
+
+static void test_allocation_is_aligned_and_zeroed(void)
+{
+    for (size_t n = 0; n < 300; n += 37) {
+        unsigned char *a = big_alloc(n, 1, "bytes", NULL);
+        g_assert_nonnull(a);
+        g_assert_cmpuint((uintptr_t)a % 64, ==, 0);
+        for (size_t i = 0; i < n; i++)
+            g_assert_cmpuint(a[i], ==, 0);
+        big_free(a);
+    }
+}
+
+static void test_allocation_refuses(void)
+{
+    g_autoptr(GError) overflow = NULL;
+    g_assert_null(big_alloc(SIZE_MAX / 2, 4, "photons", &overflow));
+    g_assert_error(overflow, NEPH_ERROR, ERROR_FAILED);
+    big_alloc_fail_at(2);
+    void *first = big_alloc(1, 1, "x", NULL);
+    void *second = big_alloc(1, 1, "x", NULL);
+    void *third = big_alloc(1, 1, "x", NULL);
+    g_assert_true(first && !second && third);
+    big_free(first);
+    big_free(third);
+}
+
+static void count_visits(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    unsigned char *visits = data;
+    for (size_t i = begin; i < end; i++)
+        visits[i]++;
+}
+
+static void test_parallel_visits_each_once(void)
+{
+    for (unsigned threads = 1; threads <= 4; threads++) {
+        unsigned char visits[1001] = {0};
+        g_assert_true(parallel_for(1001, 10, threads, NULL, count_visits, visits));
+        for (size_t i = 0; i < 1001; i++)
+            g_assert_cmpuint(visits[i], ==, 1);
+    }
+}
+
+static void test_parallel_stops_when_cancelled(void)
+{
+    cancel_flag cancel = {true};
+    unsigned char visits[10] = {0};
+    g_assert_false(parallel_for(10, 1, 2, &cancel, count_visits, visits));
+    for (size_t i = 0; i < 10; i++)
+        g_assert_cmpuint(visits[i], ==, 0);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/base/error/place", test_error_names_its_place);
+    g_test_add_func("/base/memory/aligned", test_allocation_is_aligned_and_zeroed);
+    g_test_add_func("/base/memory/refuses", test_allocation_refuses);
+    g_test_add_func("/base/parallel/once", test_parallel_visits_each_once);
+    g_test_add_func("/base/parallel/cancel", test_parallel_stops_when_cancelled);
+    return g_test_run();
+}

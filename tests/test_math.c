@@ -1,0 +1,158 @@
+/*
+ * math: transforms invert, warps have the density they claim, and sampler points are
+ * (0,2)-nets.
+ */
+#include "math/distribution.h"
+#include "math/frame.h"
+#include "math/sampler.h"
+#include "math/transform.h"
+#include "math/warp.h"
+
+#include <glib.h>
+
+static void test_transform_inverts(void)
+{
+    transform a = transform_translate(1, 2, 3), b = transform_rotate(33, 1, 1, 0.5);
+    transform c = transform_scale(2, -3, 0.5), t = transform_multiply(&a, &b);
+    t = transform_multiply(&t, &c);
+    transform back = transform_inverse(&t), unit = transform_multiply(&t, &back);
+    transform identity = transform_identity();
+    g_assert_true(transform_equal(&unit, &identity));
+    g_assert_true(transform_swaps_handedness(&t));
+    g_assert_false(transform_swaps_handedness(&b));
+}
+
+static void test_rotation_turns_counter_clockwise(void)
+{
+    transform t = transform_rotate(90, 0, 0, 1);
+    vec3 y = transform_vector(&t, vec3_make(1, 0, 0));
+    g_assert_cmpfloat(length3(y - vec3_make(0, 1, 0)), <, 1e-6);
+}
+
+static void test_look_at(void)
+{
+    const double eye[3] = {1, 2, 3}, target[3] = {4, 2, 3}, up[3] = {0, 1, 0};
+    transform t;
+    g_assert_true(transform_look_at(eye, target, up, &t));
+    g_assert_cmpfloat(length3(transform_point(&t, vec3_make(1, 2, 3))), <, 1e-6);
+    vec3 ahead = transform_point(&t, vec3_make(3, 2, 3));
+    g_assert_cmpfloat(length3(ahead - vec3_make(0, 0, 2)), <, 1e-6);
+    g_assert_false(transform_look_at(eye, eye, up, &t));
+}
+
+/* Every 2^m points of a stream fall one into each elementary interval of area 2^-m. */
+static void check_net(const sampler *points, unsigned dimension, unsigned m)
+{
+    for (unsigned a = 0; a <= m; a++) {
+        unsigned char filled[1024] = {0};
+        for (uint32_t i = 0; i < 1u << m; i++) {
+            sampler s = sampler_make(points->key, points->index + i);
+            s.dimension = dimension;
+            vec2 u = sampler_2d(&s);
+            unsigned x = (unsigned)(u.x * (float)(1u << a));
+            unsigned y = (unsigned)(u.y * (float)(1u << (m - a)));
+            filled[(x << (m - a)) + y]++;
+        }
+        for (unsigned i = 0; i < 1u << m; i++)
+            g_assert_cmpuint(filled[i], ==, 1);
+    }
+}
+
+static void test_sampler_pairs_are_nets(void)
+{
+    for (uint64_t key = 0; key < 10; key++) {
+        sampler s = {.key = key * 77, .index = 0};
+        for (unsigned dimension = 0; dimension < 8; dimension += 2)
+            check_net(&s, dimension, 8);
+        s.index = 1024;
+        check_net(&s, 0, 10);
+    }
+}
+
+static void test_sampler_is_uniform_and_uncorrelated(void)
+{
+    enum { N = 1 << 14 };
+    for (unsigned dimension = 0; dimension < 40; dimension += 7) {
+        double sum = 0, product = 0;
+        for (uint32_t i = 0; i < N; i++) {
+            sampler s = sampler_make(5, i);
+            s.dimension = dimension;
+            double a = (double)sampler_1d(&s), b = (double)sampler_1d(&s);
+            sum += a;
+            product += (a - 0.5) * (b - 0.5);
+        }
+        /* six standard errors of independent numbers: false alarm below 1e-8 */
+        g_assert_cmpfloat(fabs(sum / N - 0.5), <, 6 * 0.289 / 128);
+        g_assert_cmpfloat(fabs(product / N), <, 6 * 0.0833 / 128);
+    }
+}
+
+static void test_warps_integrate(void)
+{
+    enum { N = 1 << 14 };
+    double z_sphere = 0, z2_sphere = 0, z_cosine = 0, z_cone = 0, r2_disk = 0,
+           b_triangle = 0;
+    for (uint32_t i = 0; i < N; i++) {
+        sampler s = sampler_make(9, i);
+        vec2 u = sampler_2d(&s);
+        float z = warp_sphere(u)[2];
+        z_sphere += (double)z;
+        z2_sphere += (double)(z * z);
+        z_cosine += (double)warp_cosine_hemisphere(u)[2];
+        z_cone += (double)warp_cone(u, 0.5f)[2];
+        vec2 d = warp_disk(u);
+        r2_disk += (double)(d.x * d.x + d.y * d.y);
+        vec2 b = warp_triangle(u);
+        b_triangle += (double)(b.x * b.y);
+        g_assert_cmpfloat(fabsf(length3(warp_sphere(u)) - 1.0f), <, 1e-5);
+        g_assert_true(b.x >= 0 && b.y >= 0 && b.x + b.y <= 1.000001f);
+    }
+    g_assert_cmpfloat(fabs(z_sphere / N), <, 1e-3);
+    g_assert_cmpfloat(fabs(z2_sphere / N - 1.0 / 3), <, 1e-3);
+    g_assert_cmpfloat(fabs(z_cosine / N - 2.0 / 3), <, 1e-3);
+    g_assert_cmpfloat(fabs(z_cone / N - 0.75), <, 1e-3);
+    g_assert_cmpfloat(fabs(r2_disk / N - 0.5), <, 1e-3);
+    g_assert_cmpfloat(fabs(b_triangle / N - 1.0 / 12), <, 1e-3);
+}
+
+static void test_frames_are_orthonormal(void)
+{
+    for (uint32_t i = 0; i < 1000; i++) {
+        sampler s = sampler_make(3, i);
+        vec3 n = warp_sphere(sampler_2d(&s)), tangent = warp_sphere(sampler_2d(&s));
+        frame f = i % 2 ? frame_from_normal(n) : frame_from_tangent(n, tangent);
+        g_assert_cmpfloat(fabsf(dot3(f.s, f.t)) + fabsf(dot3(f.s, f.n)), <, 1e-5);
+        g_assert_cmpfloat(length3(cross3(f.s, f.t) - f.n), <, 1e-5);
+    }
+}
+
+static void test_distribution_follows_its_weights(void)
+{
+    const float weights[5] = {1, 0, 3, 0, 4};
+    distribution d;
+    g_assert_true(distribution_init(&d, weights, 5, NULL));
+    unsigned count[5] = {0};
+    for (unsigned i = 0; i < 8000; i++) {
+        float u = ((float)i + 0.5f) / 8000.0f;
+        count[distribution_sample(&d, &u)]++;
+        g_assert_true(u >= 0.0f && u < 1.0f);
+    }
+    for (unsigned i = 0; i < 5; i++)
+        g_assert_cmpfloat(fabs(count[i] / 8000.0 - (double)distribution_pdf(&d, i)), <,
+                          1e-3);
+    distribution_clear(&d);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/math/transform/inverts", test_transform_inverts);
+    g_test_add_func("/math/transform/rotates", test_rotation_turns_counter_clockwise);
+    g_test_add_func("/math/transform/look-at", test_look_at);
+    g_test_add_func("/math/sampler/nets", test_sampler_pairs_are_nets);
+    g_test_add_func("/math/sampler/uniform", test_sampler_is_uniform_and_uncorrelated);
+    g_test_add_func("/math/warp/integrals", test_warps_integrate);
+    g_test_add_func("/math/frame/orthonormal", test_frames_are_orthonormal);
+    g_test_add_func("/math/distribution/weights", test_distribution_follows_its_weights);
+    return g_test_run();
+}
