@@ -1,0 +1,174 @@
+/*
+ * base/json and base/output: what is written is JSON whatever is put in, numbers read
+ * back to the same, and files are whole or not there.
+ */
+#include "base/json.h"
+#include "base/memory.h"
+#include "base/output.h"
+#include "json_check.h"
+
+#include <glib/gstdio.h>
+#include <locale.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char *folder;
+
+static unsigned count_entries(void)
+{
+    g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
+    unsigned n = 0;
+    while (g_dir_read_name(dir))
+        n++;
+    return n;
+}
+
+static void test_checker_refuses(void)
+{
+    static const char *const bad[] = {"",    "{",       "[1,]",     "{\"a\" 1}",
+                                      "nan", "01",      "\"a\nb\"", "[1] x",
+                                      "1.",  "\"\\x\"", "'a'",      "{1:2}"};
+    for (size_t i = 0; i < G_N_ELEMENTS(bad); i++)
+        g_assert_false(json_is_valid(bad[i]));
+    g_assert_true(json_is_valid(" {\"a\": [1, -2.5e-3, {}, []], \"b\\\"\": null}\n"));
+}
+
+static void test_json_is_json(void)
+{
+    json j = {0};
+    json_object_begin(&j, NULL);
+    json_string(&j, "quote \" back \\ line \n bell \a", "\xff\xfe caf\xc3\xa9 \x7f");
+    json_string(&j, "none", NULL);
+    json_number(&j, "nan", (double)NAN);
+    json_number(&j, "infinity", -(double)INFINITY);
+    json_integer(&j, "least", INT64_MIN);
+    json_count(&j, "most", UINT64_MAX);
+    json_bool(&j, "yes", true);
+    json_array_begin(&j, "empty");
+    json_array_end(&j);
+    json_array_begin(&j, "list");
+    json_object_begin(&j, NULL);
+    json_object_end(&j);
+    json_number(&j, NULL, 0.1);
+    json_array_end(&j);
+    json_numbers(&j, "row", (const double[]){1, 0.5, (double)NAN}, 3);
+    json_object_end(&j);
+    g_autofree char *text = json_finish(&j);
+    g_test_message("%s", text);
+    g_assert_true(json_is_valid(text));
+    g_assert_nonnull(strstr(text, "\"nan\": null"));
+    g_assert_nonnull(strstr(text, "\"most\": 18446744073709551615"));
+    g_assert_nonnull(strstr(text, "\"row\": [1, 0.5, null]"));
+}
+
+static void test_numbers_come_back(void)
+{
+    const char *locale = setlocale(LC_NUMERIC, "de_DE.UTF-8");
+    g_test_message("locale %s", locale ? locale : "C");
+    GRand *random = g_rand_new_with_seed(7);
+    for (int i = 0; i < 10000; i++) {
+        union {
+            uint64_t bits;
+            double value;
+        } in = {.bits = (uint64_t)g_rand_int(random) << 32 | g_rand_int(random)};
+        if (!isfinite(in.value))
+            continue;
+        char buffer[G_ASCII_DTOSTR_BUF_SIZE];
+        number_text(in.value, buffer);
+        double back = g_ascii_strtod(buffer, NULL);
+        g_assert_cmpmem(&back, sizeof back, &in.value, sizeof in.value);
+        g_assert_null(strchr(buffer, ','));
+    }
+    char buffer[G_ASCII_DTOSTR_BUF_SIZE];
+    g_assert_cmpstr(number_text(0.1, buffer), ==, "0.1");
+    g_rand_free(random);
+    setlocale(LC_NUMERIC, "C");
+}
+
+static void test_output_is_whole_or_absent(void)
+{
+    g_autofree char *path = g_build_filename(folder, "a.txt", NULL);
+    output *out = output_open(path, NULL);
+    fputs("half", output_stream(out));
+    g_assert_false(g_file_test(path, G_FILE_TEST_EXISTS));
+    output_discard(out);
+    g_assert_cmpuint(count_entries(), ==, 0);
+
+    g_assert_true(output_write_text(path, "one", NULL));
+    out = output_open(path, NULL);
+    fputs("two", output_stream(out));
+    g_autofree char *before = NULL;
+    g_file_get_contents(path, &before, NULL, NULL);
+    g_assert_cmpstr(before, ==, "one");
+    g_assert_true(output_commit(out, NULL));
+    g_autofree char *after = NULL;
+    g_file_get_contents(path, &after, NULL, NULL);
+    g_assert_cmpstr(after, ==, "two");
+    g_assert_cmpuint(count_entries(), ==, 1);
+    g_remove(path);
+}
+
+static void test_output_keeps_links_and_umask(void)
+{
+    g_autofree char *path = g_build_filename(folder, "real.txt", NULL);
+    g_autofree char *link = g_build_filename(folder, "link.txt", NULL);
+    mode_t old = umask(027);
+    g_assert_true(output_write_text(path, "one", NULL));
+    umask(old);
+    struct stat info;
+    g_assert_cmpint(stat(path, &info), ==, 0);
+    g_assert_cmpint(info.st_mode & 0777, ==, 0640);
+    g_assert_cmpint(symlink("real.txt", link), ==, 0);
+    g_assert_true(output_write_text(link, "two", NULL));
+    g_assert_true(g_file_test(link, G_FILE_TEST_IS_SYMLINK));
+    g_autofree char *text = NULL;
+    g_file_get_contents(path, &text, NULL, NULL);
+    g_assert_cmpstr(text, ==, "two");
+    g_remove(link);
+    g_remove(path);
+}
+
+static void test_output_refuses(void)
+{
+    const char *const bad[] = {"/nowhere/at/all.txt", folder, ""};
+    for (size_t i = 0; i < G_N_ELEMENTS(bad); i++) {
+        g_autoptr(GError) error = NULL;
+        g_assert_false(output_possible(bad[i], &error));
+        g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
+        g_assert_nonnull(strstr(error->message, "cannot write"));
+    }
+    g_autofree char *good = g_build_filename(folder, "good", NULL);
+    g_assert_true(output_possible(good, NULL));
+    g_assert_cmpuint(count_entries(), ==, 0);
+}
+
+static void test_output_reports_a_full_disk(void)
+{
+    if (!g_file_test("/dev/full", G_FILE_TEST_EXISTS)) {
+        g_test_skip("no /dev/full here");
+        return;
+    }
+    g_autoptr(GError) error = NULL;
+    g_assert_false(output_write_text("/dev/full", "x", &error));
+    g_assert_error(error, NEPH_ERROR, ERROR_FAILED);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    folder = g_dir_make_tmp("nephroid-output-XXXXXX", NULL);
+    g_test_add_func("/json/checker", test_checker_refuses);
+    g_test_add_func("/json/valid", test_json_is_json);
+    g_test_add_func("/json/numbers", test_numbers_come_back);
+    g_test_add_func("/output/whole", test_output_is_whole_or_absent);
+    g_test_add_func("/output/links", test_output_keeps_links_and_umask);
+    g_test_add_func("/output/refuses", test_output_refuses);
+    g_test_add_func("/output/full", test_output_reports_a_full_disk);
+    int result = g_test_run();
+    g_rmdir(folder);
+    g_free(folder);
+    return result;
+}
