@@ -1,0 +1,385 @@
+/*
+ * The table of settings, and the one way in and out of a value: text.
+ *
+ * Numbers are read and written independently of the locale, and what settings_get writes
+ * settings_set reads back to the same value.
+ */
+#include "scene/settings.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *const integrator_words[] = {"photonmap", "path", NULL};
+static const char *const kernel_words[] = {"constant", "cone", "gaussian", "epanechnikov",
+                                           NULL};
+static const char *const map_words[] = {"list", "kdtree", "grid", NULL};
+static const char *const roulette_words[] = {"mean", "max", NULL};
+static const char *const emission_words[] = {"uniform", "specular-area", NULL};
+
+#define AT(field) offsetof(settings, field)
+
+static const setting_row table[] = {
+    {"integrator", SETTING_CHOICE, AT(integrator), "", 0, 1, INTEGRATOR_PHOTONMAP,
+     integrator_words, "", "all",
+     "The algorithm that carries light from the lamps to the eye."},
+    {"passes", SETTING_COUNT, AT(passes), "", 1, 1e9, 16, NULL,
+     "iterations numiterations", "all",
+     "Independent passes whose mean is the image; 1 is classic photon mapping."},
+    {"spp", SETTING_COUNT, AT(spp), "samples/pixel", 1, 65536, 4, NULL,
+     "pixelsamples samples_per_pixel", "all", "Camera rays a pixel in each pass."},
+    {"max_backward_bounces", SETTING_COUNT, AT(max_backward_bounces), "", -1, 1e6, 32,
+     NULL, "maxBackwardBounces maxdepth", "all",
+     "Specular scattering events followed back from the eye; -1 is unlimited. The alias "
+     "maxdepth d bounds photons too, by d - 1."},
+    {"max_forward_bounces", SETTING_COUNT, AT(max_forward_bounces), "", -1, 1e6, -1, NULL,
+     "maxForwardBounces MAX_PHOTON_BOUNCES", "photonmap",
+     "Scattering events of a photon; 0 stores it at its first hit only, -1 is unlimited "
+     "(roulette ends it)."},
+    {"final_gather", SETTING_BOOL, AT(final_gather), "", 0, 1, 0, NULL, "finalgather",
+     "photonmap",
+     "Gathers indirect light by rays to the surroundings instead of straight from the "
+     "map."},
+    {"gather_rays", SETTING_COUNT, AT(gather_rays), "", 1, 65536, 64, NULL,
+     "finalgathersamples", "photonmap", "Rays of one final gather."},
+    {"precompute_radiance", SETTING_BOOL, AT(precompute_radiance), "", 0, 1, 1, NULL, "",
+     "photonmap",
+     "Estimates radiance once at photon positions, so that a gather ray is one look-up "
+     "(Christensen 1999)."},
+    {"direct_illumination", SETTING_BOOL, AT(direct_illumination), "", 0, 1, 1, NULL, "",
+     "photonmap",
+     "Samples the lights at each hit; off: direct light comes from the direct map."},
+    {"shadow_rays", SETTING_BOOL, AT(shadow_rays), "", 0, 1, 1, NULL, "",
+     "photonmap path",
+     "Tests whether sampled lights are hidden; off: direct light casts no shadows."},
+    {"photons", SETTING_COUNT, AT(photons), "photons/pass", 1, 1e12, 400000, NULL,
+     "numEmitted photonsperiteration photons_per_pass", "photonmap",
+     "Photons emitted a pass, shared among the classes that have no number of their "
+     "own."},
+    {"direct_photons", SETTING_COUNT, AT(class_photons[0]), "photons/pass", 0, 1e12, 0,
+     NULL, "DIRECT_PHOTONS_PER_LIGHT directphotons", "photonmap",
+     "Photons emitted a pass for the direct map, over all lights; 0: a share of "
+     "photons."},
+    {"indirect_photons", SETTING_COUNT, AT(class_photons[1]), "photons/pass", 0, 1e12, 0,
+     NULL, "INDIRECT_PHOTONS_PER_LIGHT indirectphotons", "photonmap",
+     "Photons emitted a pass for the indirect map, over all lights; 0: a share of "
+     "photons."},
+    {"caustic_photons", SETTING_COUNT, AT(class_photons[2]), "photons/pass", 0, 1e12, 0,
+     NULL, "CAUSTIC_PHOTONS_PER_LIGHT causticphotons", "photonmap",
+     "Photons emitted a pass for the caustic map, over all lights; 0: a share of "
+     "photons."},
+    {"direct_nearest", SETTING_COUNT, AT(class_nearest[0]), "photons", 0, 1e7, 0, NULL,
+     "DIRECT_NEARBY_PHOTONS", "photonmap",
+     "Nearest direct photons in an estimate; 0: all within the radius."},
+    {"indirect_nearest", SETTING_COUNT, AT(class_nearest[1]), "photons", 0, 1e7, 0, NULL,
+     "INDIRECT_NEARBY_PHOTONS", "photonmap",
+     "Nearest indirect photons in an estimate; 0: all within the radius."},
+    {"caustic_nearest", SETTING_COUNT, AT(class_nearest[2]), "photons", 0, 1e7, 0, NULL,
+     "CAUSTIC_NEARBY_PHOTONS", "photonmap",
+     "Nearest caustic photons in an estimate; 0: all within the radius."},
+    {"radius", SETTING_REAL, AT(radius), "m", 0, 1e12, 0, NULL,
+     "photonRadius gather_radius", "photonmap",
+     "Radius of the estimate in the first pass, or its bound for nearest photons; 0: "
+     "chosen from the photons and the pixels."},
+    {"direct_kernel", SETTING_CHOICE, AT(class_kernel[0]), "", 0, 3, KERNEL_EPANECHNIKOV,
+     kernel_words, "", "photonmap", "How a direct photon's weight falls with distance."},
+    {"indirect_kernel", SETTING_CHOICE, AT(class_kernel[1]), "", 0, 3,
+     KERNEL_EPANECHNIKOV, kernel_words, "", "photonmap",
+     "How an indirect photon's weight falls with distance."},
+    {"caustic_kernel", SETTING_CHOICE, AT(class_kernel[2]), "", 0, 3, KERNEL_EPANECHNIKOV,
+     kernel_words, "", "photonmap", "How a caustic photon's weight falls with distance."},
+    {"direct_cone_k", SETTING_REAL, AT(class_cone_k[0]), "", 1, 1e6, 1, NULL,
+     "DIRECT_CONE_FILTER_PARAM", "photonmap",
+     "Slope of the direct cone kernel 1 - d/(k r). The alias also chooses the kernel: "
+     "below 1 constant, else cone."},
+    {"indirect_cone_k", SETTING_REAL, AT(class_cone_k[1]), "", 1, 1e6, 1, NULL,
+     "INDIRECT_CONE_FILTER_PARAM", "photonmap",
+     "Slope of the indirect cone kernel 1 - d/(k r). The alias also chooses the kernel: "
+     "below 1 constant, else cone."},
+    {"caustic_cone_k", SETTING_REAL, AT(class_cone_k[2]), "", 1, 1e6, 1, NULL,
+     "CAUSTICS_CONE_FILTER_PARAM CAUSTIC_CONE_FILTER_PARAM", "photonmap",
+     "Slope of the caustic cone kernel 1 - d/(k r). The alias also chooses the kernel: "
+     "below 1 constant, else cone."},
+    {"photon_map", SETTING_CHOICE, AT(photon_map), "", 0, 2, MAP_GRID, map_words, "",
+     "photonmap", "The structure photons are looked up in; all give the same answers."},
+    {"flatten", SETTING_REAL, AT(flatten), "", 0.001, 1, 1, NULL, "", "photonmap",
+     "Height of the neighbourhood along the normal over its radius; below 1 it leaks "
+     "less light through corners."},
+    {"roulette", SETTING_CHOICE, AT(roulette), "", 0, 1, ROULETTE_MEAN, roulette_words,
+     "", "photonmap",
+     "What of a photon's flux decides its survival: the mean or the largest over "
+     "wavelengths."},
+    {"caustic_emission", SETTING_CHOICE, AT(caustic_emission), "", 0, 1,
+     EMISSION_SPECULAR_AREA, emission_words, "", "photonmap",
+     "Where photons for caustics are sent: as the light shines, or toward what focuses "
+     "light."},
+    {"multiple_samples", SETTING_BOOL, AT(multiple_samples), "", 0, 1, 1, NULL,
+     "MULTIPLE_SAMPLES", "photonmap path",
+     "Samples roughness and Fresnel's split; off: one deterministic path, without "
+     "either."},
+    {"alpha", SETTING_REAL, AT(alpha), "", 0.01, 1, 2.0 / 3.0, NULL, "", "photonmap",
+     "How slowly the radius shrinks from pass to pass; 1: not at all (Knaus & Zwicker "
+     "2011)."},
+    {"seed", SETTING_COUNT, AT(seed), "", 0, 9007199254740992.0, 0, NULL, "", "all",
+     "Chooses the random numbers; the same seed gives the same image, bit for bit."},
+    {"threads", SETTING_COUNT, AT(threads), "", 0, 4096, 0, NULL, "nthreads", "all",
+     "Threads to work with; 0: one per processor."},
+};
+
+enum { N_ROWS = sizeof table / sizeof *table };
+
+const setting_row *settings_table(size_t *n)
+{
+    *n = N_ROWS;
+    return table;
+}
+
+static bool is_alias(const char *aliases, const char *name)
+{
+    size_t length = strlen(name);
+    while (*aliases) {
+        size_t word = strcspn(aliases, " ");
+        if (word == length && g_ascii_strncasecmp(aliases, name, word) == 0)
+            return true;
+        aliases += word + strspn(aliases + word, " ");
+    }
+    return false;
+}
+
+const setting_row *settings_find(const char *name)
+{
+    for (size_t i = 0; i < N_ROWS; i++)
+        if (strcmp(table[i].name, name) == 0)
+            return &table[i];
+    for (size_t i = 0; i < N_ROWS; i++)
+        if (*name && is_alias(table[i].aliases, name))
+            return &table[i];
+    return NULL;
+}
+
+static void store(settings *s, const setting_row *row, double value)
+{
+    void *field = (char *)s + row->offset;
+    switch (row->type) {
+    case SETTING_BOOL:
+        *(bool *)field = value > 0.5;
+        break;
+    case SETTING_COUNT:
+        *(int64_t *)field = (int64_t)value;
+        break;
+    case SETTING_REAL:
+        *(double *)field = value;
+        break;
+    case SETTING_CHOICE:
+        *(int *)field = (int)value;
+        break;
+    }
+}
+
+settings settings_default(void)
+{
+    settings s;
+    memset(&s, 0, sizeof s);
+    for (size_t i = 0; i < N_ROWS; i++)
+        store(&s, &table[i], table[i].initial);
+    return s;
+}
+
+/** What the row accepts, in words; owned by the caller. */
+static char *expected(const setting_row *row)
+{
+    if (row->type == SETTING_BOOL)
+        return g_strdup("true or false");
+    if (row->type == SETTING_CHOICE) {
+        g_autofree char *words = g_strjoinv(", ", (char **)row->words);
+        return g_strdup_printf("one of %s", words);
+    }
+    return g_strdup_printf("%s from %.16g to %.16g%s%s",
+                           row->type == SETTING_COUNT ? "a whole number" : "a number",
+                           row->low, row->high, *row->unit ? " " : "", row->unit);
+}
+
+static bool read_bool(const char *text, double *out)
+{
+    static const char *const words[] = {"false", "true", "off", "on",
+                                        "no",    "yes",  "0",   "1"};
+    for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
+        if (g_ascii_strcasecmp(words[i], text) == 0) {
+            *out = i % 2 ? 1.0 : 0.0;
+            return true;
+        }
+    return false;
+}
+
+static bool read_choice(const char *const *words, const char *text, double *out)
+{
+    for (int i = 0; words[i]; i++)
+        if (strcmp(words[i], text) == 0) {
+            *out = i;
+            return true;
+        }
+    return false;
+}
+
+/** Decimal numbers only: no hexadecimal, infinity or nan. */
+static bool read_number(const char *text, double *out)
+{
+    if (!*text || strspn(text, "+-.0123456789eE") != strlen(text))
+        return false;
+    char *end = NULL;
+    *out = g_ascii_strtod(text, &end);
+    return end != text && !*end && isfinite(*out);
+}
+
+static bool read_value(const setting_row *row, const char *text, double *out)
+{
+    switch (row->type) {
+    case SETTING_BOOL:
+        return read_bool(text, out);
+    case SETTING_CHOICE:
+        return read_choice(row->words, text, out);
+    case SETTING_COUNT:
+        return read_number(text, out) && *out >= row->low && *out <= row->high &&
+               fabs(*out - rint(*out)) <= 0.0;
+    case SETTING_REAL:
+        return read_number(text, out) && *out >= row->low && *out <= row->high;
+    }
+    return false;
+}
+
+/** The class whose cone an alias of the seeds sets, or -1. */
+static int class_of_cone_alias(const setting_row *row, const char *name)
+{
+    for (int c = 0; c < N_CLASSES; c++)
+        if (row->offset == AT(class_cone_k) + (size_t)c * sizeof(double))
+            return strcmp(row->name, name) == 0 ? -1 : c;
+    return -1;
+}
+
+/** pbrt's maxdepth d: a path of d bounces, so d seen specularly, and d - 1 of a photon
+ * before the one the camera sees. */
+static bool set_depth(settings *s, const char *text)
+{
+    const setting_row *row = settings_find("max_backward_bounces");
+    double depth;
+    if (!read_value(row, text, &depth) || depth < 0.0)
+        return false;
+    s->max_backward_bounces = (int64_t)depth;
+    s->max_forward_bounces = MAX(s->max_backward_bounces - 1, 0);
+    return true;
+}
+
+static bool set_row(settings *s, const setting_row *row, const char *name,
+                    const char *text)
+{
+    double number;
+    if (g_ascii_strcasecmp(name, "maxdepth") == 0)
+        return set_depth(s, text);
+    int cone = class_of_cone_alias(row, name);
+    if (cone >= 0 && read_number(text, &number) && number < 1.0) {
+        s->class_kernel[cone] = KERNEL_CONSTANT;
+        return true;
+    }
+    if (!read_value(row, text, &number))
+        return false;
+    store(s, row, number);
+    if (cone >= 0)
+        s->class_kernel[cone] = KERNEL_CONE;
+    return true;
+}
+
+bool settings_set(settings *s, const char *name, const char *value, GError **error)
+{
+    const setting_row *row = settings_find(name);
+    if (!row) {
+        error_set(error, ERROR_USAGE, "expected a setting's name, found '%s'", name);
+        return false;
+    }
+    g_autofree char *text = g_strstrip(g_strdup(value));
+    if (set_row(s, row, name, text))
+        return true;
+    g_autofree char *words = expected(row);
+    error_set(error, ERROR_USAGE, "setting '%s': expected %s, found '%s'", name, words,
+              text);
+    return false;
+}
+
+/** The shortest text that reads back to the same double. */
+static char *real_text(double value)
+{
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    for (int digits = 1; digits <= 17; digits++) {
+        char format[8];
+        g_snprintf(format, sizeof format, "%%.%dg", digits);
+        g_ascii_formatd(text, sizeof text, format, value);
+        if (fabs(g_ascii_strtod(text, NULL) - value) <= 0.0)
+            break;
+    }
+    return g_strdup(text);
+}
+
+char *settings_get(const settings *s, const setting_row *row)
+{
+    const void *field = (const char *)s + row->offset;
+    switch (row->type) {
+    case SETTING_BOOL:
+        return g_strdup(*(const bool *)field ? "true" : "false");
+    case SETTING_COUNT:
+        return g_strdup_printf("%" G_GINT64_FORMAT, *(const int64_t *)field);
+    case SETTING_CHOICE:
+        return g_strdup(row->words[*(const int *)field]);
+    case SETTING_REAL:
+        break;
+    }
+    return real_text(*(const double *)field);
+}
+
+/** One line of a settings file, without its newline; blank ones are fine. */
+static bool load_line(settings *s, char *line, source_place place, GError **error)
+{
+    line[strcspn(line, "#\r")] = '\0';
+    size_t begin = strspn(line, " \t");
+    if (!line[begin])
+        return true;
+    place.column = (int)begin + 1;
+    size_t equals = strcspn(line, "=");
+    if (!line[equals]) {
+        error_at(error, place, "expected name = value, found '%s'", g_strstrip(line));
+        return false;
+    }
+    line[equals] = '\0';
+    char *name = g_strstrip(line + begin);
+    if (settings_find(name)) {
+        const char *value = line + equals + 1;
+        place.column = (int)(equals + 1 + strspn(value, " \t")) + 1;
+    }
+    g_autoptr(GError) inner = NULL;
+    if (settings_set(s, name, line + equals + 1, &inner))
+        return true;
+    error_at(error, place, "%s", inner->message);
+    return false;
+}
+
+bool settings_load(settings *s, const char *path, GError **error)
+{
+    g_autofree char *text = NULL;
+    g_autoptr(GError) inner = NULL;
+    source_place place = {g_intern_string(path), 0, 0};
+    size_t length = 0;
+    if (!g_file_get_contents(path, &text, &length, &inner)) {
+        error_at(error, place, "cannot read settings: %s", inner->message);
+        return false;
+    }
+    settings loaded = *s;
+    char *line = text;
+    while (line) {
+        char *next = strchr(line, '\n');
+        if (next)
+            *next++ = '\0';
+        place.line++;
+        if (!load_line(&loaded, line, place, error))
+            return false;
+        line = next;
+    }
+    *s = loaded;
+    return true;
+}

@@ -1,0 +1,257 @@
+/*
+ * settings: every row reads back what it writes, keeps its range, and answers to the
+ * names that the literature gave it; files of settings name the place of an error.
+ */
+#include "scene/settings.h"
+
+#include <glib/gstdio.h>
+#include <math.h>
+#include <string.h>
+
+static void set(settings *s, const char *name, const char *value)
+{
+    g_autoptr(GError) error = NULL;
+    bool done = settings_set(s, name, value, &error);
+    g_assert_no_error(error);
+    g_assert_true(done);
+}
+
+static void refuse(const char *name, const char *value, const char *message)
+{
+    settings s = settings_default(), before = s;
+    g_autoptr(GError) error = NULL;
+    g_assert_false(settings_set(&s, name, value, &error));
+    g_assert_error(error, NEPH_ERROR, ERROR_USAGE);
+    g_assert_cmpstr(error->message, ==, message);
+    g_assert_cmpmem(&s, sizeof s, &before, sizeof before);
+}
+
+static void test_rows_are_whole(void)
+{
+    size_t n;
+    const setting_row *rows = settings_table(&n);
+    for (size_t i = 0; i < n; i++) {
+        g_assert_cmpfloat(rows[i].low, <=, rows[i].initial);
+        g_assert_cmpfloat(rows[i].initial, <=, rows[i].high);
+        g_assert_true(g_str_has_suffix(rows[i].doc, "."));
+        g_assert_cmpint((int)strlen(rows[i].users), >, 0);
+        g_assert_true((rows[i].type == SETTING_CHOICE) == (rows[i].words != NULL));
+        if (rows[i].words)
+            g_assert_cmpuint(g_strv_length((char **)rows[i].words), ==,
+                             (guint)rows[i].high + 1);
+    }
+}
+
+static void test_names_are_unique(void)
+{
+    size_t n;
+    const setting_row *rows = settings_table(&n);
+    g_autoptr(GHashTable) seen =
+        g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    for (size_t i = 0; i < n; i++) {
+        g_autofree char *names = g_strconcat(rows[i].name, " ", rows[i].aliases, NULL);
+        g_auto(GStrv) words = g_strsplit(g_strstrip(names), " ", -1);
+        for (size_t k = 0; words[k]; k++) {
+            char *key = g_ascii_strdown(words[k], -1);
+            const setting_row *other = g_hash_table_lookup(seen, key);
+            g_assert_true(!other || other == &rows[i]);
+            g_hash_table_insert(seen, key, (gpointer)&rows[i]);
+            g_assert_true(settings_find(words[k]) == &rows[i]);
+        }
+    }
+    g_assert_null(settings_find(""));
+    g_assert_null(settings_find("Passes"));
+    g_assert_true(settings_find("PHOTONRADIUS") == settings_find("radius"));
+}
+
+static void test_text_round_trip(void)
+{
+    size_t n;
+    const setting_row *rows = settings_table(&n);
+    for (size_t i = 0; i < n; i++) {
+        double values[] = {rows[i].low, rows[i].high, rows[i].initial};
+        for (size_t k = 0; k < 3; k++) {
+            char number[G_ASCII_DTOSTR_BUF_SIZE];
+            const char *given = rows[i].words
+                                    ? rows[i].words[(int)values[k]]
+                                    : g_ascii_dtostr(number, sizeof number, values[k]);
+            settings a = settings_default(), b = settings_default();
+            set(&a, rows[i].name, given);
+            g_autofree char *text = settings_get(&a, &rows[i]);
+            set(&b, rows[i].name, text);
+            g_assert_cmpmem(&a, sizeof a, &b, sizeof b);
+        }
+    }
+}
+
+static void test_default_is_the_table(void)
+{
+    settings s = settings_default();
+    g_assert_cmpint(s.passes, ==, 16);
+    g_assert_cmpint(s.spp, ==, 4);
+    g_assert_cmpint(s.max_forward_bounces, ==, -1);
+    g_assert_true(s.direct_illumination && s.shadow_rays && !s.final_gather);
+    g_assert_cmpint(s.photon_map, ==, MAP_GRID);
+    g_assert_cmpint(s.class_kernel[2], ==, KERNEL_EPANECHNIKOV);
+    g_assert_cmpint(s.caustic_emission, ==, EMISSION_SPECULAR_AREA);
+    g_assert_true(fabs(s.alpha - 2.0 / 3.0) < 1e-15);
+}
+
+static void test_values(void)
+{
+    settings s = settings_default();
+    set(&s, "photons", "1e6");
+    g_assert_cmpint(s.photons, ==, 1000000);
+    set(&s, "radius", " 0.25 ");
+    g_assert_cmpfloat(s.radius, ==, 0.25);
+    set(&s, "final_gather", "on");
+    set(&s, "shadow_rays", "No");
+    g_assert_true(s.final_gather && !s.shadow_rays);
+    set(&s, "indirect_kernel", "gaussian");
+    g_assert_cmpint(s.class_kernel[1], ==, KERNEL_GAUSSIAN);
+    set(&s, "caustic_nearest", "50");
+    g_assert_cmpint(s.class_nearest[2], ==, 50);
+}
+
+static void test_names_of_the_seeds(void)
+{
+    settings s = settings_default();
+    set(&s, "maxForwardBounces", "3");
+    set(&s, "maxBackwardBounces", "4");
+    set(&s, "numEmitted", "1234");
+    set(&s, "photonRadius", "0.5");
+    set(&s, "CAUSTIC_PHOTONS_PER_LIGHT", "77");
+    set(&s, "INDIRECT_NEARBY_PHOTONS", "88");
+    set(&s, "MULTIPLE_SAMPLES", "false");
+    g_assert_cmpint(s.max_forward_bounces, ==, 3);
+    g_assert_cmpint(s.max_backward_bounces, ==, 4);
+    g_assert_cmpint(s.photons, ==, 1234);
+    g_assert_cmpfloat(s.radius, ==, 0.5);
+    g_assert_cmpint(s.class_photons[2], ==, 77);
+    g_assert_cmpint(s.class_nearest[1], ==, 88);
+    g_assert_false(s.multiple_samples);
+    set(&s, "MAX_PHOTON_BOUNCES", "9");
+    g_assert_cmpint(s.max_forward_bounces, ==, 9);
+}
+
+static void test_cone_alias_chooses_the_kernel(void)
+{
+    settings s = settings_default();
+    set(&s, "CAUSTICS_CONE_FILTER_PARAM", "1.5");
+    g_assert_cmpint(s.class_kernel[2], ==, KERNEL_CONE);
+    g_assert_cmpfloat(s.class_cone_k[2], ==, 1.5);
+    set(&s, "CAUSTICS_CONE_FILTER_PARAM", "0");
+    g_assert_cmpint(s.class_kernel[2], ==, KERNEL_CONSTANT);
+    g_assert_cmpint(s.class_kernel[0], ==, KERNEL_EPANECHNIKOV);
+    set(&s, "direct_cone_k", "2");
+    g_assert_cmpint(s.class_kernel[0], ==, KERNEL_EPANECHNIKOV);
+}
+
+static void test_maxdepth_bounds_both_ways(void)
+{
+    settings s = settings_default();
+    set(&s, "maxdepth", "5");
+    g_assert_cmpint(s.max_backward_bounces, ==, 5);
+    g_assert_cmpint(s.max_forward_bounces, ==, 4);
+    set(&s, "maxdepth", "0");
+    g_assert_cmpint(s.max_forward_bounces, ==, 0);
+    refuse("maxdepth", "-1",
+           "setting 'maxdepth': expected a whole number from -1 to 1000000, found '-1'");
+}
+
+static void test_refusals(void)
+{
+    refuse("pases", "3", "expected a setting's name, found 'pases'");
+    refuse("passes", "0",
+           "setting 'passes': expected a whole number from 1 to 1000000000, found '0'");
+    refuse("spp", "2.5",
+           "setting 'spp': expected a whole number from 1 to 65536 samples/pixel, found "
+           "'2.5'");
+    refuse("radius", "nan",
+           "setting 'radius': expected a number from 0 to 1000000000000 m, found 'nan'");
+    refuse("radius", "inf",
+           "setting 'radius': expected a number from 0 to 1000000000000 m, found 'inf'");
+    refuse("radius", "0x10",
+           "setting 'radius': expected a number from 0 to 1000000000000 m, found '0x10'");
+    refuse("radius", "1,5",
+           "setting 'radius': expected a number from 0 to 1000000000000 m, found '1,5'");
+    refuse("radius", "",
+           "setting 'radius': expected a number from 0 to 1000000000000 m, found ''");
+    refuse("final_gather", "perhaps",
+           "setting 'final_gather': expected true or false, found 'perhaps'");
+    refuse("photon_map", "octree",
+           "setting 'photon_map': expected one of list, kdtree, grid, found 'octree'");
+    refuse("direct_cone_k", "0.5",
+           "setting 'direct_cone_k': expected a number from 1 to 1000000, found '0.5'");
+}
+
+/** Writes text to a file of its own and loads it; *path is where it lay. */
+static bool load(const char *text, settings *s, char **path, GError **error)
+{
+    int fd = g_file_open_tmp("nephroid-settings-XXXXXX", path, NULL);
+    g_assert_cmpint(fd, >=, 0);
+    g_close(fd, NULL);
+    g_assert_true(g_file_set_contents(*path, text, -1, NULL));
+    bool loaded = settings_load(s, *path, error);
+    g_unlink(*path);
+    return loaded;
+}
+
+static void test_load(void)
+{
+    settings s = settings_default();
+    g_autofree char *path = NULL;
+    g_autoptr(GError) error = NULL;
+    bool loaded = load("# a note\n\n passes = 3 # three\r\nphoton_map=kdtree\n"
+                       "CAUSTIC_NEARBY_PHOTONS = 60",
+                       &s, &path, &error);
+    g_assert_no_error(error);
+    g_assert_true(loaded);
+    g_assert_cmpint(s.passes, ==, 3);
+    g_assert_cmpint(s.photon_map, ==, MAP_KDTREE);
+    g_assert_cmpint(s.class_nearest[2], ==, 60);
+}
+
+static void load_refuses(const char *text, const char *message)
+{
+    settings s = settings_default(), before = s;
+    g_autofree char *path = NULL;
+    g_autoptr(GError) error = NULL;
+    g_assert_false(load(text, &s, &path, &error));
+    g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
+    g_autofree char *whole = g_strconcat(path, message, NULL);
+    g_assert_cmpstr(error->message, ==, whole);
+    g_assert_cmpmem(&s, sizeof s, &before, sizeof before);
+}
+
+static void test_load_names_the_place(void)
+{
+    load_refuses("passes = 3\n  photns = 4\n",
+                 ":2:3: expected a setting's name, found 'photns'");
+    load_refuses("passes 3\n", ":1:1: expected name = value, found 'passes 3'");
+    load_refuses("passes = 3\nspp =  x\n",
+                 ":2:8: setting 'spp': expected a whole number from 1 to 65536 "
+                 "samples/pixel, found 'x'");
+    settings s = settings_default();
+    g_autoptr(GError) error = NULL;
+    g_assert_false(settings_load(&s, "/nowhere/at/all", &error));
+    g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
+    g_assert_true(g_str_has_prefix(error->message, "/nowhere/at/all: cannot read"));
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/settings/rows-are-whole", test_rows_are_whole);
+    g_test_add_func("/settings/names-are-unique", test_names_are_unique);
+    g_test_add_func("/settings/text-round-trip", test_text_round_trip);
+    g_test_add_func("/settings/default-is-the-table", test_default_is_the_table);
+    g_test_add_func("/settings/values", test_values);
+    g_test_add_func("/settings/names-of-the-seeds", test_names_of_the_seeds);
+    g_test_add_func("/settings/cone-alias", test_cone_alias_chooses_the_kernel);
+    g_test_add_func("/settings/maxdepth", test_maxdepth_bounds_both_ways);
+    g_test_add_func("/settings/refusals", test_refusals);
+    g_test_add_func("/settings/load", test_load);
+    g_test_add_func("/settings/load-names-the-place", test_load_names_the_place);
+    return g_test_run();
+}
