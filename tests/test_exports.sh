@@ -28,7 +28,7 @@ report() {
 
 echo 1..2
 found=$(strangers "$library")
-[ -z "$found" ] || echo "# not ours:" $found
+[ -z "$found" ] || echo "# not ours: $(echo "$found" | tr '\n' ' ')"
 [ -z "$found" ]
 report only-ours $?
 

@@ -10,6 +10,7 @@ cp "$work/twice.c" "$work/twice.cpp"
 printf 'Gibberish *neph_gibberish(void);\n' >"$work/fault.c"
 number=0
 
+# shellcheck disable=SC2086 # the flags are words
 # compile COMPILER OPTION... FILE: true if FILE compiles without a warning
 compile() {
     "$@" -Wall -Wextra -pedantic -Werror -fsyntax-only $flags >"$work/log" 2>&1
@@ -40,6 +41,5 @@ for std in c++11 c++20; do
         echo "ok $number /header/$std # SKIP no C++ compiler"
     fi
 done
-compile "${CC:-cc}" -std=c11 "$work/fault.c"
-[ $? != 0 ]
+! compile "${CC:-cc}" -std=c11 "$work/fault.c"
 report planted-fault $?
