@@ -5,8 +5,9 @@
  *   L(x, wo) = Σ f(x, wi_p, wo) |wi_p·n|/|wi_p·n_geom| κ(d_p) Φ_p / ∫∫ κ(s) s ds dθ
  *
  * f is the full BSDF of the gathered lobes. The cosine ratio makes photons (a density
- * over the true surface) see the shading normal as light does. Photons on the wrong side
- * weigh zero through f and never shrink the radius.
+ * over the true surface) see the shading normal as light does. Unless the BSDF transmits,
+ * photons that arrived on the far side of the surface are not seen at all: they weigh
+ * nothing and never shrink the radius.
  */
 #pragma once
 
@@ -18,9 +19,10 @@
 typedef struct estimate_options {
     kernel kernel;
     size_t nearest; /**< k; 0: all within radius */
-    float radius;   /**< m; with k nearest the largest allowed (INFINITY: none) */
+    float radius;   /**< m; with k nearest the largest allowed (INFINITY: none), and the
+                       one used when fewer than k are found in it */
     float flatten;  /**< photons further than flatten * r from the tangent plane are left
-                       out,  without shrinking r; 1: a ball */
+                       out, without shrinking r (see photon_filter); 1: a ball */
     bool unbiased_nearest; /**< k nearest: r reaches to the k-th, which itself is not
                               counted */
     unsigned lobes;        /**< used for all photons, e.g. LOBE_GATHERED */
