@@ -36,8 +36,8 @@ void color_space_chromaticities(const color_space *space, float xy[8]);
 typedef struct curve curve;
 
 curve *curve_constant(float value);
-/** @brief Piecewise linear through n >= 1 points (nm ascending), zero outside like pbrt's
- *  PiecewiseLinearSpectrum when n > 1... constant ends are the caller's choice of points.
+/** @brief Piecewise linear through n >= 1 points (nm ascending), zero outside them like
+ *  pbrt's PiecewiseLinearSpectrum; constant ends are the caller's choice of points.
  *  @return NULL with ERROR_INPUT if wavelengths do not ascend or a number is not finite.
  */
 curve *curve_tabulated(const float *nm, const float *values, int n, GError **error);
@@ -46,11 +46,14 @@ curve *curve_tabulated(const float *nm, const float *values, int n, GError **err
  * albedo. */
 curve *curve_rgb(const color_space *space, const float rgb[3], curve_role role,
                  GError **error);
-/** @brief Planck's law at kelvin > 0, normalised to a maximum of 1 like pbrt. */
+/** @brief Planck's law, normalised to a maximum of 1 over all wavelengths like pbrt. NULL
+ *  unless kelvin is positive and finite. Below some 200 K nothing is visible: all zero.
+ */
 curve *curve_blackbody(float kelvin);
-/** @brief Sellmeier: n² = 1 + sum b[i] λ²/(λ² - c[i]), λ in µm, c in µm². */
+/** @brief Sellmeier: n² = 1 + sum b[i] λ²/(λ² - c[i]), λ in µm, c in µm². NULL if n is
+ * not finite and positive over the wavelengths of light. */
 curve *curve_sellmeier(const double b[3], const double c[3]);
-/** @brief Cauchy: n = a + b/λ² + c/λ⁴, λ in µm. */
+/** @brief Cauchy: n = a + b/λ² + c/λ⁴, λ in µm. NULL under the same condition. */
 curve *curve_cauchy(double a, double b, double c);
 /** @brief A named spectrum as pbrt knows them: "metal-Au-eta", "metal-Au-k", "glass-BK7",
  *  "stdillum-D65", ... and ours (see the manual). NULL if unknown. */
@@ -66,7 +69,8 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(curve, curve_unref)
 
 /** @brief The curve at the eight wavelengths. Thread-safe. */
 spectrum curve_eval(const curve *c, const wavelengths *w);
-/** @brief The curve at one wavelength in nm (scalar; for tables and tests). */
+/** @brief The curve at one wavelength in nm, 0 outside 360..830 (scalar; for tables and
+ * tests). */
 float curve_at(const curve *c, float nm);
 /** @brief True if the curve has one value at all wavelengths: such a glass does not
  * disperse. */
@@ -75,13 +79,14 @@ bool curve_is_constant(const curve *c);
  *  CURVE_EMISSION RGB curve it is that of the space's illuminant alone, as pbrt has it.
  */
 float curve_photometric(const curve *c);
-/** @brief The curve seen under equal energy (or as itself for lights), as linear sRGB:
- * for previews and `info`. */
+/** @brief The curve's colour as linear sRGB, for previews and `info`: a reflectance as
+ * seen under D65 (an RGB albedo gives its triple back); lights (RGB emission, blackbody,
+ * named illuminants) as themselves, divided by curve_photometric as pbrt divides them. */
 void curve_preview_rgb(const curve *c, float rgb[3]);
 
 /** @brief RGB texels to spectra: the three coefficients of the smooth curve of an albedo
  * triple in [0,1], by table look-up; pair with smooth_eval. Thread-safe. */
 void smooth_from_rgb(const color_space *space, const float rgb[3], float coefficients[3]);
-/** @brief The smooth (sigmoid of a quadratic) curve at the eight wavelengths, in (0, 1).
+/** @brief The smooth (sigmoid of a quadratic) curve at the eight wavelengths, in [0, 1].
  */
 spectrum smooth_eval(const float coefficients[3], const wavelengths *w);

@@ -1,0 +1,24 @@
+/*
+ * Fitting the smooth curve to an RGB triple.
+ */
+#pragma once
+
+#include "color/space.h"
+
+/**
+ * @brief Finds the coefficients whose curve, seen under the space's illuminant, is rgb.
+ * @param rgb components in [0, 1]
+ * @param c in: where to start; out: c[0] t² + c[1] t + c[2] is the sigmoid's argument
+ * @return largest error of a component; above 1e-6 only where no smooth reflectance has
+ * that colour.
+ */
+double smooth_fit(const color_space *space, const double rgb[3], double c[3]);
+
+/** @brief The coefficients of rgb, clamped to [0, 1]; greys are exactly flat. */
+void smooth_solve(const color_space *space, const float rgb[3], float coefficients[3]);
+
+/** @brief True if the components are equal but for rounding. */
+bool smooth_is_grey(const float rgb[3]);
+
+/** @brief The argument at which the sigmoid is x in [0, 1], kept finite. */
+double smooth_inverse(double x);
