@@ -161,7 +161,9 @@ static void test_maxdepth_bounds_both_ways(void)
 
 static void test_refusals(void)
 {
-    refuse("pases", "3", "expected a setting's name, found 'pases'");
+    refuse("pases", "3",
+           "expected a setting's name, found 'pases'; did you mean 'passes'?");
+    refuse("xyzzy", "3", "expected a setting's name, found 'xyzzy'");
     refuse("passes", "0",
            "setting 'passes': expected a whole number from 1 to 1000000000, found '0'");
     refuse("spp", "2.5",
@@ -226,8 +228,9 @@ static void load_refuses(const char *text, const char *message)
 
 static void test_load_names_the_place(void)
 {
-    load_refuses("passes = 3\n  photns = 4\n",
-                 ":2:3: expected a setting's name, found 'photns'");
+    load_refuses(
+        "passes = 3\n  photns = 4\n",
+        ":2:3: expected a setting's name, found 'photns'; did you mean 'photons'?");
     load_refuses("passes 3\n", ":1:1: expected name = value, found 'passes 3'");
     load_refuses("passes = 3\nspp =  x\n",
                  ":2:8: setting 'spp': expected a whole number from 1 to 65536 "

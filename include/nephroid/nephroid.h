@@ -43,6 +43,13 @@ typedef enum { NEPH_LOG_NOTE, NEPH_LOG_WARNING } NephLogLevel;
 /** @brief Receives one line without newline, on the thread that called the library. */
 typedef void (*NephLogFunc)(NephLogLevel level, const char *text, void *data);
 
+/* ---- Files ---- */
+
+/** @brief Whether a file can be written there; leaves no trace. */
+NEPH_API bool neph_file_can_write(const char *path, GError **error);
+/** @brief Writes a text under a temporary name beside it and renames it when whole. */
+NEPH_API bool neph_file_write(const char *path, const char *text, GError **error);
+
 /* ---- Settings ---- */
 
 typedef enum {
@@ -81,6 +88,9 @@ NEPH_API char *neph_settings_get(const NephSettings *settings, const char *name)
 /** @brief Reads "name = value" lines. */
 NEPH_API bool neph_settings_load(NephSettings *settings, const char *path,
                                  GError **error);
+/** @brief The table of all settings, for people (json false) or programs. Owned by
+ * caller. */
+NEPH_API char *neph_settings_describe(bool json);
 
 /* ---- Scenes ---- */
 
@@ -126,6 +136,10 @@ typedef struct NephImageDifference {
 /** @brief Compares image with reference over R, G, B. */
 NEPH_API bool neph_image_compare(const NephImage *image, const NephImage *reference,
                                  NephImageDifference *out, GError **error);
+/** @brief A comparison as a table for people (json false) or for programs. Owned by
+ * caller. */
+NEPH_API char *neph_image_difference_text(const NephImageDifference *difference,
+                                          bool json);
 
 /* ---- Rendering ---- */
 

@@ -6,6 +6,8 @@
  */
 #include "scene/settings.h"
 
+#include "base/words.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -287,11 +289,37 @@ static bool set_row(settings *s, const setting_row *row, const char *name,
     return true;
 }
 
+/** The name that a mistyped one was probably meant to be, or NULL. */
+static const char *nearest_name(const char *name)
+{
+    const char *nearest = NULL;
+    size_t least = 1 + strlen(name) / 2;
+    for (size_t i = 0; i < N_ROWS; i++) {
+        size_t distance = edit_distance(name, table[i].name);
+        if (distance < least) {
+            least = distance;
+            nearest = table[i].name;
+        }
+    }
+    return nearest;
+}
+
+static void refuse_name(const char *name, GError **error)
+{
+    const char *nearest = nearest_name(name);
+    if (nearest)
+        error_set(error, ERROR_USAGE,
+                  "expected a setting's name, found '%s'; did you mean '%s'?", name,
+                  nearest);
+    else
+        error_set(error, ERROR_USAGE, "expected a setting's name, found '%s'", name);
+}
+
 bool settings_set(settings *s, const char *name, const char *value, GError **error)
 {
     const setting_row *row = settings_find(name);
     if (!row) {
-        error_set(error, ERROR_USAGE, "expected a setting's name, found '%s'", name);
+        refuse_name(name, error);
         return false;
     }
     g_autofree char *text = g_strstrip(g_strdup(value));

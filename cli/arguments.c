@@ -1,0 +1,114 @@
+#include "arguments.h"
+
+#include "command.h"
+#include "message.h"
+
+#include <math.h>
+#include <string.h>
+
+static gboolean wants_help, wants_version;
+
+static const GOptionEntry common_entries[] = {
+    {"help", 'h', 0, G_OPTION_ARG_NONE, &wants_help, "Show this help", NULL},
+    {"version", 'V', 0, G_OPTION_ARG_NONE, &wants_version, "Show the version", NULL},
+    G_OPTION_ENTRY_NULL};
+
+static GOptionContext *context_new(const usage *how)
+{
+    GOptionContext *context = g_option_context_new(how->operands);
+    g_option_context_set_help_enabled(context, FALSE);
+    g_option_context_set_summary(context, how->summary);
+    if (how->description)
+        g_option_context_set_description(context, how->description);
+    g_option_context_add_main_entries(context, how->entries, NULL);
+    g_option_context_add_main_entries(context, common_entries, NULL);
+    return context;
+}
+
+/* GLib leaves "--" in place when an operand follows that begins with a dash. */
+static void drop_separator(int *argc, char **argv)
+{
+    for (int i = 1; i < *argc; i++)
+        if (strcmp(argv[i], "--") == 0) {
+            memmove(argv + i, argv + i + 1, (size_t)(*argc - i) * sizeof *argv);
+            (*argc)--;
+            return;
+        }
+}
+
+static int check_operands(const usage *how, int n)
+{
+    if (n < how->n_operands)
+        return usage_error("expected %s, found %s", how->operands,
+                           n ? "too little" : "nothing");
+    if (n > how->n_operands)
+        return usage_error("expected %s, found %d names",
+                           how->n_operands ? how->operands : "no file", n);
+    return EXIT_DONE;
+}
+
+bool arguments_parse(const usage *how, int *argc, char ***argv, int *exit_code)
+{
+    g_autofree char *name = g_strdup_printf("nephroid %s", how->name);
+    g_set_prgname(name);
+    g_autoptr(GOptionContext) context = context_new(how);
+    g_autoptr(GError) error = NULL;
+    if (!g_option_context_parse(context, argc, argv, &error)) {
+        *exit_code = report_error(error);
+        return false;
+    }
+    if (wants_help) {
+        g_autofree char *help = g_option_context_get_help(context, TRUE, NULL);
+        *exit_code = print_result("%s", help);
+        return false;
+    }
+    if (wants_version) {
+        *exit_code = print_result("nephroid %s\n", neph_version());
+        return false;
+    }
+    drop_separator(argc, *argv);
+    *exit_code = check_operands(how, *argc - 1);
+    return *exit_code == EXIT_DONE;
+}
+
+static bool refuse(const char *option, const char *expected, const char *text,
+                   GError **error)
+{
+    g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_USAGE, "%s: expected %s, found '%s'",
+                option, expected, text);
+    return false;
+}
+
+bool argument_real(const char *option, const char *text, double *out, GError **error)
+{
+    char *end = NULL;
+    *out = g_ascii_strtod(text, &end);
+    bool is_decimal = *text && strspn(text, "+-.0123456789eE") == strlen(text);
+    if (is_decimal && !*end && isfinite(*out))
+        return true;
+    return refuse(option, "a number", text, error);
+}
+
+bool argument_count(const char *option, const char *text, guint64 low, guint64 high,
+                    guint64 *out, GError **error)
+{
+    if (g_ascii_string_to_unsigned(text, 10, low, high, out, NULL))
+        return true;
+    g_autofree char *expected = g_strdup_printf(
+        "a whole number from %" G_GUINT64_FORMAT " to %" G_GUINT64_FORMAT, low, high);
+    return refuse(option, expected, text, error);
+}
+
+bool argument_size(const char *option, const char *text, int *width, int *height,
+                   GError **error)
+{
+    guint64 w, h;
+    g_auto(GStrv) sides = g_strsplit(text, "x", 2);
+    if (g_strv_length(sides) != 2 ||
+        !argument_count(option, sides[0], 1, 65536, &w, NULL) ||
+        !argument_count(option, sides[1], 1, 65536, &h, NULL))
+        return refuse(option, "WIDTHxHEIGHT, 1 to 65536 pixels each", text, error);
+    *width = (int)w;
+    *height = (int)h;
+    return true;
+}

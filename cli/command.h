@@ -1,0 +1,16 @@
+/*
+ * The subcommands, one file each. They get their arguments with the command's name first
+ * and give the exit code of the program.
+ */
+#pragma once
+
+/** @brief What the shell is told. 1..3 are NephError's values. */
+enum { EXIT_DONE = 0, EXIT_INPUT = 1, EXIT_USAGE = 2, EXIT_FAILED = 3 };
+
+typedef struct command {
+    const char *name;
+    const char *summary; /**< one line */
+    int (*run)(int argc, char **argv);
+} command;
+
+int command_settings(int argc, char **argv);

@@ -1,0 +1,51 @@
+/*
+ * nephroid: the command line. Picks the subcommand; the library does the work.
+ */
+#include "command.h"
+
+#include "message.h"
+
+#include <locale.h>
+#include <nephroid/nephroid.h>
+#include <string.h>
+
+static const command commands[] = {
+    {"settings", "list all settings", command_settings},
+};
+
+static char *help_text(void)
+{
+    GString *out = g_string_new("Usage:\n  nephroid COMMAND [OPTION…] [FILE…]\n\n"
+                                "Renders scenes by photon mapping.\n\nCommands:\n");
+    for (size_t i = 0; i < G_N_ELEMENTS(commands); i++)
+        g_string_append_printf(out, "  %-10s %s\n", commands[i].name,
+                               commands[i].summary);
+    g_string_append(out, "\nOptions:\n"
+                         "  -h, --help     show this help; also after a command\n"
+                         "  -V, --version  show the version\n\n"
+                         "Exit codes: 0 done, 1 bad input, 2 bad usage, 3 failed or "
+                         "stopped while running.\n");
+    return g_string_free(out, FALSE);
+}
+
+static int run_command(int argc, char **argv)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(commands); i++)
+        if (strcmp(argv[0], commands[i].name) == 0)
+            return commands[i].run(argc, argv);
+    return usage_error("unknown command '%s'", argv[0]);
+}
+
+int main(int argc, char **argv)
+{
+    setlocale(LC_CTYPE, ""); /* file names; numbers stay with the point */
+    g_set_prgname("nephroid");
+    g_autofree char *help = help_text();
+    if (argc < 2)
+        return usage_error("no command given");
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)
+        return print_result("%s", help);
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0)
+        return print_result("nephroid %s\n", neph_version());
+    return run_command(argc - 1, argv + 1);
+}

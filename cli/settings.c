@@ -1,0 +1,55 @@
+#include "arguments.h"
+#include "command.h"
+#include "message.h"
+
+static gboolean as_json, as_markdown;
+
+static const GOptionEntry entries[] = {
+    {"json", 0, 0, G_OPTION_ARG_NONE, &as_json, "For programs", NULL},
+    {"markdown", 0, 0, G_OPTION_ARG_NONE, &as_markdown, "As a table of a manual", NULL},
+    G_OPTION_ENTRY_NULL};
+
+static const usage how = {
+    .name = "settings",
+    .summary = "Lists all settings with their defaults and ranges. They are given in a "
+               "scene's Integrator\ndirective, in a settings file, or with --set.",
+    .entries = entries};
+
+/* What the row accepts; a bar must not end the table's cell. */
+static char *range_text(const NephSettingInfo *row)
+{
+    if (row->type == NEPH_SETTING_BOOL)
+        return g_strdup("true, false");
+    if (row->type == NEPH_SETTING_CHOICE)
+        return g_strjoinv(", ", (char **)row->words);
+    return g_strdup_printf("%.10g … %.10g", row->low, row->high);
+}
+
+static char *markdown(void)
+{
+    GString *out = g_string_new("| name | default | unit | range | also | read by | |\n"
+                                "|---|---|---|---|---|---|---|\n");
+    NephSettings *defaults = neph_settings_new();
+    size_t n;
+    const NephSettingInfo *rows = neph_settings_table(&n);
+    for (size_t i = 0; i < n; i++) {
+        g_autofree char *initial = neph_settings_get(defaults, rows[i].name);
+        g_autofree char *range = range_text(&rows[i]);
+        g_string_append_printf(out, "| `%s` | %s | %s | %s | %s | %s | %s |\n",
+                               rows[i].name, initial, rows[i].unit, range,
+                               rows[i].aliases, rows[i].users, rows[i].doc);
+    }
+    neph_settings_free(defaults);
+    return g_string_free(out, FALSE);
+}
+
+int command_settings(int argc, char **argv)
+{
+    int exit_code;
+    if (!arguments_parse(&how, &argc, &argv, &exit_code))
+        return exit_code;
+    if (as_json && as_markdown)
+        return usage_error("--json and --markdown exclude each other");
+    g_autofree char *text = as_markdown ? markdown() : neph_settings_describe(as_json);
+    return print_result("%s", text);
+}

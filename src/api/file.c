@@ -1,0 +1,12 @@
+#include "base/output.h"
+#include "nephroid/nephroid.h"
+
+bool neph_file_can_write(const char *path, GError **error)
+{
+    return output_possible(path, error);
+}
+
+bool neph_file_write(const char *path, const char *text, GError **error)
+{
+    return output_write_text(path, text, error);
+}

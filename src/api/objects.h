@@ -1,0 +1,26 @@
+/*
+ * What the opaque objects of the installed header hold.
+ */
+#pragma once
+
+#include "image/image.h"
+#include "nephroid/nephroid.h"
+#include "scene/scene.h"
+#include "scene/settings.h"
+
+struct NephSettings {
+    settings values;
+};
+
+struct NephScene {
+    scene *scene;
+    NephLogFunc log; /**< the caller's, may be NULL; used while the scene lives */
+    void *log_data;
+};
+
+struct NephImage {
+    image *image;
+};
+
+/** @brief Wraps an image, which is taken; NULL gives NULL. */
+NephImage *neph_image_wrap(image *img);
