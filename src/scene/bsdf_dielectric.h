@@ -1,0 +1,25 @@
+/*
+ * What the smooth and the rough dielectric share.
+ */
+#pragma once
+
+#include "scene/bsdf_models.h"
+#include "scene/fresnel.h"
+
+typedef struct dielectric {
+    spectrum eta; /**< index below over that above the surface */
+    ggx roughness;
+    bool disperses;
+    bool lossless; /**< no Fresnel reflection, only total */
+} dielectric;
+
+_Static_assert(sizeof(dielectric) <= BSDF_DATA_SIZE, "a dielectric must fit");
+
+extern const bsdf_ops dielectric_smooth_ops, dielectric_rough_ops;
+
+/** @brief Index of the far side over that on wo's side. */
+spectrum dielectric_eta(const bsdf *b, vec3 wo);
+
+/** @brief The lane that decides: the one kept, else a random one where they differ; *u
+ * stays uniform. */
+int dielectric_pick_lane(const bsdf *b, float *u);

@@ -1,0 +1,68 @@
+/*
+ * The scattering models, apart from the materials that read their parameters.
+ *
+ * Each function fills ops, lobes, lambertian, rho and data of a bsdf whose frame, n_geom
+ * and lane are set already.
+ */
+#pragma once
+
+#include "scene/bsdf.h"
+#include "scene/microfacet.h"
+
+/** @brief True if the lobe (one class, one side) is among those of a mask. */
+static inline bool lobe_wanted(unsigned mask, unsigned lobe)
+{
+    unsigned both = mask & lobe;
+    return (both & LOBE_ANY_SIDE) && (both & ~(unsigned)LOBE_ANY_SIDE);
+}
+
+/** @brief The class of a lobe of this roughness. */
+static inline unsigned ggx_class(ggx g)
+{
+    if (ggx_is_smooth(g))
+        return LOBE_SPECULAR;
+    return fmaxf(g.alpha_x, g.alpha_y) < GLOSSY_ALPHA ? LOBE_GLOSSY : LOBE_DIFFUSE;
+}
+
+/** @brief The value that decides in random choices: of the lane kept, or the mean. */
+static inline float lane_mean(const bsdf *b, spectrum s)
+{
+    return b->lane == ALL_LANES ? spectrum_mean(s) : s[b->lane];
+}
+
+/** @brief w mirrored to z >= 0 if `flip`. */
+static inline vec3 flip_z(vec3 w, bool flip)
+{
+    return flip ? vec3_make(w[0], w[1], -w[2]) : w;
+}
+
+/** @brief eval and pdf of models with specular lobes only: zero. */
+spectrum bsdf_delta_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
+                         transport_mode mode);
+float bsdf_delta_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
+                     transport_mode mode);
+
+/** @brief Lambert's law, alike on both sides. @param rho reflectance in 0..1 */
+void bsdf_make_diffuse(bsdf *b, spectrum rho);
+
+/** @brief A metal, smooth or rough, alike on both sides. */
+void bsdf_make_conductor(bsdf *b, spectrum eta, spectrum k, ggx roughness);
+
+/** @brief A boundary between dielectrics, smooth or rough.
+ *  @param eta index below the surface over that above
+ *  @param disperses eta differs between lanes: a refracted ray keeps one of them */
+void bsdf_make_dielectric(bsdf *b, spectrum eta, bool disperses, ggx roughness);
+
+/** @brief A smooth boundary that only refracts, without loss, or reflects totally: the
+ * one deterministic path of Whitted's tracer without splitting. */
+void bsdf_make_refractor(bsdf *b, spectrum eta, bool disperses);
+
+/** @brief A thin plate: reflections between its two faces summed up, direction kept. */
+void bsdf_make_thin_dielectric(bsdf *b, spectrum eta);
+
+/** @brief A thin plate that lets everything pass. */
+void bsdf_make_clear(bsdf *b);
+
+/** @brief Share of light that a rough boundary seen from wo (z > 0) reflects and
+ * transmits, by a 64-point rule over the visible normals: for choices and previews. */
+void ggx_shares(ggx g, vec3 wo, float eta, float *reflected, float *transmitted);
