@@ -315,7 +315,8 @@ static spectrum mean_weight(const drawing *d, int n, float *error)
         squares += out.weight * out.weight;
     }
     spectrum mean = sum / (float)n;
-    *error = sqrtf(spectrum_max(squares / (float)n - mean * mean) / (float)n);
+    *error =
+        sqrtf(fmaxf(0.0f, spectrum_max(squares / (float)n - mean * mean)) / (float)n);
     return mean;
 }
 
