@@ -26,7 +26,9 @@ typedef struct surface_hit {
     vec3 n;      /**< shading normal */
     vec3 dpdu;   /**< tangent of the parametrisation, not unit */
     vec2 uv;
-    float t; /**< distance along the ray */
+    float t;     /**< distance along the ray */
+    float error; /**< m: how far off the surface rounding may see a ray that starts at p
+                    (large triangles near the origin); 0: the coordinates of p tell */
     float time;
     int shape;          /**< index in scene->shapes */
     uint32_t primitive; /**< triangle of a mesh, else 0 */
@@ -41,6 +43,7 @@ static inline vec3 hit_offset(const surface_hit *hit, vec3 direction)
 {
     vec3 a = abs3(hit->p);
     float scale = fmaxf(max_component3(a), 1e-3f * hit->t) * 4e-6f;
+    scale = fmaxf(scale, hit->error);
     return hit->p + hit->n_geom * (dot3(direction, hit->n_geom) < 0.0f ? -scale : scale);
 }
 

@@ -34,7 +34,8 @@ typedef struct shape_sample {
     vec3 p, n; /**< n: geometric normal, as surface_hit's n_geom */
     vec2 uv;
     uint32_t primitive;
-    float pdf; /**< per area (m⁻²) or per solid angle, by the call that made it */
+    float pdf;   /**< per area (m⁻²) or per solid angle, by the call that made it */
+    float error; /**< as in surface_hit */
 } shape_sample;
 
 typedef struct shape shape;
