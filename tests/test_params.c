@@ -101,6 +101,71 @@ static void test_unasked_is_found(void)
     g_assert_true(params_all_used(p, "shape 'sphere'", NULL));
 }
 
+static params *spectra(void)
+{
+    params *p = params_new(here, "/", color_space_srgb());
+    params_add_numbers(p, here, PARAM_RGB, "rgb", (float[]){0.5f, 0.5f, 0.5f}, 3, NULL);
+    params_add_numbers(p, here, PARAM_RGB, "over", (float[]){1.5f, 0.5f, 0.5f}, 3, NULL);
+    params_add_numbers(p, here, PARAM_BLACKBODY, "hot", (float[]){5000.0f}, 1, NULL);
+    params_add_numbers(p, here, PARAM_BLACKBODY, "cold", (float[]){0.0f}, 1, NULL);
+    params_add_numbers(p, here, PARAM_SPECTRUM, "pairs", (float[]){400, 1, 600, 3}, 4,
+                       NULL);
+    params_add_numbers(p, here, PARAM_SPECTRUM, "odd", (float[]){400, 1, 600}, 3, NULL);
+    params_add_numbers(p, here, PARAM_FLOAT, "eta", (float[]){1.5f}, 1, NULL);
+    const char *const glass[] = {"glass-BK7"}, *const unknown[] = {"unobtainium"};
+    params_add_strings(p, here, PARAM_SPECTRUM_NAME, "glass", glass, 1, NULL);
+    params_add_strings(p, here, PARAM_SPECTRUM_NAME, "unknown", unknown, 1, NULL);
+    return p;
+}
+
+static float at(const params *p, const char *name, curve_role role, float nm)
+{
+    g_autoptr(curve) c = NULL;
+    g_autoptr(GError) error = NULL;
+    g_assert_true(params_curve(p, name, role, &c, &error));
+    g_assert_no_error(error);
+    return c ? curve_at(c, nm) : -1.0f;
+}
+
+static void test_curves_by_role(void)
+{
+    g_autoptr(params) p = spectra();
+    g_assert_cmpfloat(at(p, "absent", CURVE_ALBEDO, 500), ==, -1.0f);
+    g_assert_true(fabsf(at(p, "rgb", CURVE_ALBEDO, 550) - 0.5f) < 1e-3f);
+    g_assert_true(fabsf(at(p, "pairs", CURVE_ALBEDO, 500) - 2.0f) < 1e-6f);
+    g_assert_true(fabsf(at(p, "eta", CURVE_UNBOUNDED, 500) - 1.5f) < 1e-6f);
+    g_assert_true(fabsf(at(p, "glass", CURVE_UNBOUNDED, 587.6f) - 1.5168f) < 1e-3f);
+    g_assert_true(fabsf(at(p, "hot", CURVE_EMISSION, 579.6f) - 1.0f) < 1e-3f);
+}
+
+static void curve_refuses(const char *name, curve_role role, const char *begin)
+{
+    g_autoptr(params) p = spectra();
+    g_autoptr(curve) c = NULL;
+    g_autoptr(GError) error = NULL;
+    g_assert_false(params_curve(p, name, role, &c, &error));
+    g_assert_null(c);
+    g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
+    if (!g_str_has_prefix(error->message, begin))
+        g_error("expected '%s', found '%s'", begin, error->message);
+}
+
+static void test_wrong_curves(void)
+{
+    curve_refuses("over", CURVE_ALBEDO, "a.pbrt:3:7: ");
+    curve_refuses("cold", CURVE_EMISSION,
+                  "a.pbrt:3:7: parameter 'cold': expected a temperature > 0 K, found 0");
+    curve_refuses("odd", CURVE_ALBEDO,
+                  "a.pbrt:3:7: parameter 'odd': expected pairs of wavelength and value, "
+                  "found 3 numbers");
+    curve_refuses("eta", CURVE_ALBEDO,
+                  "a.pbrt:3:7: parameter 'eta': expected rgb, blackbody or spectrum, "
+                  "found another type");
+    curve_refuses("unknown", CURVE_UNBOUNDED,
+                  "a.pbrt:3:7: parameter 'unknown': expected a spectrum's name or file, "
+                  "found 'unobtainium'");
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -109,5 +174,7 @@ int main(int argc, char **argv)
                     test_wrong_type_count_and_value);
     g_test_add_func("/params/a-name-comes-once", test_a_name_comes_once);
     g_test_add_func("/params/unasked-is-found", test_unasked_is_found);
+    g_test_add_func("/params/curves-by-role", test_curves_by_role);
+    g_test_add_func("/params/wrong-curves", test_wrong_curves);
     return g_test_run();
 }
