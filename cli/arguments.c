@@ -36,14 +36,13 @@ static void drop_separator(int *argc, char **argv)
         }
 }
 
-static int check_operands(const usage *how, int n)
+static int check_operands(const usage *how, int n, char **operands)
 {
     if (n < how->n_operands)
         return usage_error("expected %s, found %s", how->operands,
                            n ? "too little" : "nothing");
     if (n > how->n_operands)
-        return usage_error("expected %s, found %d names",
-                           how->n_operands ? how->operands : "no file", n);
+        return usage_error("unexpected argument '%s'", operands[how->n_operands]);
     return EXIT_DONE;
 }
 
@@ -67,7 +66,7 @@ bool arguments_parse(const usage *how, int *argc, char ***argv, int *exit_code)
         return false;
     }
     drop_separator(argc, *argv);
-    *exit_code = check_operands(how, *argc - 1);
+    *exit_code = check_operands(how, *argc - 1, *argv + 1);
     return *exit_code == EXIT_DONE;
 }
 

@@ -22,6 +22,8 @@ static char *range_text(const NephSettingInfo *row)
         return g_strdup("true, false");
     if (row->type == NEPH_SETTING_CHOICE)
         return g_strjoinv(", ", (char **)row->words);
+    if (row->type == NEPH_SETTING_COUNT)
+        return g_strdup_printf("%.0f … %.0f", row->low, row->high);
     return g_strdup_printf("%.10g … %.10g", row->low, row->high);
 }
 

@@ -80,7 +80,11 @@ static void describe_row_json(json *j, const setting_row *row, const char *initi
     json_string(j, "name", row->name);
     json_string(j, "type", types[row->type]);
     json_string(j, "unit", row->unit);
-    if (row->type == SETTING_COUNT || row->type == SETTING_REAL) {
+    if (row->type == SETTING_COUNT) {
+        json_integer(j, "low", (int64_t)row->low);
+        json_integer(j, "high", (int64_t)row->high);
+        json_integer(j, "default", (int64_t)row->initial);
+    } else if (row->type == SETTING_REAL) {
         json_number(j, "low", row->low);
         json_number(j, "high", row->high);
         json_number(j, "default", row->initial);
@@ -106,7 +110,9 @@ static void describe_row(GString *out, const setting_row *row, const char *initi
     if (row->type == SETTING_CHOICE) {
         g_autofree char *words = g_strjoinv(" | ", (char **)row->words);
         g_string_append_printf(out, "   (%s)", words);
-    } else if (row->type != SETTING_BOOL) {
+    } else if (row->type == SETTING_COUNT) {
+        g_string_append_printf(out, "   (%.0f .. %.0f)", row->low, row->high);
+    } else if (row->type == SETTING_REAL) {
         char low[G_ASCII_DTOSTR_BUF_SIZE], high[G_ASCII_DTOSTR_BUF_SIZE];
         g_string_append_printf(out, "   (%s .. %s)", number_text(row->low, low),
                                number_text(row->high, high));

@@ -5,9 +5,10 @@
 
 const char *number_text(double value, char buffer[G_ASCII_DTOSTR_BUF_SIZE])
 {
-    static const char *const formats[] = {"%.6g", "%.9g", "%.15g", "%.17g"};
-    for (size_t i = 0; i < G_N_ELEMENTS(formats); i++) {
-        g_ascii_formatd(buffer, G_ASCII_DTOSTR_BUF_SIZE, formats[i], value);
+    for (int digits = 1; digits <= 17; digits++) {
+        char format[8];
+        g_snprintf(format, sizeof format, "%%.%dg", digits);
+        g_ascii_formatd(buffer, G_ASCII_DTOSTR_BUF_SIZE, format, value);
         double back = g_ascii_strtod(buffer, NULL);
         if (memcmp(&back, &value, sizeof back) == 0)
             break;

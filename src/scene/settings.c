@@ -6,6 +6,7 @@
  */
 #include "scene/settings.h"
 
+#include "base/json.h"
 #include "base/words.h"
 
 #include <math.h>
@@ -331,20 +332,6 @@ bool settings_set(settings *s, const char *name, const char *value, GError **err
     return false;
 }
 
-/** The shortest text that reads back to the same double. */
-static char *real_text(double value)
-{
-    char text[G_ASCII_DTOSTR_BUF_SIZE];
-    for (int digits = 1; digits <= 17; digits++) {
-        char format[8];
-        g_snprintf(format, sizeof format, "%%.%dg", digits);
-        g_ascii_formatd(text, sizeof text, format, value);
-        if (fabs(g_ascii_strtod(text, NULL) - value) <= 0.0)
-            break;
-    }
-    return g_strdup(text);
-}
-
 char *settings_get(const settings *s, const setting_row *row)
 {
     const void *field = (const char *)s + row->offset;
@@ -358,7 +345,8 @@ char *settings_get(const settings *s, const setting_row *row)
     case SETTING_REAL:
         break;
     }
-    return real_text(*(const double *)field);
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    return g_strdup(number_text(*(const double *)field, text));
 }
 
 /** One line of a settings file, without its newline; blank ones are fine. */
