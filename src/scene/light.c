@@ -1,0 +1,150 @@
+/*
+ * The table of lights, and what several of them share.
+ */
+#include "scene/light.h"
+
+#include "math/frame.h"
+#include "math/warp.h"
+#include "scene/light_kinds.h"
+
+#include <glib.h>
+#include <string.h>
+
+static const light_kind *const kinds[] = {&point_light_kind, &spot_light_kind,
+                                          &distant_light_kind, &infinite_light_kind,
+                                          &area_light_kind};
+
+static const light_kind *find_kind(const char *name, bool on_shape)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {
+        bool is_area = kinds[i] == &area_light_kind;
+        if (is_area == on_shape && strcmp(kinds[i]->name, name) == 0)
+            return kinds[i];
+    }
+    return NULL;
+}
+
+light *light_new(const struct scene *s, const char *name, const params *p,
+                 const transform *to_world, const shape *on, GError **error)
+{
+    const light_kind *kind = find_kind(name, on != NULL);
+    if (!kind) {
+        error_at(error, p->place, "%s \"%s\" is not supported; known %s",
+                 on ? "area light" : "light source", name,
+                 on ? "is diffuse" : "are point, spot, distant and infinite");
+        return NULL;
+    }
+    void *self = kind->create(s, p, to_world, on, error);
+    if (!self)
+        return NULL;
+    g_autofree char *what = g_strdup_printf("light \"%s\"", name);
+    if (!params_all_used(p, what, error)) {
+        kind->free(self);
+        return NULL;
+    }
+    light *l = g_new0(light, 1);
+    *l = (light){.kind = kind, .self = self, .place = p->place};
+    return l;
+}
+
+void light_free(light *l)
+{
+    if (!l)
+        return;
+    l->kind->free(l->self);
+    g_free(l->group);
+    g_free(l);
+}
+
+/* ---- Emitters ---- */
+
+static bool read_scale(const params *p, float *scale, GError **error)
+{
+    if (!params_float(p, "scale", scale, error))
+        return false;
+    if (*scale >= 0.0f)
+        return true;
+    error_at(error, params_find(p, "scale")->place,
+             "a light's scale must not be negative, found %g", (double)*scale);
+    return false;
+}
+
+bool emitter_init(emitter *e, const params *p, const char *name, GError **error)
+{
+    static const float white[3] = {1.0f, 1.0f, 1.0f};
+    const color_space *space = p->space ? p->space : color_space_srgb();
+    *e = (emitter){.scale = 1.0f};
+    if (!read_scale(p, &e->scale, error) ||
+        !params_curve(p, name, CURVE_EMISSION, &e->spectrum, error))
+        return false;
+    if (!e->spectrum)
+        e->spectrum = curve_rgb(space, white, CURVE_EMISSION, error);
+    if (!e->spectrum)
+        return false;
+    float photometric = curve_photometric(e->spectrum);
+    if (!(photometric > 0.0f)) {
+        error_at(error, p->place, "the light's spectrum \"%s\" has no visible power",
+                 name);
+        emitter_clear(e);
+        return false;
+    }
+    e->scale /= photometric;
+    return true;
+}
+
+bool emitter_set_total(emitter *e, const params *p, const char *name, float k_e,
+                       GError **error)
+{
+    float total = 0.0f;
+    if (!params_has(p, name))
+        return true;
+    if (!params_float(p, name, &total, error))
+        return false;
+    if (!(total > 0.0f)) {
+        error_at(error, params_find(p, name)->place,
+                 "a light's %s must be positive, found %g", name, (double)total);
+        return false;
+    }
+    e->scale *= total / k_e;
+    return true;
+}
+
+spectrum emitter_eval(const emitter *e, const wavelengths *w)
+{
+    return e->scale * curve_eval(e->spectrum, w);
+}
+
+void emitter_clear(emitter *e)
+{
+    curve_unref(e->spectrum);
+    *e = (emitter){0};
+}
+
+bool light_refuse(const params *p, const char *name, const char *what, GError **error)
+{
+    if (!params_has(p, name))
+        return true;
+    error_at(error, params_find(p, name)->place, "\"%s\" of %s is not supported", name,
+             what);
+    return false;
+}
+
+/* ---- The disk before the scene ---- */
+
+vec3 light_disk_start(const light_disk *disk, vec3 direction, vec2 u)
+{
+    frame f = frame_from_normal(direction);
+    vec2 d = warp_disk(u);
+    return disk->center + disk->radius * (d.x * f.s + d.y * f.t - direction);
+}
+
+vec3 light_disk_before(const light_disk *disk, vec3 direction, vec3 target)
+{
+    float along = dot3(target - disk->center, direction);
+    return target - direction * (along + disk->radius);
+}
+
+float light_disk_area(const light_disk *disk)
+{
+    return PI_F * disk->radius * disk->radius;
+}

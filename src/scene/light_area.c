@@ -1,0 +1,149 @@
+/*
+ * The diffuse area light: a shape that sends the same radiance L to all directions of its
+ * front (where n_geom points), or of both sides, Φ = π A L per side.
+ */
+#include "math/frame.h"
+#include "math/warp.h"
+#include "scene/light_kinds.h"
+
+typedef struct area_light {
+    emitter radiance;
+    const shape *on; /* borrowed */
+    bool two_sided;
+} area_light;
+
+static void free_area(void *self)
+{
+    area_light *l = self;
+    emitter_clear(&l->radiance);
+    g_free(l);
+}
+
+/* Φ / L */
+static float exitance(const area_light *l)
+{
+    return (l->two_sided ? 2.0f : 1.0f) * PI_F * l->on->area;
+}
+
+static void *create(const struct scene *s, const params *p, const transform *to_world,
+                    const shape *on, GError **error)
+{
+    (void)s, (void)to_world;
+    area_light *l = g_new0(area_light, 1);
+    l->on = on;
+    if (!(on->area > 0.0f))
+        error_at(error, on->place, "a shape that shines must have an area");
+    else if (light_refuse(p, "filename", "an area light", error) &&
+             params_bool(p, "twosided", &l->two_sided, error) &&
+             emitter_init(&l->radiance, p, "L", error) &&
+             emitter_set_total(&l->radiance, p, "power", exitance(l), error))
+        return l;
+    free_area(l);
+    return NULL;
+}
+
+static spectrum power(const void *self, const wavelengths *w)
+{
+    const area_light *l = self;
+    return exitance(l) * emitter_eval(&l->radiance, w);
+}
+
+/* cosθ / π over the sides that shine; 0 behind a one-sided light. */
+static float direction_pdf(const area_light *l, float cosine)
+{
+    if (l->two_sided)
+        return 0.5f * INV_PI_F * fabsf(cosine);
+    return INV_PI_F * fmaxf(0.0f, cosine);
+}
+
+static light_emission leave(const area_light *l, const shape_sample *at, vec3 direction)
+{
+    surface_hit from = {.p = at->p, .n_geom = at->n, .error = at->error};
+    return (light_emission){.ray = hit_ray(&from, direction),
+                            .n = at->n,
+                            .pdf_position = at->pdf,
+                            .pdf_direction = direction_pdf(l, dot3(at->n, direction))};
+}
+
+static bool emit(const void *self, const wavelengths *w, float u_primitive,
+                 vec2 u_position, vec2 u_direction, light_emission *out)
+{
+    const area_light *l = self;
+    shape_sample at = shape_sample_area(l->on, u_primitive, u_position);
+    bool back = l->two_sided && u_direction.x >= 0.5f;
+    if (l->two_sided)
+        u_direction.x = 2.0f * u_direction.x - (back ? 1.0f : 0.0f);
+    vec3 local = warp_cosine_hemisphere(u_direction);
+    frame f = frame_from_normal(back ? -at.n : at.n);
+    *out = leave(l, &at, frame_to_world(&f, local));
+    out->flux = power(self, w);
+    return out->pdf_direction > 0.0f;
+}
+
+static void emit_pdf(const void *self, vec3 p, vec3 n, vec3 direction,
+                     float *pdf_position, float *pdf_direction)
+{
+    (void)p;
+    const area_light *l = self;
+    *pdf_position = 1.0f / l->on->area;
+    *pdf_direction = direction_pdf(l, dot3(n, direction));
+}
+
+static bool emit_toward(const void *self, const wavelengths *w, float u_primitive, vec2 u,
+                        vec3 target, light_emission *out)
+{
+    const area_light *l = self;
+    shape_sample at = shape_sample_area(l->on, u_primitive, u);
+    vec3 direction = normalize3(target - at.p);
+    float cosine = dot3(at.n, direction);
+    *out = leave(l, &at, direction);
+    out->flux = emitter_eval(&l->radiance, w) * (fabsf(cosine) * l->on->area);
+    return out->pdf_direction > 0.0f;
+}
+
+static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_primitive,
+                   vec2 u, light_sample *out)
+{
+    const area_light *l = self;
+    shape_sample at;
+    if (!shape_sample_toward(l->on, ref, u_primitive, u, &at))
+        return false;
+    vec3 to = at.p - ref;
+    float distance = length3(to);
+    if (!(distance > 0.0f) || !(l->two_sided || dot3(at.n, to) < 0.0f))
+        return false;
+    *out = (light_sample){.wi = to / distance,
+                          .distance = distance,
+                          .radiance = emitter_eval(&l->radiance, w),
+                          .pdf = at.pdf};
+    return true;
+}
+
+static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
+{
+    (void)wi;
+    const area_light *l = self;
+    return shape_pdf_toward(l->on, ref, hit);
+}
+
+static spectrum radiance(const void *self, const surface_hit *hit, vec3 wo,
+                         const wavelengths *w)
+{
+    const area_light *l = self;
+    if (l->two_sided || dot3(hit->n_geom, wo) > 0.0f)
+        return emitter_eval(&l->radiance, w);
+    return spectrum_fill(0.0f);
+}
+
+const light_kind area_light_kind = {
+    .name = "diffuse",
+    .create = create,
+    .free = free_area,
+    .power = power,
+    .emit = emit,
+    .emit_pdf = emit_pdf,
+    .emit_toward = emit_toward,
+    .sample = sample,
+    .pdf = pdf,
+    .radiance = radiance,
+};
