@@ -6,9 +6,8 @@
  * only what it needs.
  *
  *   x[] y[] z[]   4 bytes each   read for every candidate
- *   wi[]          4 bytes        octahedral, 15 bits a coordinate, and the flags   } read
- * for flux[]        32 bytes       eight wavelengths                                 }
- * those in reach
+ *   wi[]          4 bytes        octahedral and flags, read for blocks with some in reach
+ *   flux[]        32 bytes       eight wavelengths, read for those in reach
  *
  * 48 bytes a photon. Indices are size_t throughout: 2³² photons are a matter of patience.
  */
@@ -41,8 +40,8 @@ typedef struct photon {
     unsigned flags; /**< PHOTON_FROM_DELTA */
 } photon;
 
-/** @brief Photons as arrays of n, big_alloc'ed; capacity >= n, padded to a whole SIMD
- * block. */
+/** @brief Photons as arrays of n, big_alloc'ed; capacity >= n. The arrays go on behind
+ * capacity for at least one SIMD block, so that eight photons may be loaded from any. */
 typedef struct photon_store {
     size_t n, capacity;
     float *x, *y, *z;
@@ -50,11 +49,18 @@ typedef struct photon_store {
     spectrum *flux;
 } photon_store;
 
+/** @brief Makes room for capacity photons in all; on failure the store is as it was. */
 bool photon_store_reserve(photon_store *store, size_t capacity, GError **error);
 /** @brief Appends; room must have been reserved. */
 void photon_store_put(photon_store *store, const photon *p);
 photon photon_store_get(const photon_store *store, size_t i);
 void photon_store_clear(photon_store *store);
+/** @brief Memory held. */
+size_t photon_store_bytes(const photon_store *store);
+/** @brief Photon i becomes the one that was order[i]. One array at a time, so the extra
+ * memory is that of flux. On failure the store may only be cleared. */
+bool photon_store_permute(photon_store *store, const size_t *order, unsigned threads,
+                          GError **error);
 
 /** @brief Direction and flags in 32 bits; error below 1e-4 rad. */
 uint32_t direction_pack(vec3 w, unsigned flags);

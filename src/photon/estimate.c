@@ -1,0 +1,258 @@
+/*
+ * The radiance estimate.
+ *
+ *   within a radius   runs of the map ─► test eight ─► κ of eight ─┐
+ *   k nearest         hits of the map ─────────────► κ of eight ───┴► block ─► weigh
+ *
+ * Finding photons is nearly free, weighing them is where the time goes: so photons within
+ * a fixed radius are never listed, they go from the test by way of a small block into the
+ * sum while they are warm. On a Lambertian surface, the common case, what is left for
+ * each is one multiplication of eight wavelengths; f and the normalisation come after the
+ * sum.
+ */
+#include "photon/estimate.h"
+
+#include "photon/map_kind.h"
+
+/* Photons arrive in proportion to |wi·n_geom|, so without a limit on |wi·n| / |wi·n_geom|
+ * the variance would not be finite; the light cut off is below 1/2000. */
+#define MAX_GRAZING_RATIO 1000.0f
+
+enum { BLOCK = 64 };
+
+typedef struct gather gather;
+
+struct gather {
+    photon_probe probe;
+    const estimate_options *options;
+    const bsdf *b;
+    vec3 wo;
+    float r2, inv_r2;
+    void (*weigh)(gather *g);
+    size_t n_block; /* photons in the block below, found but not yet weighed */
+    size_t index[BLOCK + LANES];
+    float weight[BLOCK + LANES]; /* κ */
+    spectrum sum;
+    size_t n; /* weighed */
+};
+
+/* ---- Weighing a block ---- */
+
+/* Σ κ Φ */
+static void weigh_plain(gather *g)
+{
+    const spectrum *flux = g->probe.store->flux;
+    spectrum even = {0}, odd = {0};
+    size_t i = 0;
+    for (; i + 2 <= g->n_block; i += 2) {
+        even += g->weight[i] * flux[g->index[i]];
+        odd += g->weight[i + 1] * flux[g->index[i + 1]];
+    }
+    if (i < g->n_block)
+        even += g->weight[i] * flux[g->index[i]];
+    g->sum += even + odd;
+}
+
+/* |wi·n| / |wi·n_geom| */
+static float cosine_ratio(const bsdf *b, vec3 wi)
+{
+    return fminf(fabsf(dot3(wi, b->shading.n) / dot3(wi, b->n_geom)), MAX_GRAZING_RATIO);
+}
+
+/* Σ κ Φ |wi·n| / |wi·n_geom|, of those on the same side of both normals */
+static void weigh_bent(gather *g)
+{
+    const photon_store *s = g->probe.store;
+    for (size_t i = 0; i < g->n_block; i++) {
+        vec3 wi = direction_octahedron(s->wi[g->index[i]]);
+        float weight = g->weight[i] * cosine_ratio(g->b, wi);
+        if (dot3(wi, g->b->shading.n) * dot3(wi, g->b->n_geom) > 0.0f)
+            g->sum += weight * s->flux[g->index[i]];
+    }
+}
+
+/* Σ f κ Φ |wi·n| / |wi·n_geom| */
+static void weigh_bsdf(gather *g)
+{
+    const estimate_options *options = g->options;
+    for (size_t i = 0; i < g->n_block; i++) {
+        photon p = photon_store_get(g->probe.store, g->index[i]);
+        bool delta = p.flags & PHOTON_FROM_DELTA;
+        unsigned lobes = options->lobes | (delta ? options->delta_lobes : 0);
+        spectrum f = bsdf_eval(g->b, g->wo, p.wi, lobes, TRANSPORT_RADIANCE);
+        if (!spectrum_is_black(f))
+            g->sum += g->weight[i] * cosine_ratio(g->b, p.wi) * f * p.flux;
+    }
+}
+
+static void flush(gather *g)
+{
+    g->weigh(g);
+    g->n += g->n_block;
+    g->n_block = 0;
+}
+
+/* ---- Finding ---- */
+
+/* A run of photons, within the fixed radius. */
+static void gather_run(size_t begin, size_t end, void *data)
+{
+    gather *g = data;
+    for (size_t i = begin; i < end; i += LANES) {
+        floats8 distance2;
+        unsigned bits = probe_block(&g->probe, i, end, g->r2, &distance2);
+        if (!bits)
+            continue;
+        floats8 weight = kernel_eval8(&g->options->kernel, distance2, g->inv_r2);
+        for (; bits; bits &= bits - 1) {
+            int lane = __builtin_ctz(bits);
+            g->index[g->n_block] = i + (size_t)lane;
+            g->weight[g->n_block++] = weight[lane];
+        }
+        if (g->n_block >= BLOCK)
+            flush(g);
+    }
+}
+
+/* Photons listed in hits. */
+static void gather_hits(gather *g, const photon_hits *hits)
+{
+    for (size_t i = 0; i < hits->n; i++) {
+        g->index[g->n_block] = hits->index[i];
+        g->weight[g->n_block++] =
+            kernel_eval(&g->options->kernel, hits->distance2[i], g->r2);
+        if (g->n_block >= BLOCK)
+            flush(g);
+    }
+}
+
+static void set_radius2(gather *g, float r2)
+{
+    g->r2 = r2;
+    g->inv_r2 = 1.0f / r2;
+}
+
+static bool gather_within(gather *g, const photon_map *map, estimate_scratch *scratch)
+{
+    float radius = g->options->radius;
+    set_radius2(g, radius * radius);
+    scratch->hits.n = 0;
+    if (map->store.n == 0)
+        return true;
+    if (map->kind->runs)
+        map->kind->runs(map, g->probe.p, radius, gather_run, g);
+    else if (!map->kind->within(map, &g->probe, radius, &scratch->hits))
+        return false;
+    gather_hits(g, &scratch->hits);
+    return true;
+}
+
+/* Index of the furthest hit. */
+static size_t furthest(const photon_hits *hits)
+{
+    size_t last = 0;
+    for (size_t i = 1; i < hits->n; i++)
+        last = hits->distance2[i] > hits->distance2[last] ? i : last;
+    return last;
+}
+
+static bool gather_nearest(gather *g, const photon_map *map, estimate_scratch *scratch)
+{
+    const estimate_options *options = g->options;
+    photon_hits *hits = &scratch->hits;
+    hits->n = 0;
+    size_t k = MIN(options->nearest, map->store.n);
+    if (k > 0 && !map->kind->nearest(map, &g->probe, k, options->radius, hits))
+        return false;
+    set_radius2(g, options->radius * options->radius);
+    bool all_found = hits->n == options->nearest;
+    if (hits->n > 0 && (all_found || isinf(options->radius))) {
+        size_t last = furthest(hits);
+        set_radius2(g, hits->distance2[last]);
+        if (options->unbiased_nearest) {
+            hits->n--;
+            hits->index[last] = hits->index[hits->n];
+            hits->distance2[last] = hits->distance2[hits->n];
+        }
+    }
+    gather_hits(g, hits);
+    return true;
+}
+
+/* ---- The estimate ---- */
+
+/* Σ over the photons around the point; zero when there are none or memory is refused. */
+static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scratch,
+                         estimate_info *info)
+{
+    const estimate_options *options = g->options;
+    bool done = options->nearest ? gather_nearest(g, map, scratch)
+                                 : gather_within(g, map, scratch);
+    flush(g);
+    scratch->failed |= !done;
+    if (info)
+        *info = (estimate_info){.n_photons = g->n, .radius = sqrtf(g->r2)};
+    float area = kernel_area(&options->kernel, g->r2);
+    bool usable = done && g->n > 0 && area > 0.0f;
+    return usable ? g->sum / area : (spectrum){0};
+}
+
+static bool is_bent(const bsdf *b)
+{
+    return dot3(b->shading.n, b->n_geom) < 1.0f - 1e-6f;
+}
+
+/* True if all the lobes in use are rho/pi. */
+static bool is_lambertian(const bsdf *b, unsigned lobes)
+{
+    return b->lambertian && (lobes & LOBE_DIFFUSE) && (lobes & LOBE_REFLECTION) &&
+           !(lobes & b->lobes & LOBE_GLOSSY);
+}
+
+spectrum photon_estimate(const photon_map *map, vec3 p, const bsdf *b, vec3 wo,
+                         const estimate_options *options, estimate_scratch *scratch,
+                         estimate_info *info)
+{
+    unsigned lobes = options->lobes | options->delta_lobes;
+    bool lambertian = is_lambertian(b, options->lobes) && is_lambertian(b, lobes);
+    bool bent = is_bent(b);
+    photon_filter filter = {
+        .n = face_forward(b->n_geom, wo),
+        .one_sided = !(lobes & b->lobes & LOBE_TRANSMISSION),
+        .flatten = options->flatten,
+    };
+    gather g;
+    g.probe = photon_probe_make(&map->store, p, &filter);
+    g.options = options;
+    g.b = b;
+    g.wo = wo;
+    g.weigh = lambertian ? bent ? weigh_bent : weigh_plain : weigh_bsdf;
+    g.n_block = g.n = 0;
+    g.sum = (spectrum){0};
+    if (lambertian && !(dot3(wo, b->shading.n) * dot3(wo, b->n_geom) > 0.0f)) {
+        if (info)
+            *info = (estimate_info){0};
+        return (spectrum){0};
+    }
+    spectrum sum = estimate(&g, map, scratch, info);
+    return lambertian ? sum * b->rho * INV_PI_F : sum;
+}
+
+spectrum photon_irradiance(const photon_map *map, vec3 p, vec3 n_geom,
+                           const estimate_options *options, estimate_scratch *scratch,
+                           estimate_info *info)
+{
+    photon_filter filter = {.n = n_geom, .one_sided = true, .flatten = options->flatten};
+    gather g;
+    g.probe = photon_probe_make(&map->store, p, &filter);
+    g.options = options;
+    g.weigh = weigh_plain;
+    g.n_block = g.n = 0;
+    g.sum = (spectrum){0};
+    return estimate(&g, map, scratch, info);
+}
+
+void estimate_scratch_clear(estimate_scratch *scratch)
+{
+    photon_hits_clear(&scratch->hits);
+}

@@ -1,0 +1,187 @@
+/*
+ * The photon store, and directions in 30 bits.
+ *
+ * Directions are octahedral (Meyer et al. 2010; Cigolle et al., "A Survey of Efficient
+ * Representations for Independent Unit Vectors", JCGT 2014): the sphere is projected to
+ * |x| + |y| + |z| = 1, the lower half folded out over the upper, and the square that
+ * results cut into 32767 steps a side: an odd number, so that the axes are exact. Of the
+ * four grid points around a direction the nearest on the sphere is taken, which brings
+ * the largest error from 1.3e-4 to 8.6e-5 rad and centres it.
+ */
+#include "photon/photon.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "photon/direction.h"
+
+/* Room after the last photon, so that eight can be loaded from any. */
+enum { STORE_BLOCK = 16 };
+
+static size_t padded(size_t n)
+{
+    return (n + STORE_BLOCK - 1) / STORE_BLOCK * STORE_BLOCK + STORE_BLOCK;
+}
+
+static bool grow(void *array, size_t n, size_t capacity, size_t size, GError **error)
+{
+    void *old = *(void **)array;
+    void *grown = big_grow(old, n, capacity, size, "photons", error);
+    if (grown)
+        *(void **)array = grown;
+    return grown != NULL;
+}
+
+bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
+{
+    if (store->x && capacity <= store->capacity)
+        return true;
+    if (capacity > SIZE_MAX / 64) {
+        error_set(error, ERROR_FAILED, "out of memory: %zu photons", capacity);
+        return false;
+    }
+    size_t n = store->n, room = padded(capacity);
+    bool ok = grow(&store->x, n, room, sizeof *store->x, error) &&
+              grow(&store->y, n, room, sizeof *store->y, error) &&
+              grow(&store->z, n, room, sizeof *store->z, error) &&
+              grow(&store->wi, n, room, sizeof *store->wi, error) &&
+              grow(&store->flux, n, room, sizeof *store->flux, error);
+    if (ok)
+        store->capacity = room - STORE_BLOCK;
+    return ok;
+}
+
+void photon_store_put(photon_store *store, const photon *p)
+{
+    size_t i = store->n++;
+    store->x[i] = p->p[0];
+    store->y[i] = p->p[1];
+    store->z[i] = p->p[2];
+    store->wi[i] = direction_pack(p->wi, p->flags);
+    store->flux[i] = p->flux;
+}
+
+photon photon_store_get(const photon_store *store, size_t i)
+{
+    return (photon){
+        .p = vec3_make(store->x[i], store->y[i], store->z[i]),
+        .wi = direction_unpack(store->wi[i]),
+        .flux = store->flux[i],
+        .flags = direction_flags(store->wi[i]),
+    };
+}
+
+void photon_store_clear(photon_store *store)
+{
+    big_free(store->x);
+    big_free(store->y);
+    big_free(store->z);
+    big_free(store->wi);
+    big_free(store->flux);
+    *store = (photon_store){0};
+}
+
+size_t photon_store_bytes(const photon_store *store)
+{
+    size_t each = 3 * sizeof(float) + sizeof(uint32_t) + sizeof(spectrum);
+    return store->x ? (store->capacity + STORE_BLOCK) * each : 0;
+}
+
+/* One array being put in order: to[i] = from[order[i]]. */
+typedef struct permutation {
+    const size_t *order;
+    const void *from;
+    void *to;
+} permutation;
+
+static void permute_words(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const permutation *job = data;
+    const uint32_t *from = job->from;
+    uint32_t *to = job->to;
+    for (size_t i = begin; i < end; i++)
+        to[i] = from[job->order[i]];
+}
+
+static void permute_spectra(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const permutation *job = data;
+    const spectrum *from = job->from;
+    spectrum *to = job->to;
+    for (size_t i = begin; i < end; i++)
+        to[i] = from[job->order[i]];
+}
+
+static bool permute(void *array, const photon_store *store, const size_t *order,
+                    size_t size, unsigned threads, GError **error)
+{
+    void **old = array;
+    void *to = big_alloc(padded(store->n), size, "photons", error);
+    if (!to)
+        return false;
+    permutation job = {order, *old, to};
+    parallel_for(store->n, 1 << 14, threads, NULL,
+                 size == sizeof(spectrum) ? permute_spectra : permute_words, &job);
+    big_free(*old);
+    *old = to;
+    return true;
+}
+
+bool photon_store_permute(photon_store *store, const size_t *order, unsigned threads,
+                          GError **error)
+{
+    bool ok = permute(&store->x, store, order, sizeof *store->x, threads, error) &&
+              permute(&store->y, store, order, sizeof *store->y, threads, error) &&
+              permute(&store->z, store, order, sizeof *store->z, threads, error) &&
+              permute(&store->wi, store, order, sizeof *store->wi, threads, error) &&
+              permute(&store->flux, store, order, sizeof *store->flux, threads, error);
+    if (ok)
+        store->capacity = padded(store->n) - STORE_BLOCK;
+    return ok;
+}
+
+/* The grid point (u, v), steps from the centre, with its flags. */
+static uint32_t pack_steps(int u, int v, unsigned flags)
+{
+    return (uint32_t)(u + OCTAHEDRON_STEPS) | (uint32_t)(v + OCTAHEDRON_STEPS) << 15 |
+           (uint32_t)flags << 30;
+}
+
+static int clamp_step(float x)
+{
+    return (int)clampf(x, -(float)OCTAHEDRON_STEPS, (float)OCTAHEDRON_STEPS);
+}
+
+uint32_t direction_pack(vec3 w, unsigned flags)
+{
+    float norm = fabsf(w[0]) + fabsf(w[1]) + fabsf(w[2]);
+    vec3 o = w * ((float)OCTAHEDRON_STEPS / norm);
+    float u = o[0], v = o[1];
+    if (o[2] < 0.0f) {
+        u = copysignf((float)OCTAHEDRON_STEPS - fabsf(o[1]), o[0]);
+        v = copysignf((float)OCTAHEDRON_STEPS - fabsf(o[0]), o[1]);
+    }
+    uint32_t best = 0;
+    float best_error = INFINITY;
+    for (unsigned corner = 0; corner < 4; corner++) {
+        float cu = floorf(u) + (float)(corner & 1), cv = floorf(v) + (float)(corner >> 1);
+        uint32_t packed = pack_steps(clamp_step(cu), clamp_step(cv), flags);
+        float error = length3_2(direction_unpack(packed) - w);
+        if (error < best_error) {
+            best_error = error;
+            best = packed;
+        }
+    }
+    return best;
+}
+
+vec3 direction_unpack(uint32_t packed)
+{
+    return normalize3(direction_octahedron(packed));
+}
+
+unsigned direction_flags(uint32_t packed)
+{
+    return packed >> 30;
+}

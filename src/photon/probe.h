@@ -1,0 +1,84 @@
+/*
+ * The probe: what a query tests each photon with, prepared once a query. The scalar form
+ * is what "found" means; the form for eight gives the same bits.
+ *
+ *   distance2   (dx² + dy²) + dz², or (d·n / flatten)² where that is larger
+ *   accepted    one-sided: the photon's direction lies on the side of n
+ *
+ * Rounding is monotone at each step, so |dx| < r holds in floats for every photon within
+ * r: a structure that looks at all x in [p - r, p + r] misses none.
+ */
+#pragma once
+
+#include "photon/direction.h"
+#include "photon/map.h"
+
+typedef struct photon_probe {
+    const photon_store *store;
+    vec3 p;
+    vec3 n;
+    bool one_sided, flat;
+    float inv_flatten;
+} photon_probe;
+
+static inline photon_probe photon_probe_make(const photon_store *store, vec3 p,
+                                             const photon_filter *filter)
+{
+    photon_probe probe = {.store = store, .p = p};
+    if (filter) {
+        probe.n = filter->n;
+        probe.one_sided = filter->one_sided;
+        probe.flat = filter->flatten < 1.0f;
+        probe.inv_flatten = 1.0f / fmaxf(filter->flatten, 1e-3f);
+    }
+    return probe;
+}
+
+/** @brief Squared distance to photon i. */
+static inline float probe_distance2(const photon_probe *probe, size_t i)
+{
+    const photon_store *s = probe->store;
+    float x = s->x[i] - probe->p[0], y = s->y[i] - probe->p[1], z = s->z[i] - probe->p[2];
+    float d2 = fused(z, z, fused(y, y, x * x));
+    if (!probe->flat)
+        return d2;
+    float dot = fused(z, probe->n[2], fused(y, probe->n[1], x * probe->n[0]));
+    float height = dot * probe->inv_flatten;
+    float height2 = height * height;
+    return height2 > d2 ? height2 : d2;
+}
+
+static inline bool probe_accepts(const photon_probe *probe, size_t i)
+{
+    return !probe->one_sided || direction_dot(probe->store->wi[i], probe->n) > 0.0f;
+}
+
+/** @brief probe_distance2 of photons i .. i + 7. */
+static inline floats8 probe_distance2_8(const photon_probe *probe, size_t i)
+{
+    const photon_store *s = probe->store;
+    floats8 x = load8(s->x + i) - probe->p[0], y = load8(s->y + i) - probe->p[1],
+            z = load8(s->z + i) - probe->p[2];
+    floats8 d2 = fused8(z, z, fused8(y, y, x * x));
+    if (!probe->flat)
+        return d2;
+    floats8 nx = fill8(probe->n[0]), ny = fill8(probe->n[1]), nz = fill8(probe->n[2]);
+    floats8 height = fused8(z, nz, fused8(y, ny, x * nx)) * probe->inv_flatten;
+    return max8(height * height, d2);
+}
+
+/** @brief Bits of those photons of i .. min(i + 8, end) - 1 that are accepted and nearer
+ * than limit; *distance2 of all. */
+static inline unsigned probe_block(const photon_probe *probe, size_t i, size_t end,
+                                   float limit, floats8 *distance2)
+{
+    *distance2 = probe_distance2_8(probe, i);
+    unsigned bits = bits8(*distance2 < limit);
+    if (end - i < LANES)
+        bits &= (1u << (end - i)) - 1u;
+    if (bits && probe->one_sided) {
+        directions8 wi = directions8_load(probe->store->wi + i);
+        bits &= bits8(directions8_dot(wi, probe->n) > 0.0f);
+    }
+    return bits;
+}
