@@ -43,9 +43,9 @@ typedef struct float_input {
     const texture *texture; /**< borrowed; NULL: constant */
 } float_input;
 
-/** @brief Reads parameter `name` (spectrum, rgb, ... or texture). Absent: fallback's
- * reference is taken (NULL leaves the input empty). A texture must be named in the scene
- * and of the type. */
+/** @brief Reads parameter `name` (spectrum, rgb, ... or texture). Absent: fallback is
+ * what it means (its reference is taken in any case; NULL leaves the input empty). A
+ * texture must be named in the scene and of the type. */
 bool spectrum_input_init(spectrum_input *in, const struct scene *s, const params *p,
                          const char *name, curve_role role, curve *fallback,
                          GError **error);

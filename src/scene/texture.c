@@ -1,0 +1,135 @@
+/*
+ * Making textures by kind, and the inputs of materials: a constant or a texture each.
+ */
+#include "scene/texture_kinds.h"
+
+#include "scene/scene.h"
+
+#include <string.h>
+
+struct texture {
+    const texture_kind *kind;
+    void *self;
+    bool is_spectrum;
+};
+
+static const texture_kind *const kinds[] = {&texture_constant};
+
+static const texture_kind *find_kind(const char *name, const params *p, GError **error)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
+        if (strcmp(kinds[i]->name, name) == 0)
+            return kinds[i];
+    g_autoptr(GString) known = g_string_new(NULL);
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
+        g_string_append_printf(known, "%s%s", i ? ", " : "", kinds[i]->name);
+    error_at(error, p->place, "expected a texture of kind %s, found '%s'", known->str,
+             name);
+    return NULL;
+}
+
+texture *texture_new(const struct scene *s, const char *kind, bool is_spectrum,
+                     const params *p, GError **error)
+{
+    const texture_kind *k = find_kind(kind, p, error);
+    void *self = k ? k->create(s, is_spectrum, p, error) : NULL;
+    if (!self)
+        return NULL;
+    texture *t = g_new0(texture, 1);
+    *t = (texture){k, self, is_spectrum};
+    g_autofree char *what = g_strdup_printf("texture '%s'", kind);
+    if (!params_all_used(p, what, error)) {
+        texture_free(t);
+        return NULL;
+    }
+    return t;
+}
+
+void texture_free(texture *t)
+{
+    if (!t)
+        return;
+    t->kind->free(t->self);
+    g_free(t);
+}
+
+bool texture_is_spectrum(const texture *t)
+{
+    return t->is_spectrum;
+}
+
+/* The texture that parameter q names, in the table of its type. */
+static const texture *find_texture(const struct scene *s, const param *q,
+                                   bool is_spectrum, GError **error)
+{
+    GHashTable *table = is_spectrum ? s->spectrum_textures : s->float_textures;
+    GHashTable *other = is_spectrum ? s->float_textures : s->spectrum_textures;
+    const char *type = is_spectrum ? "spectrum" : "float";
+    const texture *t =
+        q->n == 1 && table ? g_hash_table_lookup(table, q->strings[0]) : NULL;
+    if (t)
+        return t;
+    if (q->n != 1)
+        error_at(error, q->place, "parameter '%s': expected one texture, found %zu",
+                 q->name, q->n);
+    else if (other && g_hash_table_contains(other, q->strings[0]))
+        error_at(error, q->place,
+                 "parameter '%s': expected a %s texture, but '%s' is of the other type",
+                 q->name, type, q->strings[0]);
+    else
+        error_at(error, q->place, "parameter '%s': there is no %s texture '%s'", q->name,
+                 type, q->strings[0]);
+    return NULL;
+}
+
+bool spectrum_input_init(spectrum_input *in, const struct scene *s, const params *p,
+                         const char *name, curve_role role, curve *fallback,
+                         GError **error)
+{
+    *in = (spectrum_input){.role = role};
+    const param *q = params_find(p, name);
+    if (!q) {
+        in->constant = fallback;
+        return true;
+    }
+    curve_unref(fallback);
+    if (q->type == PARAM_TEXTURE)
+        return (in->texture = find_texture(s, q, true, error)) != NULL;
+    return params_curve(p, name, role, &in->constant, error);
+}
+
+void spectrum_input_clear(spectrum_input *in)
+{
+    curve_unref(in->constant);
+    *in = (spectrum_input){0};
+}
+
+bool spectrum_input_given(const spectrum_input *in)
+{
+    return in->constant || in->texture;
+}
+
+spectrum spectrum_input_eval(const spectrum_input *in, const surface_hit *hit,
+                             const wavelengths *w)
+{
+    if (in->constant)
+        return curve_eval(in->constant, w);
+    return in->texture->kind->eval_spectrum(in->texture->self, hit, w, in->role);
+}
+
+bool float_input_init(float_input *in, const struct scene *s, const params *p,
+                      const char *name, float fallback, GError **error)
+{
+    *in = (float_input){.constant = fallback};
+    const param *q = params_find(p, name);
+    if (q && q->type == PARAM_TEXTURE)
+        return (in->texture = find_texture(s, q, false, error)) != NULL;
+    return params_float(p, name, &in->constant, error);
+}
+
+float float_input_eval(const float_input *in, const surface_hit *hit)
+{
+    if (!in->texture)
+        return in->constant;
+    return in->texture->kind->eval_float(in->texture->self, hit);
+}

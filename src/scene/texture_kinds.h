@@ -1,0 +1,8 @@
+/*
+ * The kinds of textures: one file and one row each.
+ */
+#pragma once
+
+#include "scene/texture.h"
+
+extern const texture_kind texture_constant;
