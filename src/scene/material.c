@@ -1,0 +1,79 @@
+/* Making materials by kind, and their bsdfs at a hit. */
+#include "scene/material_kinds.h"
+
+#include <string.h>
+
+static const material_kind *const kinds[] = {
+    &material_diffuse,
+    &material_conductor,
+    &material_dielectric,
+    &material_thin_dielectric,
+};
+
+static const material_kind *find_kind(const char *name, const params *p, GError **error)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
+        if (strcmp(kinds[i]->name, name) == 0)
+            return kinds[i];
+    g_autoptr(GString) known = g_string_new(NULL);
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
+        g_string_append_printf(known, "%s%s", i ? ", " : "", kinds[i]->name);
+    error_at(error, p->place, "expected a material of kind %s, found '%s'", known->str,
+             name);
+    return NULL;
+}
+
+/* What pbrt allows of every material and is not there yet. */
+static bool check_unsupported(const params *p, GError **error)
+{
+    static const char *const names[] = {"displacement", "normalmap"};
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++)
+        if (params_has(p, names[i])) {
+            error_at(error, params_find(p, names[i])->place,
+                     "parameter '%s' of a material is not supported yet", names[i]);
+            return false;
+        }
+    return true;
+}
+
+material *material_new(const struct scene *s, const char *kind, const params *p,
+                       GError **error)
+{
+    const material_kind *k = find_kind(kind, p, error);
+    if (!k || !check_unsupported(p, error))
+        return NULL;
+    void *self = k->create(s, p, error);
+    if (!self)
+        return NULL;
+    material *m = g_new0(material, 1);
+    *m = (material){.kind = k, .self = self};
+    g_autofree char *what = g_strdup_printf("material '%s'", kind);
+    if (!params_all_used(p, what, error)) {
+        material_free(m);
+        return NULL;
+    }
+    return m;
+}
+
+void material_free(material *m)
+{
+    if (!m)
+        return;
+    m->kind->free(m->self);
+    g_free(m->name);
+    g_free(m);
+}
+
+void material_bsdf(const material *m, const surface_hit *hit, const wavelengths *w,
+                   int lane, const bsdf_options *options, bsdf *out)
+{
+    out->shading = frame_from_tangent(hit->n, hit->dpdu);
+    out->n_geom = hit->n_geom;
+    out->lane = lane;
+    m->kind->make_bsdf(m->self, hit, w, options, out);
+}
+
+bool material_casts_caustics(const material *m)
+{
+    return m->kind->possible_lobes(m->self) & (LOBE_SPECULAR | LOBE_GLOSSY);
+}

@@ -1,0 +1,92 @@
+/*
+ * "dielectric": glass, water and the like, smooth or rough, and "thindielectric": a pane.
+ * eta is a number or a spectrum; light disperses where it differs between wavelengths.
+ */
+#include "scene/bsdf_models.h"
+#include "scene/material_inputs.h"
+#include "scene/material_kinds.h"
+
+typedef struct glass {
+    curve *eta;
+    roughness_input roughness;
+} glass;
+
+static void glass_free(void *self)
+{
+    glass *g = self;
+    curve_unref(g->eta);
+    g_free(g);
+}
+
+static void *glass_create(const struct scene *s, const params *p, GError **error)
+{
+    glass *g = g_new0(glass, 1);
+    g->eta = eta_input(p, error);
+    if (g->eta && roughness_input_init(&g->roughness, s, p, error))
+        return g;
+    glass_free(g);
+    return NULL;
+}
+
+static void glass_bsdf(const void *self, const surface_hit *hit, const wavelengths *w,
+                       const bsdf_options *options, bsdf *out)
+{
+    const glass *g = self;
+    spectrum eta = curve_eval(g->eta, w);
+    bool disperses = !curve_is_constant(g->eta);
+    if (options->deterministic)
+        bsdf_make_refractor(out, eta, disperses);
+    else
+        bsdf_make_dielectric(out, eta, disperses,
+                             roughness_input_eval(&g->roughness, hit));
+}
+
+static unsigned glass_lobes(const void *self)
+{
+    const glass *g = self;
+    return roughness_input_classes(&g->roughness) | LOBE_ANY_SIDE;
+}
+
+static void *pane_create(const struct scene *s, const params *p, GError **error)
+{
+    (void)s;
+    glass *g = g_new0(glass, 1);
+    g->eta = eta_input(p, error);
+    if (g->eta)
+        return g;
+    glass_free(g);
+    return NULL;
+}
+
+static void pane_bsdf(const void *self, const surface_hit *hit, const wavelengths *w,
+                      const bsdf_options *options, bsdf *out)
+{
+    (void)hit;
+    const glass *g = self;
+    if (options->deterministic)
+        bsdf_make_clear(out);
+    else
+        bsdf_make_thin_dielectric(out, curve_eval(g->eta, w));
+}
+
+static unsigned pane_lobes(const void *self)
+{
+    (void)self;
+    return LOBE_SPECULAR | LOBE_ANY_SIDE;
+}
+
+const material_kind material_dielectric = {
+    .name = "dielectric",
+    .create = glass_create,
+    .free = glass_free,
+    .make_bsdf = glass_bsdf,
+    .possible_lobes = glass_lobes,
+};
+
+const material_kind material_thin_dielectric = {
+    .name = "thindielectric",
+    .create = pane_create,
+    .free = glass_free,
+    .make_bsdf = pane_bsdf,
+    .possible_lobes = pane_lobes,
+};

@@ -1,0 +1,24 @@
+/*
+ * Parameters that several materials have.
+ */
+#pragma once
+
+#include "scene/microfacet.h"
+#include "scene/texture.h"
+
+/** @brief pbrt's roughness, uroughness, vroughness and remaproughness. */
+typedef struct roughness_input {
+    float_input u, v;
+    bool remap; /**< alpha = sqrt(roughness), else roughness itself */
+} roughness_input;
+
+bool roughness_input_init(roughness_input *in, const struct scene *s, const params *p,
+                          GError **error);
+ggx roughness_input_eval(const roughness_input *in, const surface_hit *hit);
+bool roughness_input_is_constant(const roughness_input *in);
+/** @brief Lobe classes that may occur. */
+unsigned roughness_input_classes(const roughness_input *in);
+
+/** @brief Parameter "eta" as a number or a spectrum, 1.5 if absent; NULL with ERROR_INPUT
+ * unless it is > 0 over the range of wavelengths. */
+curve *eta_input(const params *p, GError **error);

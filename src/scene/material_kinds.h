@@ -1,0 +1,11 @@
+/*
+ * The kinds of materials: one file and one row each.
+ */
+#pragma once
+
+#include "scene/material.h"
+
+extern const material_kind material_diffuse;
+extern const material_kind material_conductor;
+extern const material_kind material_dielectric;
+extern const material_kind material_thin_dielectric;

@@ -1,0 +1,343 @@
+/*
+ * material: parameters mean what pbrt-v4 says, every one acts, and what is wrong or not
+ * known is refused at its place.
+ */
+#include "scene/bsdf_models.h"
+#include "scene/material.h"
+#include "scene/scene.h"
+
+static const source_place here = {"m.pbrt", 4, 9};
+static const bsdf_options plain = {0}, deterministic = {.deterministic = true};
+static const surface_hit flat = {.n = {0, 0, 1, 0},
+                                 .n_geom = {0, 0, 1, 0},
+                                 .dpdu = {1, 0, 0, 0},
+                                 .uv = {0.25f, 0.75f}};
+
+static params *list(void)
+{
+    return params_new((source_place){"m.pbrt", 2, 1}, "/", color_space_srgb());
+}
+
+static void add_float(params *p, const char *name, float value)
+{
+    g_assert_true(params_add_numbers(p, here, PARAM_FLOAT, name, &value, 1, NULL));
+}
+
+static void add_rgb(params *p, const char *name, float r, float g, float b)
+{
+    float rgb[3] = {r, g, b};
+    g_assert_true(params_add_numbers(p, here, PARAM_RGB, name, rgb, 3, NULL));
+}
+
+static void add_string(params *p, param_type type, const char *name, const char *text)
+{
+    g_assert_true(params_add_strings(p, here, type, name, &text, 1, NULL));
+}
+
+static void add_bool(params *p, const char *name, int value)
+{
+    g_assert_true(params_add_integers(p, here, PARAM_BOOL, name, &value, 1, NULL));
+}
+
+/* A scene is only looked into for textures. */
+static scene empty_scene(void)
+{
+    return (scene){.float_textures = g_hash_table_new(g_str_hash, g_str_equal),
+                   .spectrum_textures = g_hash_table_new(g_str_hash, g_str_equal)};
+}
+
+static void clear_scene(scene *s)
+{
+    g_hash_table_unref(s->float_textures);
+    g_hash_table_unref(s->spectrum_textures);
+}
+
+static material *make(const char *kind, params *p)
+{
+    scene s = empty_scene();
+    GError *error = NULL;
+    material *m = material_new(&s, kind, p, &error);
+    g_assert_no_error(error);
+    params_free(p);
+    clear_scene(&s);
+    return m;
+}
+
+static bsdf at(const material *m, const bsdf_options *options)
+{
+    wavelengths w = wavelengths_at(0.5f);
+    bsdf b;
+    material_bsdf(m, &flat, &w, ALL_LANES, options, &b);
+    return b;
+}
+
+static void refuse(const char *kind, params *p, const char *message)
+{
+    scene s = empty_scene();
+    g_autoptr(GError) error = NULL;
+    g_assert_null(material_new(&s, kind, p, &error));
+    g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
+    g_assert_cmpstr(error->message, ==, message);
+    params_free(p);
+    clear_scene(&s);
+}
+
+static void test_diffuse(void)
+{
+    material *m = make("diffuse", list());
+    bsdf b = at(m, &plain);
+    g_assert_cmpuint(b.lobes, ==, LOBE_DIFFUSE | LOBE_REFLECTION);
+    g_assert_true(b.lambertian);
+    g_assert_cmpfloat(b.rho[3], ==, 0.5f);
+    g_assert_false(material_casts_caustics(m));
+    material_free(m);
+
+    params *p = list();
+    add_rgb(p, "reflectance", 0.8f, 0.1f, 0.1f);
+    m = make("diffuse", p);
+    b = at(m, &plain);
+    g_assert_cmpfloat(b.rho[7], >, 0.6f);
+    g_assert_cmpfloat(b.rho[2], <, 0.2f);
+    material_free(m);
+}
+
+static ggx roughness_of(params *p, const char *kind)
+{
+    material *m = make(kind, p);
+    bsdf b = at(m, &plain);
+    vec3 wo = normalize3(vec3_make(0.3f, 0.1f, 1.0f));
+    bsdf_sample s;
+    g_assert_true(bsdf_sample_direction(&b, wo, 0.5f, (vec2){0.3f, 0.4f}, LOBE_ALL,
+                                        TRANSPORT_RADIANCE, &s));
+    /* D at the normal gives alpha_x alpha_y, tilted along x alpha_x alone. */
+    vec3 up = vec3_make(0, 0, 1), tilted = normalize3(vec3_make(0.1f, 0, 1));
+    vec3 mirror = tilted * (2.0f * tilted[2]) - up;
+    float top = bsdf_pdf(&b, up, up, LOBE_ALL, TRANSPORT_RADIANCE);
+    float slope = bsdf_pdf(&b, up, mirror, LOBE_ALL, TRANSPORT_RADIANCE) / top;
+    float xy = INV_PI_F / (4.0f * top), q = 1.0f / sqrtf(slope);
+    float x = 0.1f * tilted[2] / sqrtf(q - square(tilted[2]));
+    material_free(m);
+    return (ggx){x, xy / x};
+}
+
+static void test_roughness(void)
+{
+    params *p = list();
+    add_float(p, "roughness", 0.25f);
+    ggx g = roughness_of(p, "conductor");
+    g_assert_cmpfloat(fabsf(g.alpha_x - 0.5f) + fabsf(g.alpha_y - 0.5f), <, 1e-3f);
+    p = list();
+    add_float(p, "roughness", 0.25f);
+    add_bool(p, "remaproughness", 0);
+    g = roughness_of(p, "conductor");
+    g_assert_cmpfloat(fabsf(g.alpha_x - 0.25f) + fabsf(g.alpha_y - 0.25f), <, 1e-3f);
+    p = list();
+    add_float(p, "roughness", 0.25f);
+    add_float(p, "vroughness", 0.09f);
+    g = roughness_of(p, "conductor");
+    g_assert_cmpfloat(fabsf(g.alpha_x - 0.5f) + fabsf(g.alpha_y - 0.3f), <, 1e-3f);
+}
+
+static unsigned class_of(const char *kind, float roughness)
+{
+    params *p = list();
+    add_float(p, "roughness", roughness);
+    material *m = make(kind, p);
+    bsdf b = at(m, &plain);
+    g_assert_cmpint(material_casts_caustics(m), ==, !(b.lobes & LOBE_DIFFUSE));
+    material_free(m);
+    return b.lobes & ~(unsigned)LOBE_ANY_SIDE;
+}
+
+static void test_classes(void)
+{
+    static const char *const names[] = {"conductor", "dielectric"};
+    for (int i = 0; i < 2; i++) {
+        g_assert_cmpuint(class_of(names[i], 0.0f), ==, LOBE_SPECULAR);
+        g_assert_cmpuint(class_of(names[i], 0.99e-6f), ==, LOBE_SPECULAR);
+        g_assert_cmpuint(class_of(names[i], 0.01f), ==, LOBE_GLOSSY);
+        g_assert_cmpuint(class_of(names[i], 0.089f), ==, LOBE_GLOSSY);
+        g_assert_cmpuint(class_of(names[i], 0.091f), ==, LOBE_DIFFUSE);
+    }
+}
+
+static float normal_reflectance(params *p, int lane)
+{
+    material *m = make("conductor", p);
+    bsdf b = at(m, &plain);
+    float r = bsdf_albedo(&b, vec3_make(0, 0, 1), LOBE_ALL)[lane];
+    material_free(m);
+    return r;
+}
+
+static void test_conductor(void)
+{
+    /* Copper is red. */
+    g_assert_cmpfloat(normal_reflectance(list(), 6), >, 0.9f);
+    g_assert_cmpfloat(normal_reflectance(list(), 2), <, 0.65f);
+    params *p = list();
+    float half[4] = {300.0f, 0.5f, 900.0f, 0.5f};
+    g_assert_true(
+        params_add_numbers(p, here, PARAM_SPECTRUM, "reflectance", half, 4, NULL));
+    g_assert_cmpfloat(fabsf(normal_reflectance(p, 1) - 0.5f), <, 1e-5f);
+    /* An rgb index is no albedo: it may exceed one. */
+    p = list();
+    add_rgb(p, "eta", 1.66f, 0.88f, 0.52f);
+    add_rgb(p, "k", 9.2f, 6.3f, 4.8f);
+    g_assert_cmpfloat(normal_reflectance(p, 1), >, 0.85f);
+}
+
+static void test_dispersion_by_eta(void)
+{
+    params *p = list();
+    add_float(p, "eta", 1.7f);
+    material *m = make("dielectric", p);
+    bsdf b = at(m, &plain);
+    bsdf_sample s;
+    vec3 wo = normalize3(vec3_make(1, 0, 1));
+    g_assert_true(bsdf_sample_direction(&b, wo, 0.9f, (vec2){0.5f, 0.5f}, LOBE_ALL,
+                                        TRANSPORT_RADIANCE, &s));
+    g_assert_cmpint(s.lane, ==, ALL_LANES);
+    g_assert_cmpfloat(fabsf(s.eta - 1.7f), <, 1e-6f);
+    material_free(m);
+    p = list();
+    add_string(p, PARAM_SPECTRUM_NAME, "eta", "glass-N-SF11");
+    m = make("dielectric", p);
+    b = at(m, &plain);
+    g_assert_true(bsdf_sample_direction(&b, wo, 0.99f, (vec2){0.5f, 0.5f}, LOBE_ALL,
+                                        TRANSPORT_RADIANCE, &s));
+    g_assert_cmpint(s.lane, ==, 7);
+    g_assert_cmpfloat(fabsf(s.eta - 1.775f), <, 0.01f);
+    material_free(m);
+}
+
+static void test_deterministic(void)
+{
+    params *p = list();
+    add_float(p, "roughness", 0.5f);
+    material *m = make("conductor", p);
+    bsdf b = at(m, &deterministic);
+    g_assert_cmpuint(b.lobes, ==, LOBE_SPECULAR | LOBE_REFLECTION);
+    material_free(m);
+    for (int i = 0; i < 2; i++) {
+        m = make(i ? "dielectric" : "thindielectric", list());
+        b = at(m, &deterministic);
+        bsdf_sample s;
+        g_assert_true(bsdf_sample_direction(&b, vec3_make(0.8f, 0, 0.6f), 0.0f, (vec2){0},
+                                            LOBE_ALL, TRANSPORT_IMPORTANCE, &s));
+        g_assert_cmpuint(s.lobe, ==, LOBE_SPECULAR | LOBE_TRANSMISSION);
+        g_assert_cmpfloat(fabsf(s.weight[0] - 1.0f), <, 1e-6f);
+        material_free(m);
+    }
+}
+
+static void test_thin_pane_keeps_direction(void)
+{
+    material *m = make("thindielectric", list());
+    bsdf b = at(m, &plain);
+    bsdf_sample s;
+    vec3 wo = vec3_make(0.0f, -0.6f, 0.8f);
+    g_assert_true(bsdf_sample_direction(&b, wo, 0.99f, (vec2){0}, LOBE_ALL,
+                                        TRANSPORT_RADIANCE, &s));
+    g_assert_cmpfloat(length3(s.wi + wo), <, 1e-6f);
+    g_assert_cmpfloat(fabsf(s.weight[0] - 1.0f), <, 1e-5f);
+    float r = bsdf_albedo(&b, vec3_make(0, 0, 1), LOBE_SPECULAR | LOBE_REFLECTION)[0];
+    g_assert_cmpfloat(fabsf(r - 0.08f / 1.04f), <, 1e-5f);
+    material_free(m);
+}
+
+static void test_textured_inputs(void)
+{
+    scene s = empty_scene();
+    params *p = list();
+    add_float(p, "value", 0.25f);
+    texture *number = texture_new(&s, "constant", false, p, NULL);
+    params_free(p);
+    p = list();
+    add_rgb(p, "value", 0.3f, 0.3f, 0.3f);
+    texture *colour = texture_new(&s, "constant", true, p, NULL);
+    params_free(p);
+    g_assert_true(number && colour);
+    g_hash_table_insert(s.float_textures, (char *)"n", number);
+    g_hash_table_insert(s.spectrum_textures, (char *)"c", colour);
+
+    p = list();
+    add_string(p, PARAM_TEXTURE, "reflectance", "c");
+    material *m = material_new(&s, "diffuse", p, NULL);
+    g_assert_nonnull(m);
+    g_assert_cmpfloat(fabsf(at(m, &plain).rho[4] - 0.3f), <, 2e-3f);
+    material_free(m);
+    params_free(p);
+
+    p = list();
+    add_string(p, PARAM_TEXTURE, "roughness", "n");
+    m = material_new(&s, "dielectric", p, NULL);
+    g_assert_nonnull(m);
+    g_assert_true(material_casts_caustics(m));
+    g_assert_cmpuint(at(m, &plain).lobes, ==, LOBE_DIFFUSE | LOBE_ANY_SIDE);
+    material_free(m);
+    params_free(p);
+
+    p = list();
+    add_string(p, PARAM_TEXTURE, "reflectance", "n");
+    g_autoptr(GError) error = NULL;
+    g_assert_null(material_new(&s, "diffuse", p, &error));
+    g_assert_cmpstr(error->message, ==,
+                    "m.pbrt:4:9: parameter 'reflectance': expected a spectrum texture, "
+                    "but 'n' is of the other type");
+    params_free(p);
+    texture_free(number);
+    texture_free(colour);
+    clear_scene(&s);
+}
+
+static void test_refusals(void)
+{
+    params *p = list();
+    add_float(p, "shine", 1.0f);
+    refuse("diffuse", p, "m.pbrt:4:9: unknown parameter 'shine' of material 'diffuse'");
+    p = list();
+    add_string(p, PARAM_TEXTURE, "displacement", "bumps");
+    refuse("diffuse", p,
+           "m.pbrt:4:9: parameter 'displacement' of a material is not supported yet");
+    p = list();
+    add_string(p, PARAM_TEXTURE, "reflectance", "nowhere");
+    refuse("diffuse", p,
+           "m.pbrt:4:9: parameter 'reflectance': there is no spectrum texture 'nowhere'");
+    p = list();
+    add_rgb(p, "reflectance", 1, 1, 1);
+    add_rgb(p, "k", 1, 1, 1);
+    refuse("conductor", p,
+           "m.pbrt:4:9: a conductor has either 'reflectance' or 'eta' and 'k'");
+    p = list();
+    add_float(p, "roughness", -0.1f);
+    refuse("conductor", p,
+           "m.pbrt:4:9: parameter 'roughness': expected a number >= 0, found -0.1");
+    p = list();
+    add_float(p, "eta", 0.0f);
+    refuse("dielectric", p,
+           "m.pbrt:4:9: parameter 'eta': expected an index of refraction > 0, found 0 at "
+           "380 nm");
+    p = list();
+    add_float(p, "roughness", 0.1f);
+    add_float(p, "uroughness", 0.1f);
+    add_float(p, "vroughness", 0.1f);
+    refuse("dielectric", p,
+           "m.pbrt:4:9: parameter 'roughness' has no effect beside 'uroughness' and "
+           "'vroughness'");
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/material/diffuse", test_diffuse);
+    g_test_add_func("/material/roughness", test_roughness);
+    g_test_add_func("/material/classes", test_classes);
+    g_test_add_func("/material/conductor", test_conductor);
+    g_test_add_func("/material/dispersion-by-eta", test_dispersion_by_eta);
+    g_test_add_func("/material/deterministic", test_deterministic);
+    g_test_add_func("/material/thin-pane", test_thin_pane_keeps_direction);
+    g_test_add_func("/material/textured-inputs", test_textured_inputs);
+    g_test_add_func("/material/refusals", test_refusals);
+    return g_test_run();
+}
