@@ -1,0 +1,518 @@
+/*
+ * Triangle meshes from PLY files.
+ *
+ * Workload: scans of 10^6..10^8 triangles, binary, one float per coordinate and one list
+ * of three ints per face. Those two cases have loops of their own that run at the speed
+ * of memory; all others go value by value.
+ */
+#include "format/ply.h"
+
+#include "base/memory.h"
+#include "format/input.h"
+#include "format/number.h"
+#include "format/ply_header.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { N_COLUMNS = 8, BLOCK = 1024 };
+
+/** A vertex property that is kept. */
+typedef struct column {
+    int property; /**< index, -1: the file has none */
+    float *to;    /**< of the first vertex */
+    size_t stride;
+} column;
+
+typedef struct ply_reader {
+    const char *file;
+    ply_header header;
+    const char *begin, *at, *end;
+    const char *line_start; /**< of text */
+    int line;
+    bool swap; /**< bytes are in the other order than ours */
+    mesh m;
+    size_t n_vertices, capacity; /**< capacity: indices there is room for */
+} ply_reader;
+
+static bool fail(const ply_reader *r, GError **error, const char *format, ...)
+    G_GNUC_PRINTF(3, 4);
+
+/** An error where the reading stands: at a line of text, at a byte of binary data. */
+static bool fail(const ply_reader *r, GError **error, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    g_autofree char *text = g_strdup_vprintf(format, args);
+    va_end(args);
+    if (r->header.encoding == PLY_TEXT)
+        error_set(error, ERROR_INPUT, "%s:%d:%d: %s", r->file, r->line,
+                  (int)(r->at - r->line_start) + 1, text);
+    else
+        error_set(error, ERROR_INPUT, "%s: byte %zu: %s", r->file,
+                  (size_t)(r->at - r->begin), text);
+    return false;
+}
+
+static size_t remaining(const ply_reader *r)
+{
+    return (size_t)(r->end - r->at);
+}
+
+/** A number of binary data in the order of this machine; at least its size is there. */
+static double load(const char *from, ply_type type, bool swap)
+{
+    union {
+        uint8_t u8;
+        int8_t i8;
+        uint16_t u16;
+        int16_t i16;
+        uint32_t u32;
+        int32_t i32;
+        uint64_t u64;
+        float f32;
+        double f64;
+    } v;
+    memcpy(&v, from, ply_type_size(type));
+    if (swap && ply_type_size(type) == 2)
+        v.u16 = GUINT16_SWAP_LE_BE(v.u16);
+    else if (swap && ply_type_size(type) == 4)
+        v.u32 = GUINT32_SWAP_LE_BE(v.u32);
+    else if (swap && ply_type_size(type) == 8)
+        v.u64 = GUINT64_SWAP_LE_BE(v.u64);
+    switch (type) {
+    case PLY_INT8:
+        return v.i8;
+    case PLY_UINT8:
+        return v.u8;
+    case PLY_INT16:
+        return v.i16;
+    case PLY_UINT16:
+        return v.u16;
+    case PLY_INT32:
+        return v.i32;
+    case PLY_UINT32:
+        return v.u32;
+    case PLY_FLOAT32:
+        return (double)v.f32;
+    case PLY_FLOAT64:
+        break;
+    }
+    return v.f64;
+}
+
+/** The next word of a text file; 0 long at its end. */
+static size_t next_word(ply_reader *r)
+{
+    for (; r->at < r->end && g_ascii_isspace(*r->at); r->at++)
+        if (*r->at == '\n') {
+            r->line++;
+            r->line_start = r->at + 1;
+        }
+    const char *p = r->at;
+    while (p < r->end && !g_ascii_isspace(*p))
+        p++;
+    return (size_t)(p - r->at);
+}
+
+static bool read_word(ply_reader *r, ply_type type, double *out, GError **error)
+{
+    size_t length = next_word(r);
+    if (length == 0)
+        return fail(r, error, "expected a number, found the end of the file");
+    float single = 0.0f;
+    bool is_single = type == PLY_FLOAT32;
+    bool fine = is_single ? number_float(r->at, length, &single)
+                          : number_double(r->at, length, out);
+    if (!fine) {
+        g_autofree char *found = g_utf8_make_valid(r->at, (gssize)MIN(length, 60));
+        return fail(r, error, "expected a number, found '%s'", found);
+    }
+    if (is_single)
+        *out = (double)single;
+    r->at += length;
+    return true;
+}
+
+static bool read_number(ply_reader *r, ply_type type, double *out, GError **error)
+{
+    if (r->header.encoding == PLY_TEXT)
+        return read_word(r, type, out, error);
+    if (remaining(r) < ply_type_size(type))
+        return fail(r, error, "expected a number, found the end of the file");
+    *out = load(r->at, type, r->swap);
+    r->at += ply_type_size(type);
+    return true;
+}
+
+static bool read_length(ply_reader *r, const ply_property *p, size_t *n, GError **error)
+{
+    double length;
+    if (!read_number(r, p->count_type, &length, error))
+        return false;
+    if (!(length >= 0.0 && length <= 4294967295.0) || length > floor(length))
+        return fail(r, error, "expected a list's length, found %g", length);
+    *n = (size_t)length;
+    return true;
+}
+
+static bool skip_numbers(ply_reader *r, ply_type type, size_t n, GError **error)
+{
+    if (r->header.encoding == PLY_TEXT) {
+        double ignored;
+        for (size_t i = 0; i < n; i++)
+            if (!read_word(r, PLY_FLOAT64, &ignored, error))
+                return false;
+        return true;
+    }
+    if (remaining(r) / ply_type_size(type) < n)
+        return fail(r, error, "expected %zu numbers, found the end of the file", n);
+    r->at += n * ply_type_size(type);
+    return true;
+}
+
+static bool skip_property(ply_reader *r, const ply_property *p, GError **error)
+{
+    size_t n = 1;
+    return (!p->is_list || read_length(r, p, &n, error)) &&
+           skip_numbers(r, p->type, n, error);
+}
+
+static bool skip_element(ply_reader *r, const ply_element *e, GError **error)
+{
+    if (e->properties->len == 0)
+        return true;
+    for (size_t row = 0; row < e->count; row++)
+        for (guint i = 0; i < e->properties->len; i++)
+            if (!skip_property(r, ply_property_at(e, i), error))
+                return false;
+    return true;
+}
+
+/** Refuses what cannot be in the file before memory is asked for it. */
+static bool check_count(const ply_reader *r, const ply_element *e, GError **error)
+{
+    size_t least = ply_least_row(&r->header, e);
+    size_t most = least ? (remaining(r) + 1) / least : e->count;
+    if (e->count <= most)
+        return true;
+    error_set(error, ERROR_INPUT,
+              "%s: expected %zu elements '%s', found the end of the file after at most "
+              "%zu",
+              r->file, e->count, e->name, most);
+    return false;
+}
+
+/* ---- Vertices ---- */
+
+static bool alloc_rows(float **out, size_t n, size_t per_row, const char *what,
+                       GError **error)
+{
+    *out = big_alloc(n * per_row + 1, sizeof **out, what, error);
+    return *out != NULL;
+}
+
+static bool has_all(const ply_element *e, const char *const *names, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        int p = ply_find_property(e, names[i]);
+        if (p < 0 || ply_property_at(e, (guint)p)->is_list)
+            return false;
+    }
+    return true;
+}
+
+static void add_columns(column *columns, const ply_element *e, const char *const *names,
+                        size_t n, float *to)
+{
+    for (size_t i = 0; i < n; i++)
+        columns[i] = (column){ply_find_property(e, names[i]), to + i, n};
+}
+
+/** Which properties go where; allocates their arrays. */
+static bool plan_columns(ply_reader *r, const ply_element *e, column *columns,
+                         GError **error)
+{
+    static const char *const points[] = {"x", "y", "z"};
+    static const char *const normals[] = {"nx", "ny", "nz"};
+    static const char *const uvs[][2] = {
+        {"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
+    mesh *m = &r->m;
+    for (int i = 0; i < N_COLUMNS; i++)
+        columns[i].property = -1;
+    if (!has_all(e, points, 3))
+        return fail(r, error, "expected vertices with x, y and z, found none");
+    if (!alloc_rows(&m->positions, e->count, 3, "vertices", error))
+        return false;
+    add_columns(columns, e, points, 3, m->positions);
+    if (has_all(e, normals, 3)) {
+        if (!alloc_rows(&m->normals, e->count, 3, "normals", error))
+            return false;
+        add_columns(columns + 3, e, normals, 3, m->normals);
+    }
+    for (size_t i = 0; i < G_N_ELEMENTS(uvs) && !m->uvs; i++)
+        if (has_all(e, uvs[i], 2)) {
+            m->uvs = big_alloc(e->count, sizeof *m->uvs, "texture coordinates", error);
+            if (!m->uvs)
+                return false;
+            add_columns(columns + 6, e, uvs[i], 2, &m->uvs->x);
+        }
+    return true;
+}
+
+/** Rows of one size: block by block, so that a block's columns meet it in the cache. */
+static bool read_fixed_rows(ply_reader *r, const ply_element *e, const column *columns)
+{
+    size_t offsets[N_COLUMNS], row = ply_least_row(&r->header, e);
+    ply_type type[N_COLUMNS];
+    for (int c = 0; c < N_COLUMNS; c++) {
+        offsets[c] = 0;
+        for (int i = 0; i < columns[c].property; i++)
+            offsets[c] += ply_type_size(ply_property_at(e, (guint)i)->type);
+        if (columns[c].property >= 0)
+            type[c] = ply_property_at(e, (guint)columns[c].property)->type;
+    }
+    for (size_t first = 0; first < e->count; first += BLOCK) {
+        size_t end = MIN(first + BLOCK, e->count);
+        for (int c = 0; c < N_COLUMNS; c++) {
+            if (columns[c].property < 0)
+                continue;
+            const char *from = r->at + first * row + offsets[c];
+            float *to = columns[c].to + first * columns[c].stride;
+            bool plain = type[c] == PLY_FLOAT32 && !r->swap;
+            for (size_t i = first; i < end; i++, from += row, to += columns[c].stride) {
+                if (plain)
+                    memcpy(to, from, sizeof *to);
+                else
+                    *to = (float)load(from, type[c], r->swap);
+            }
+        }
+    }
+    r->at += e->count * row;
+    return true;
+}
+
+static bool read_row(ply_reader *r, const ply_element *e, const column *columns,
+                     size_t row, GError **error)
+{
+    for (guint i = 0; i < e->properties->len; i++) {
+        const ply_property *p = ply_property_at(e, i);
+        double value;
+        int c = 0;
+        while (c < N_COLUMNS && columns[c].property != (int)i)
+            c++;
+        if (c == N_COLUMNS) {
+            if (!skip_property(r, p, error))
+                return false;
+            continue;
+        }
+        if (!read_number(r, p->type, &value, error))
+            return false;
+        columns[c].to[row * columns[c].stride] = (float)value;
+    }
+    return true;
+}
+
+static bool check_finite(const ply_reader *r, const column *columns, size_t n,
+                         GError **error)
+{
+    static const char *const names[N_COLUMNS] = {"x",  "y",  "z", "nx",
+                                                 "ny", "nz", "u", "v"};
+    for (int c = 0; c < N_COLUMNS; c++)
+        for (size_t i = 0; columns[c].property >= 0 && i < n; i++)
+            if (!isfinite(columns[c].to[i * columns[c].stride])) {
+                error_set(error, ERROR_INPUT,
+                          "%s: expected finite numbers, found %s = %g of vertex %zu",
+                          r->file, names[c], (double)columns[c].to[i * columns[c].stride],
+                          i);
+                return false;
+            }
+    return true;
+}
+
+static bool read_vertices(ply_reader *r, const ply_element *e, GError **error)
+{
+    column columns[N_COLUMNS];
+    if (r->m.positions)
+        return fail(r, error, "expected one element 'vertex', found another");
+    if (!plan_columns(r, e, columns, error))
+        return false;
+    bool is_fixed = r->header.encoding != PLY_TEXT;
+    for (guint i = 0; i < e->properties->len; i++)
+        is_fixed &= !ply_property_at(e, i)->is_list;
+    if (is_fixed)
+        read_fixed_rows(r, e, columns);
+    for (size_t row = 0; !is_fixed && row < e->count; row++)
+        if (!read_row(r, e, columns, row, error))
+            return false;
+    r->m.n_vertices = e->count;
+    return check_finite(r, columns, e->count, error);
+}
+
+/* ---- Faces ---- */
+
+static bool make_room(ply_reader *r, GError **error)
+{
+    size_t used = 3 * r->m.n_triangles;
+    if (used + 6 <= r->capacity)
+        return true;
+    size_t capacity = 2 * r->capacity;
+    uint32_t *grown =
+        big_grow(r->m.indices, r->capacity, capacity, sizeof *grown, "triangles", error);
+    if (!grown)
+        return false;
+    r->m.indices = grown;
+    r->capacity = capacity;
+    return true;
+}
+
+static bool read_corner(ply_reader *r, const ply_property *p, uint32_t *out,
+                        GError **error)
+{
+    double index;
+    if (!read_number(r, p->type, &index, error))
+        return false;
+    if (!(index >= 0.0 && index < (double)r->n_vertices) || index > floor(index))
+        return fail(r, error, "expected a vertex from 0 to %zu, found %.10g",
+                    r->n_vertices - 1, index);
+    *out = (uint32_t)index;
+    return true;
+}
+
+/** One list of corners: a triangle or two. */
+static bool read_face(ply_reader *r, const ply_property *p, GError **error)
+{
+    size_t n = 0;
+    uint32_t v[4];
+    if (!read_length(r, p, &n, error))
+        return false;
+    if (n != 3 && n != 4)
+        return fail(r, error, "expected a face of 3 or 4 vertices, found one of %zu", n);
+    for (size_t i = 0; i < n; i++)
+        if (!read_corner(r, p, &v[i], error))
+            return false;
+    if (!make_room(r, error))
+        return false;
+    uint32_t *to = r->m.indices + 3 * r->m.n_triangles;
+    memcpy(to, v, 3 * sizeof *to);
+    r->m.n_triangles++;
+    if (n == 4) {
+        memcpy(to + 3, (uint32_t[]){v[0], v[2], v[3]}, 3 * sizeof *to);
+        r->m.n_triangles++;
+    }
+    return true;
+}
+
+/** Faces that are nothing but a byte 3 and three indices of ours; stops at the first that
+ * is not. @return how many were read */
+static size_t read_plain_triangles(ply_reader *r, const ply_element *e)
+{
+    enum { FACE = 1 + 3 * 4 };
+    const ply_property *p = ply_property_at(e, 0);
+    bool is_plain = r->header.encoding != PLY_TEXT && !r->swap &&
+                    e->properties->len == 1 && ply_type_size(p->count_type) == 1 &&
+                    (p->type == PLY_INT32 || p->type == PLY_UINT32);
+    size_t n = is_plain ? MIN(e->count, remaining(r) / FACE) : 0;
+    uint32_t *to = r->m.indices;
+    for (size_t i = 0; i < n; i++, r->at += FACE, to += 3) {
+        memcpy(to, r->at + 1, 3 * sizeof *to);
+        if (*r->at != 3 || to[0] >= r->n_vertices || to[1] >= r->n_vertices ||
+            to[2] >= r->n_vertices) {
+            n = i;
+            break;
+        }
+    }
+    r->m.n_triangles = n;
+    return n;
+}
+
+static bool read_faces(ply_reader *r, const ply_element *e, GError **error)
+{
+    int list = ply_find_property(e, "vertex_indices");
+    if (list < 0)
+        list = ply_find_property(e, "vertex_index");
+    if (list < 0 || !ply_property_at(e, (guint)list)->is_list)
+        return fail(r, error, "expected faces with a list vertex_indices, found none");
+    if (r->m.indices)
+        return fail(r, error, "expected one element 'face', found another");
+    r->capacity = 3 * e->count + 6;
+    r->m.indices = big_alloc(r->capacity, sizeof *r->m.indices, "triangles", error);
+    if (!r->m.indices)
+        return false;
+    for (size_t row = read_plain_triangles(r, e); row < e->count; row++)
+        for (guint i = 0; i < e->properties->len; i++) {
+            const ply_property *p = ply_property_at(e, i);
+            if (!(i == (guint)list ? read_face(r, p, error) : skip_property(r, p, error)))
+                return false;
+        }
+    return true;
+}
+
+/* ---- The file ---- */
+
+static bool find_vertices(ply_reader *r, GError **error)
+{
+    for (guint i = 0; i < r->header.elements->len; i++) {
+        const ply_element *e = ply_element_at(&r->header, i);
+        if (strcmp(e->name, "vertex") == 0)
+            r->n_vertices = e->count;
+    }
+    if (r->n_vertices > 0 && r->n_vertices <= UINT32_MAX)
+        return true;
+    error_set(error, ERROR_INPUT, "%s: expected 1 to %u vertices, found %zu", r->file,
+              UINT32_MAX, r->n_vertices);
+    return false;
+}
+
+static bool read_elements(ply_reader *r, GError **error)
+{
+    for (guint i = 0; i < r->header.elements->len; i++) {
+        const ply_element *e = ply_element_at(&r->header, i);
+        bool fine;
+        if (!check_count(r, e, error))
+            return false;
+        if (strcmp(e->name, "vertex") == 0)
+            fine = read_vertices(r, e, error);
+        else if (strcmp(e->name, "face") == 0)
+            fine = read_faces(r, e, error);
+        else
+            fine = skip_element(r, e, error);
+        if (!fine)
+            return false;
+    }
+    if (r->m.n_triangles > 0)
+        return true;
+    error_set(error, ERROR_INPUT, "%s: expected faces, found none", r->file);
+    return false;
+}
+
+static bool read_data(ply_reader *r, const input *in, GError **error)
+{
+    if (!ply_header_read(&r->header, r->file, in->data, in->size, error))
+        return false;
+    ply_encoding ours =
+        G_BYTE_ORDER == G_LITTLE_ENDIAN ? PLY_LITTLE_ENDIAN : PLY_BIG_ENDIAN;
+    r->begin = in->data;
+    r->at = r->line_start = in->data + r->header.size;
+    r->end = in->data + in->size;
+    r->line = r->header.n_lines + 1;
+    r->swap = r->header.encoding != ours;
+    bool fine = find_vertices(r, error) && read_elements(r, error);
+    ply_header_clear(&r->header);
+    return fine;
+}
+
+bool ply_read(const char *path, mesh *out, GError **error)
+{
+    input in;
+    if (!input_open(&in, path, error))
+        return false;
+    ply_reader r = {.file = path};
+    bool fine = read_data(&r, &in, error);
+    input_close(&in);
+    if (fine)
+        *out = r.m;
+    else
+        mesh_clear(&r.m);
+    return fine;
+}
