@@ -41,7 +41,7 @@ static void put(GString *out, const recipe *r, const char *type, double value)
 {
     char bytes[8];
     size_t n = 4;
-    int32_t whole = (int32_t)value;
+    int32_t whole = (int32_t)(int64_t)value;
     if (r->encoding == TEXT) {
         g_string_append_printf(out, "%g ", value);
         return;
