@@ -19,7 +19,7 @@
 struct accel {
     RTCDevice device;
     RTCScene scene;
-    shape *const *shapes;
+    shape **shapes; /* a copy of the array; the shapes are borrowed */
     char message[256]; /* the last thing the device complained of, while building */
     enum RTCError code;
 };
@@ -143,11 +143,12 @@ accel *accel_build(shape *const *shapes, size_t n, unsigned threads, GError **er
 {
     g_autofree char *config = g_strdup_printf("threads=%u,set_affinity=0", threads);
     accel *a = g_new0(accel, 1);
-    a->shapes = shapes;
+    a->shapes = g_memdup2(shapes, n * sizeof(shape *));
     a->device = rtcNewDevice(config);
     if (!a->device) {
         error_set(error, ERROR_FAILED, "Embree does not start (error %d)",
                   (int)rtcGetDeviceError(NULL));
+        g_free(a->shapes);
         g_free(a);
         return NULL;
     }
@@ -169,6 +170,7 @@ void accel_free(accel *a)
         return;
     rtcReleaseScene(a->scene);
     rtcReleaseDevice(a->device);
+    g_free(a->shapes);
     g_free(a);
 }
 
