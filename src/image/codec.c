@@ -1,0 +1,170 @@
+#include "image/codec.h"
+
+#include "base/output.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+static const image_codec *const codecs[] = {
+    &codec_exr, &codec_png, &codec_jpeg, &codec_hdr, &codec_pfm,
+};
+
+const char *const rgba_names[4] = {"R", "G", "B", "A"};
+
+void source_damaged(const image_source *source, const char *format_name,
+                    const char *message, GError **error)
+{
+    error_set(error, ERROR_INPUT, "%s: damaged %s file: %s", source->path, format_name,
+              message);
+}
+
+bool source_size_possible(const image_source *source, int64_t width, int64_t height,
+                          double bytes_per_pixel, double ratio, GError **error)
+{
+    double n_pixels = (double)width * (double)height;
+    bool sane = width > 0 && height > 0 && n_pixels <= (double)INT_MAX;
+    if (sane && n_pixels * bytes_per_pixel <= ratio * (double)source->size)
+        return true;
+    error_set(error, ERROR_INPUT,
+              "%s: a file of %zu bytes cannot hold the %" G_GINT64_FORMAT
+              " x %" G_GINT64_FORMAT " pixels it claims",
+              source->path, source->size, width, height);
+    return false;
+}
+
+bool source_line(const image_source *source, size_t *at, char *line, size_t size)
+{
+    const uint8_t *begin = source->bytes + *at;
+    const uint8_t *end = memchr(begin, '\n', source->size - *at);
+    if (!end || (size_t)(end - begin) >= size)
+        return false;
+    size_t length = (size_t)(end - begin);
+    memcpy(line, begin, length);
+    line[length] = '\0';
+    *at += length + 1;
+    return true;
+}
+
+float *encoding_table(const image_read_options *options, unsigned n_codes)
+{
+    image_encoding encoding = options ? options->encoding : ENCODING_AUTO;
+    float *table = g_new(float, n_codes);
+    for (unsigned i = 0; i < n_codes; i++) {
+        float v = (float)i / (float)(n_codes - 1);
+        if (encoding == ENCODING_LINEAR)
+            table[i] = v;
+        else if (encoding == ENCODING_GAMMA)
+            table[i] = powf(v, options->gamma);
+        else
+            table[i] = srgb_decode(v);
+    }
+    return table;
+}
+
+bool image_rgb(const image *img, const char *path, int rgb[3], GError **error)
+{
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = image_channel(img, rgba_names[c]);
+        if (rgb[c] >= 0)
+            continue;
+        error_set(error, ERROR_INPUT, "%s: the image has no channel '%s'", path,
+                  rgba_names[c]);
+        return false;
+    }
+    return true;
+}
+
+uint8_t srgb_code(float linear)
+{
+    if (!(linear > 0.0f) || isinf(linear))
+        return 0;
+    float encoded = srgb_encode(linear);
+    return encoded < 1.0f ? (uint8_t)(encoded * 255.0f + 0.5f) : 255;
+}
+
+/* ---- reading ---- */
+
+static const image_codec *codec_of_content(const image_source *source)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(codecs); i++)
+        if (codecs[i]->recognises(source))
+            return codecs[i];
+    return NULL;
+}
+
+static char *read_whole_file(const char *path, size_t *size, GError **error)
+{
+    char *bytes = NULL;
+    g_autoptr(GError) why = NULL;
+    if (g_file_test(path, G_FILE_TEST_EXISTS) &&
+        !g_file_test(path, G_FILE_TEST_IS_REGULAR))
+        error_set(error, ERROR_INPUT, "%s: not a file", path);
+    else if (!g_file_get_contents(path, &bytes, size, &why))
+        error_set(error, ERROR_INPUT, "%s: cannot be read: %s", path, why->message);
+    return bytes;
+}
+
+/* The message of a failure that did not name the file (memory) is made to name it. */
+static void name_file(const char *path, GError **error)
+{
+    if (error && *error && !strstr((*error)->message, path))
+        g_prefix_error(error, "%s: ", path);
+}
+
+image *image_read(const char *path, const image_read_options *options, GError **error)
+{
+    size_t size = 0;
+    g_autofree char *bytes = read_whole_file(path, &size, error);
+    if (!bytes)
+        return NULL;
+    image_source source = {path, (const uint8_t *)bytes, size};
+    const image_codec *codec = codec_of_content(&source);
+    if (!codec) {
+        error_set(error, ERROR_INPUT,
+                  "%s: not an image in a format that is known (OpenEXR, PNG, JPEG, "
+                  "Radiance HDR, PFM)",
+                  path);
+        return NULL;
+    }
+    image *img = codec->read(&source, options, error);
+    if (!img)
+        name_file(path, error);
+    return img;
+}
+
+/* ---- writing ---- */
+
+static const image_codec *codec_of_name(const char *path, GError **error)
+{
+    g_autofree char *lower = g_ascii_strdown(path, -1);
+    for (size_t i = 0; i < G_N_ELEMENTS(codecs); i++)
+        for (const char *const *e = codecs[i]->extensions; *e; e++)
+            if (g_str_has_suffix(lower, *e))
+                return codecs[i];
+    error_set(error, ERROR_INPUT,
+              "%s: an image's name must end in .exr, .png, .jpg, .jpeg, .hdr or .pfm",
+              path);
+    return NULL;
+}
+
+bool image_can_write(const char *path, GError **error)
+{
+    return codec_of_name(path, error) && output_possible(path, error);
+}
+
+bool image_write(const image *img, const char *path, const image_write_options *options,
+                 GError **error)
+{
+    static const image_write_options plain = {.exposure = 0.0f};
+    const image_codec *codec = codec_of_name(path, error);
+    g_autoptr(output) out = codec ? output_open(path, error) : NULL;
+    if (!out)
+        return false;
+    image_sink sink = {path, output_stream(out)};
+    if (!codec->write(img, &sink, options ? options : &plain, error)) {
+        name_file(path, error);
+        return false;
+    }
+    return output_commit(g_steal_pointer(&out), error);
+}
