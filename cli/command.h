@@ -13,4 +13,5 @@ typedef struct command {
     int (*run)(int argc, char **argv);
 } command;
 
+int command_compare(int argc, char **argv);
 int command_settings(int argc, char **argv);

@@ -10,6 +10,7 @@
 #include <string.h>
 
 static const command commands[] = {
+    {"compare", "measure how far an image is from a reference", command_compare},
     {"settings", "list all settings", command_settings},
 };
 

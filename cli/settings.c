@@ -31,7 +31,7 @@ static char *markdown(void)
 {
     GString *out = g_string_new("| name | default | unit | range | also | read by | |\n"
                                 "|---|---|---|---|---|---|---|\n");
-    NephSettings *defaults = neph_settings_new();
+    g_autoptr(NephSettings) defaults = neph_settings_new();
     size_t n;
     const NephSettingInfo *rows = neph_settings_table(&n);
     for (size_t i = 0; i < n; i++) {
@@ -41,7 +41,6 @@ static char *markdown(void)
                                rows[i].name, initial, rows[i].unit, range,
                                rows[i].aliases, rows[i].users, rows[i].doc);
     }
-    neph_settings_free(defaults);
     return g_string_free(out, FALSE);
 }
 

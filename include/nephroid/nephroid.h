@@ -1,8 +1,9 @@
 /*
  * Nephroid: a photon-mapping renderer. The only installed header.
  *
- *   neph_scene_load ─► neph_scene_settings ─► neph_render_new ─► neph_render_run ─►
- * neph_render_image
+ *   neph_scene_load ─► neph_scene_settings ─► neph_render_new ─┐
+ *           ┌──────────────────────────────────────────────────┘
+ *           └─► neph_render_run ─► neph_render_image ─► neph_image_write
  *
  * Objects are opaque and owned by who made them. A function that can fail returns false
  * or NULL and sets GError **error (domain NEPH_ERROR_DOMAIN, codes NephError); messages
@@ -207,6 +208,13 @@ NEPH_API bool neph_photons_write_ply(const NephPhotons *photons, const char *pat
 NEPH_API bool neph_photons_story(const NephScene *scene, const NephSettings *settings,
                                  size_t n, void (*write)(const char *line, void *data),
                                  void *data, GError **error);
+
+/* g_autoptr(NephScene) scene = neph_scene_load(...); frees itself. */
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephSettings, neph_settings_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephScene, neph_scene_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephImage, neph_image_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephRender, neph_render_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephPhotons, neph_photons_free)
 
 #ifdef __cplusplus
 }

@@ -90,8 +90,8 @@ static char *statistics_table(const NephStatistics *s)
     put_time(out, "prepare", s->time_prepare, s->time_total);
     put_time(out, "trace", s->time_trace, s->time_total);
     put_time(out, "build", s->time_build, s->time_total);
-    put_time(out, "gather", s->time_gather, s->time_total);
     put_time(out, "camera", s->time_camera, s->time_total);
+    put_time(out, "  gather", s->time_gather, s->time_total);
     g_string_append(out, "rays\n");
     put_rays(out, "photon", s->photon_rays, s->time_trace);
     put_rays(out, "camera", s->camera_rays, s->time_camera);

@@ -1,0 +1,101 @@
+#include "api/objects.h"
+
+#include "base/json.h"
+#include "image/compare.h"
+
+NephImage *neph_image_wrap(image *img)
+{
+    if (!img)
+        return NULL;
+    NephImage *wrapped = g_new(NephImage, 1);
+    wrapped->image = img;
+    return wrapped;
+}
+
+void neph_image_free(NephImage *img)
+{
+    if (!img)
+        return;
+    image_free(img->image);
+    g_free(img);
+}
+
+NephImage *neph_image_read(const char *path, GError **error)
+{
+    return neph_image_wrap(image_read(path, NULL, error));
+}
+
+bool neph_image_write(const NephImage *img, const char *path, float exposure,
+                      GError **error)
+{
+    const image_write_options options = {.exposure = exposure};
+    return image_write(img->image, path, &options, error);
+}
+
+bool neph_image_can_write(const char *path, GError **error)
+{
+    return image_can_write(path, error);
+}
+
+void neph_image_size(const NephImage *img, int *width, int *height, int *n_channels)
+{
+    *width = img->image->width;
+    *height = img->image->height;
+    *n_channels = img->image->n_channels;
+}
+
+const char *neph_image_channel_name(const NephImage *img, int channel)
+{
+    bool exists = channel >= 0 && channel < img->image->n_channels;
+    return exists ? img->image->channels[channel] : NULL;
+}
+
+const float *neph_image_pixels(const NephImage *img)
+{
+    return img->image->pixels;
+}
+
+bool neph_image_compare(const NephImage *img, const NephImage *reference,
+                        NephImageDifference *out, GError **error)
+{
+    image_difference found;
+    if (!image_compare(img->image, reference->image, &found, error))
+        return false;
+    *out = (NephImageDifference){.mean_a = found.mean_a,
+                                 .mean_b = found.mean_b,
+                                 .rmse = found.rmse,
+                                 .relmse = found.relmse,
+                                 .psnr = found.psnr,
+                                 .flip = found.flip,
+                                 .n_not_finite = found.n_not_finite};
+    return true;
+}
+
+static char *difference_json(const NephImageDifference *d)
+{
+    json j = {0};
+    json_object_begin(&j, NULL);
+    json_number(&j, "mean_a", d->mean_a);
+    json_number(&j, "mean_b", d->mean_b);
+    json_number(&j, "rmse", d->rmse);
+    json_number(&j, "relmse", d->relmse);
+    json_number(&j, "psnr", d->psnr);
+    json_number(&j, "flip", d->flip);
+    json_count(&j, "not_finite", d->n_not_finite);
+    json_object_end(&j);
+    return json_finish(&j);
+}
+
+char *neph_image_difference_text(const NephImageDifference *d, bool as_json)
+{
+    if (as_json)
+        return difference_json(d);
+    return g_strdup_printf("mean luminance  %.6g, reference %.6g\n"
+                           "rmse            %.6g\n"
+                           "relmse          %.6g\n"
+                           "psnr            %.4g dB\n"
+                           "flip            %.6g\n"
+                           "not finite      %zu pixels left out\n",
+                           d->mean_a, d->mean_b, d->rmse, d->relmse, d->psnr, d->flip,
+                           d->n_not_finite);
+}
