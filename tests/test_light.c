@@ -172,6 +172,7 @@ static double by_aiming(const lamp *a, const wavelengths *w, sampler *s)
         return 0;
     vec3 d = y - e.ray.origin;
     float distance = length3(d), cosine = -e.ray.direction[2];
+    g_assert_cmpfloat(dot3(d, e.ray.direction), >, 0.9999f * distance);
     if (cosine <= 0 || lies_before(a, e.ray.origin, e.ray.direction, distance))
         return 0;
     bool is_far = a->l->kind->prepare != NULL;
@@ -228,13 +229,19 @@ static void check_emission(const lamp *a, const wavelengths *w, const light_emis
     g_assert_cmpfloat(fabsf(position / e->pdf_position - 1), <, 1e-4);
     g_assert_cmpfloat(fabsf(direction - e->pdf_direction), <=, 1e-4f * direction);
     g_assert_cmpfloat(fabsf(length3(e->ray.direction) - 1), <, 1e-5);
-    if (!a->on)
+    float flux = spectrum_mean(e->flux);
+    if (!a->on) { /* the density times the flux is what arrives, from a point at 1 m */
+        light_sample to;
+        vec3 ref = e->ray.origin + e->ray.direction;
+        g_assert_true(a->l->kind->sample(a->l->self, w, ref, 0, (vec2){0, 0}, &to));
+        float expected = spectrum_mean(to.radiance);
+        g_assert_cmpfloat(fabsf(flux * position * direction / expected - 1), <, 1e-3);
         return;
+    }
     /* flux = L cosθ / (pdf pdf) */
     surface_hit hit = {.n_geom = e->n};
     float le = spectrum_mean(a->l->kind->radiance(a->l->self, &hit, e->ray.direction, w));
     float cosine = fabsf(dot3(e->n, e->ray.direction));
-    float flux = spectrum_mean(e->flux);
     if (cosine > 1e-3f)
         g_assert_cmpfloat(fabsf(le * cosine / (position * direction) / flux - 1), <,
                           1e-3);

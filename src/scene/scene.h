@@ -27,7 +27,7 @@ typedef struct film_settings {
     char *filename; /**< absolute or relative to the working folder, NULL if not given */
     float iso;      /**< pbrt's sensor speed; radiance is scaled by iso / 100 */
     float exposure; /**< stops, for 8-bit output; 0 */
-    float crop[4];  /**< x0, x1, y0, y1 in 0..1 */
+    float crop[4];  /**< x0, x1, y0, y1 in 0..1; pixels ceil(crop * size) as in pbrt */
     const color_space *space;
 } film_settings;
 
@@ -88,6 +88,10 @@ bool scene_commit(scene *s, unsigned threads, GError **error);
 /** @brief Another image size; allowed before and after the commit, not while rendering.
  */
 void scene_resize(scene *s, int width, int height);
+
+/** @brief What radiance is multiplied by on the film, as pbrt's sensor does it: iso / 100
+ * times the seconds that the shutter is open. */
+float scene_imaging_ratio(const scene *s);
 
 /* ---- Queries on a committed scene ---- */
 

@@ -1,0 +1,336 @@
+/*
+ * Building a scene and committing it.
+ *
+ * Everything is kept in the order it was added, so that indices, and with them random
+ * choices, are the same in every run.
+ */
+#include "scene/scene.h"
+
+#include "base/memory.h"
+#include "scene/scene_film.h"
+
+#include <string.h>
+
+static void free_texture(void *data)
+{
+    texture_free(data);
+}
+
+static void free_material(void *data)
+{
+    material_free(data);
+}
+
+static void free_shape(void *data)
+{
+    shape_free(data);
+}
+
+static void free_light(void *data)
+{
+    light_free(data);
+}
+
+static GHashTable *texture_table(void)
+{
+    return g_hash_table_new_full(g_str_hash, g_str_equal, g_free, free_texture);
+}
+
+scene *scene_new(const log_sink *log)
+{
+    scene *s = g_new0(scene, 1);
+    s->shapes = g_ptr_array_new_with_free_func(free_shape);
+    s->materials = g_ptr_array_new_with_free_func(free_material);
+    s->lights = g_ptr_array_new_with_free_func(free_light);
+    s->float_textures = texture_table();
+    s->spectrum_textures = texture_table();
+    s->material_names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    s->film = film_default();
+    s->settings = settings_default();
+    if (log)
+        s->log = *log;
+    return s;
+}
+
+void scene_free(scene *s)
+{
+    if (!s)
+        return;
+    accel_free(s->accel);
+    g_ptr_array_unref(s->lights);
+    g_ptr_array_unref(s->shapes);
+    g_ptr_array_unref(s->materials);
+    g_hash_table_unref(s->material_names);
+    g_hash_table_unref(s->float_textures);
+    g_hash_table_unref(s->spectrum_textures);
+    filter_clear(&s->filter);
+    g_free(s->film.filename);
+    distribution_clear(&s->light_power);
+    distribution_clear(&s->caustic_area);
+    g_free(s->environments);
+    g_free(s->caustic_shapes);
+    g_free(s);
+}
+
+static bool is_open(const scene *s, GError **error)
+{
+    if (s->committed)
+        error_set(error, ERROR_USAGE, "the scene is committed and can not be changed");
+    return !s->committed;
+}
+
+/* ---- Adding ---- */
+
+bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spectrum,
+                       const params *p, GError **error)
+{
+    GHashTable *table = is_spectrum ? s->spectrum_textures : s->float_textures;
+    if (!is_open(s, error))
+        return false;
+    if (g_hash_table_contains(table, name)) {
+        error_at(error, p->place, "texture \"%s\" is there already", name);
+        return false;
+    }
+    texture *t = texture_new(s, kind, is_spectrum, p, error);
+    if (t)
+        g_hash_table_insert(table, g_strdup(name), t);
+    return t != NULL;
+}
+
+int scene_add_material(scene *s, const char *name, const char *kind, const params *p,
+                       GError **error)
+{
+    if (!is_open(s, error))
+        return NO_INDEX;
+    if (name && scene_find_material(s, name) != NO_INDEX) {
+        error_at(error, p->place, "material \"%s\" is there already", name);
+        return NO_INDEX;
+    }
+    material *m = material_new(s, kind, p, error);
+    if (!m)
+        return NO_INDEX;
+    int index = (int)s->materials->len;
+    g_ptr_array_add(s->materials, m);
+    if (name) {
+        g_free(m->name);
+        m->name = g_strdup(name);
+        g_hash_table_insert(s->material_names, g_strdup(name),
+                            GINT_TO_POINTER(index + 1));
+    }
+    return index;
+}
+
+int scene_find_material(const scene *s, const char *name)
+{
+    int found = GPOINTER_TO_INT(g_hash_table_lookup(s->material_names, name));
+    return found ? found - 1 : NO_INDEX;
+}
+
+bool scene_add_light(scene *s, const char *kind, const params *p,
+                     const transform *to_world, GError **error)
+{
+    if (!is_open(s, error))
+        return false;
+    light *l = light_new(s, kind, p, to_world, NULL, error);
+    if (l)
+        g_ptr_array_add(s->lights, l);
+    return l != NULL;
+}
+
+/* Takes a new shape (NULL: it failed), with its light if it shines. */
+static bool take_shape(scene *s, shape *made, const shape_place *at, GError **error)
+{
+    if (!made)
+        return false;
+    if (made->material != NO_INDEX && (guint)made->material >= s->materials->len) {
+        error_at(error, made->place, "the shape's material %d does not exist",
+                 made->material);
+        shape_free(made);
+        return false;
+    }
+    if (at->area_light) {
+        light *l = light_new(s, "diffuse", at->area_light, &at->to_world, made, error);
+        if (!l) {
+            shape_free(made);
+            return false;
+        }
+        made->light = (int)s->lights->len;
+        g_ptr_array_add(s->lights, l);
+    }
+    g_ptr_array_add(s->shapes, made);
+    return true;
+}
+
+bool scene_add_shape(scene *s, const char *kind, const params *p, const shape_place *at,
+                     GError **error)
+{
+    return is_open(s, error) && take_shape(s, shape_new(kind, p, at, error), at, error);
+}
+
+bool scene_add_mesh(scene *s, mesh *m, const shape_place *at, source_place place,
+                    GError **error)
+{
+    if (is_open(s, error))
+        return take_shape(s, shape_new_mesh(m, at, place, error), at, error);
+    mesh_clear(m);
+    return false;
+}
+
+bool scene_set_film(scene *s, const char *kind, const params *p, GError **error)
+{
+    film_settings film;
+    if (!is_open(s, error) || !film_init(&film, kind, p, error))
+        return false;
+    g_free(s->film.filename);
+    s->film = film;
+    return true;
+}
+
+bool scene_set_filter(scene *s, const char *kind, const params *p, GError **error)
+{
+    pixel_filter filter = {0};
+    if (!is_open(s, error) || !filter_init(&filter, kind, p, error))
+        return false;
+    filter_clear(&s->filter);
+    s->filter = filter;
+    return true;
+}
+
+bool scene_set_camera(scene *s, const char *kind, const params *p,
+                      const transform *to_world, GError **error)
+{
+    s->has_camera =
+        is_open(s, error) &&
+        camera_init(&s->camera, kind, p, to_world, s->film.width, s->film.height, error);
+    return s->has_camera;
+}
+
+/* ---- Committing ---- */
+
+static bool find_bounds(scene *s, GError **error)
+{
+    s->bounds = box3_empty();
+    for (guint i = 0; i < s->shapes->len; i++) {
+        const shape *on = s->shapes->pdata[i];
+        s->bounds = box3_union(s->bounds, on->kind->bounds(on->self));
+    }
+    bool is_empty = box3_is_empty(s->bounds);
+    s->center = is_empty ? (vec3){0} : box3_center(s->bounds);
+    /* A little larger, so that what lies on the box is inside whatever the rounding. */
+    float far =
+        is_empty ? 0.0f : max_component3(max3(abs3(s->bounds.low), abs3(s->bounds.high)));
+    s->radius = 1.0001f * box3_radius(s->bounds) + 1e-6f * far;
+    if (!(s->radius > 0.0f))
+        s->radius = 1.0f;
+    if (isfinite(s->radius) && finite3(s->center) && s->radius < 1e18f)
+        return true;
+    error_set(error, ERROR_INPUT, "the scene is too large: its coordinates overflow");
+    return false;
+}
+
+static bool find_lights(scene *s, GError **error)
+{
+    const wavelengths w = wavelengths_at(0.5f);
+    guint n = s->lights->len;
+    s->environments = g_new0(int, MAX(n, 1));
+    float *power = big_alloc(n, sizeof(float), "lights", error);
+    if (!power)
+        return false;
+    for (guint i = 0; i < n; i++) {
+        const light *l = s->lights->pdata[i];
+        if (l->kind->prepare)
+            l->kind->prepare(l->self, s->center, s->radius);
+        if (l->kind->is_environment)
+            s->environments[s->n_environments++] = (int)i;
+        power[i] = spectrum_mean(l->kind->power(l->self, &w));
+    }
+    bool done = distribution_init(&s->light_power, power, n, error);
+    big_free(power);
+    double total = done ? distribution_total(&s->light_power) : 0.0;
+    if (done && !(total > 0.0 && isfinite(total))) {
+        error_set(error, ERROR_INPUT,
+                  n == 0        ? "the scene has no light"
+                  : total > 0.0 ? "the scene's lights are infinitely strong"
+                                : "the scene has no light: all its lights are black");
+        done = false;
+    }
+    return done;
+}
+
+static bool find_caustic_shapes(scene *s, GError **error)
+{
+    guint n = s->shapes->len;
+    s->caustic_shapes = g_new0(int, MAX(n, 1));
+    float *area = big_alloc(n, sizeof(float), "shapes", error);
+    if (!area)
+        return false;
+    for (guint i = 0; i < n; i++) {
+        const shape *on = s->shapes->pdata[i];
+        if (on->material == NO_INDEX || !(on->area > 0.0f) ||
+            !material_casts_caustics(s->materials->pdata[on->material]))
+            continue;
+        area[s->n_caustic_shapes] = on->area;
+        s->caustic_shapes[s->n_caustic_shapes++] = (int)i;
+    }
+    bool done =
+        distribution_init(&s->caustic_area, area, (size_t)s->n_caustic_shapes, error);
+    big_free(area);
+    return done;
+}
+
+/* A commit that failed leaves the scene as it was before. */
+static void forget_commit(scene *s)
+{
+    accel_free(s->accel);
+    s->accel = NULL;
+    distribution_clear(&s->light_power);
+    distribution_clear(&s->caustic_area);
+    g_clear_pointer(&s->environments, g_free);
+    g_clear_pointer(&s->caustic_shapes, g_free);
+    s->n_environments = s->n_caustic_shapes = 0;
+}
+
+bool scene_commit(scene *s, unsigned threads, GError **error)
+{
+    if (!is_open(s, error))
+        return false;
+    if (!s->has_camera) {
+        error_set(error, ERROR_INPUT, "the scene has no camera");
+        return false;
+    }
+    if (!s->filter.name && !filter_init_default(&s->filter, error))
+        return false;
+    s->committed =
+        find_bounds(s, error) && find_lights(s, error) && find_caustic_shapes(s, error);
+    if (s->committed)
+        s->accel =
+            accel_build((shape *const *)s->shapes->pdata, s->shapes->len, threads, error);
+    s->committed = s->accel != NULL;
+    if (!s->committed)
+        forget_commit(s);
+    return s->committed;
+}
+
+/* ---- Asking ---- */
+
+void scene_resize(scene *s, int width, int height)
+{
+    s->film.width = width;
+    s->film.height = height;
+    if (s->has_camera)
+        camera_resize(&s->camera, width, height);
+}
+
+float scene_imaging_ratio(const scene *s)
+{
+    return s->film.iso / 100.0f * (s->camera.shutter_close - s->camera.shutter_open);
+}
+
+bool scene_bsdf(const scene *s, const surface_hit *hit, const wavelengths *w, int lane,
+                const bsdf_options *options, bsdf *out)
+{
+    if (hit->material == NO_INDEX)
+        return false;
+    material_bsdf(s->materials->pdata[hit->material], hit, w, lane, options, out);
+    return true;
+}

@@ -1,0 +1,149 @@
+/*
+ * The film directive: pbrt's "rgb" film.
+ *
+ * What has no meaning here is refused with its place rather than dropped: sensors other
+ * than cie1931, white balance, a largest component. "diagonal" acts on realistic cameras
+ * only, in pbrt too, and those are refused by the camera; "savefp16" asks for less than
+ * the float images that are written.
+ */
+#include "scene/scene_film.h"
+#include "scene/scene.h"
+
+#include <string.h>
+
+enum { SIDE_MAX = 65536 };
+
+static bool read_size(const params *p, const char *name, int *out, GError **error)
+{
+    if (!params_integer(p, name, out, error))
+        return false;
+    if (*out >= 1 && *out <= SIDE_MAX)
+        return true;
+    error_at(error, params_find(p, name)->place, "%s must be 1..%d pixels, found %d",
+             name, SIDE_MAX, *out);
+    return false;
+}
+
+static bool read_number_above_zero(const params *p, const char *name, float *out,
+                                   GError **error)
+{
+    if (!params_float(p, name, out, error))
+        return false;
+    if (*out > 0.0f)
+        return true;
+    error_at(error, params_find(p, name)->place, "%s must be positive, found %g", name,
+             (double)*out);
+    return false;
+}
+
+static bool check_sensor(const params *p, GError **error)
+{
+    static const char *const sensors[] = {"cie1931", NULL};
+    int sensor = 0;
+    float kelvin = 0.0f;
+    if (!params_choice(p, "sensor", sensors, &sensor, error) ||
+        !params_float(p, "whitebalance", &kelvin, error))
+        return false;
+    if (fabsf(kelvin) > 0.0f) {
+        error_at(error, params_find(p, "whitebalance")->place,
+                 "white balance is not supported; \"whitebalance\" must be 0, found %g",
+                 (double)kelvin);
+        return false;
+    }
+    if (!params_has(p, "maxcomponentvalue"))
+        return true;
+    error_at(error, params_find(p, "maxcomponentvalue")->place,
+             "\"maxcomponentvalue\" is not supported: it would darken the picture");
+    return false;
+}
+
+/* Half a pixel inside, so that ceil(crop * size) gives the bounds back. */
+static bool read_pixel_bounds(const param *given, film_settings *film, GError **error)
+{
+    const int size[2] = {film->width, film->height};
+    bool fits = given->type == PARAM_INTEGER && given->n == 4;
+    for (int i = 0; i < 2 && fits; i++) {
+        int low = given->integers[2 * i], high = given->integers[2 * i + 1];
+        fits = low >= 0 && low < high && high <= size[i];
+        film->crop[2 * i] = fmaxf(0.0f, ((float)low - 0.5f) / (float)size[i]);
+        film->crop[2 * i + 1] = ((float)high - 0.5f) / (float)size[i];
+    }
+    if (!fits)
+        error_at(error, given->place,
+                 "\"pixelbounds\" needs four integers x0 x1 y0 y1 with 0 <= x0 < x1 <= "
+                 "%d and 0 <= y0 < y1 <= %d",
+                 size[0], size[1]);
+    return fits;
+}
+
+static bool read_crop_window(const param *given, film_settings *film, GError **error)
+{
+    bool fits = given->type == PARAM_FLOAT && given->n == 4;
+    for (int i = 0; i < 2 && fits; i++) {
+        float low = given->numbers[2 * i], high = given->numbers[2 * i + 1];
+        fits = low >= 0.0f && low < high && high <= 1.0f;
+        film->crop[2 * i] = low;
+        film->crop[2 * i + 1] = high;
+    }
+    if (!fits)
+        error_at(error, given->place,
+                 "\"cropwindow\" needs four numbers x0 x1 y0 y1 with 0 <= x0 < x1 <= 1 "
+                 "and 0 <= y0 < y1 <= 1");
+    return fits;
+}
+
+static bool read_crop(const params *p, film_settings *film, GError **error)
+{
+    const param *window = params_find(p, "cropwindow");
+    const param *bounds = params_find(p, "pixelbounds");
+    if (window && bounds) {
+        error_at(error, bounds->place,
+                 "give either \"cropwindow\" or \"pixelbounds\", not both");
+        return false;
+    }
+    if (bounds)
+        return read_pixel_bounds(bounds, film, error);
+    return !window || read_crop_window(window, film, error);
+}
+
+static bool read_film(const params *p, film_settings *film, GError **error)
+{
+    float diagonal = 35.0f;
+    bool save_half = false;
+    const char *filename = NULL;
+    if (!read_size(p, "xresolution", &film->width, error) ||
+        !read_size(p, "yresolution", &film->height, error) ||
+        !read_crop(p, film, error) || !check_sensor(p, error) ||
+        !read_number_above_zero(p, "iso", &film->iso, error) ||
+        !read_number_above_zero(p, "diagonal", &diagonal, error) ||
+        !params_bool(p, "savefp16", &save_half, error) ||
+        !params_string(p, "filename", &filename, error))
+        return false;
+    film->space = p->space ? p->space : color_space_srgb();
+    film->filename = g_strdup(filename);
+    return true;
+}
+
+film_settings film_default(void)
+{
+    return (film_settings){.width = 1280,
+                           .height = 720,
+                           .iso = 100.0f,
+                           .crop = {0.0f, 1.0f, 0.0f, 1.0f},
+                           .space = color_space_srgb()};
+}
+
+bool film_init(film_settings *film, const char *kind, const params *p, GError **error)
+{
+    if (strcmp(kind, "rgb") != 0) {
+        error_at(error, p->place, "film \"%s\" is not supported; known is rgb", kind);
+        return false;
+    }
+    film_settings read = film_default();
+    if (read_film(p, &read, error) && params_all_used(p, "film \"rgb\"", error)) {
+        *film = read;
+        return true;
+    }
+    g_free(read.filename);
+    return false;
+}

@@ -1,0 +1,53 @@
+/*
+ * The lights of a committed scene, asked as one: emission at a hit, the environment, and
+ * a light chosen by power with a direction to it.
+ */
+#include "scene/scene.h"
+
+spectrum scene_emitted(const scene *s, const surface_hit *hit, vec3 wo,
+                       const wavelengths *w)
+{
+    if (hit->light == NO_INDEX)
+        return spectrum_fill(0.0f);
+    const light *l = scene_light(s, hit->light);
+    return l->kind->radiance(l->self, hit, wo, w);
+}
+
+spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w)
+{
+    spectrum sum = spectrum_fill(0.0f);
+    for (int i = 0; i < s->n_environments; i++) {
+        const light *l = scene_light(s, s->environments[i]);
+        sum += l->kind->environment(l->self, d, w);
+    }
+    return sum;
+}
+
+bool scene_sample_light(const scene *s, const wavelengths *w, vec3 ref, float u_light,
+                        float u_primitive, vec2 u, int *index, light_sample *out)
+{
+    size_t i = distribution_sample(&s->light_power, &u_light);
+    const light *l = scene_light(s, (int)i);
+    *index = (int)i;
+    if (!l->kind->sample(l->self, w, ref, u_primitive, u, out))
+        return false;
+    out->pdf *= distribution_pdf(&s->light_power, i);
+    return out->pdf > 0.0f;
+}
+
+static float light_pdf(const scene *s, int i, vec3 ref, vec3 wi, const surface_hit *hit)
+{
+    const light *l = scene_light(s, i);
+    return distribution_pdf(&s->light_power, (size_t)i) *
+           l->kind->pdf(l->self, ref, wi, hit);
+}
+
+float scene_light_pdf(const scene *s, vec3 ref, vec3 wi, const surface_hit *hit)
+{
+    if (hit)
+        return hit->light == NO_INDEX ? 0.0f : light_pdf(s, hit->light, ref, wi, hit);
+    float sum = 0.0f;
+    for (int i = 0; i < s->n_environments; i++)
+        sum += light_pdf(s, s->environments[i], ref, wi, NULL);
+    return sum;
+}
