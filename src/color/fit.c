@@ -12,36 +12,59 @@
 #include <math.h>
 #include <string.h>
 
-enum { MAX_STEPS = 200 };
-#define MAX_COEFFICIENT 1e4 /* beyond, curves are steps that eight wavelengths miss */
+enum { MAX_STEPS = 100 };
+#define SETTLED 1e-6 /* relative gain of a step that is not worth another */
 
-/* The state at one set of coefficients: J^T J, J^T r, and the sum of squared errors. */
+typedef double lanes __attribute__((vector_size(32)));
+
+/* The state at one set of coefficients: the normal equations, and what is minimised. */
 typedef struct normal_equations {
     double a[3][3], b[3];
-    double error2, largest;
+    double objective, largest;
 } normal_equations;
 
-static normal_equations evaluate(const color_space *space, const double rgb[3],
-                                 const double c[3])
+static double sum_lanes(lanes v)
 {
-    double value[3] = {0}, slope[3][3] = {{0}};
-    for (int i = 0; i < FIT_N; i++) {
-        double t = 2.0 * i / (FIT_N - 1) - 1.0;
-        double p = (c[0] * t + c[1]) * t + c[2];
-        double s = 1.0 / sqrt(1.0 + p * p);
-        double r = 0.5 + 0.5 * p * s, d = 0.5 * s * s * s;
+    return (v[0] + v[1]) + (v[2] + v[3]);
+}
+
+/* RGB of the curve, and its derivatives by the coefficients. */
+static void integrate(const color_space *space, const double c[3], double value[3],
+                      double slope[3][3])
+{
+    lanes v[3] = {{0}}, s[3][3] = {{{0}}};
+    for (int i = 0; i < FIT_PADDED; i += 4) {
+        lanes t = {i, i + 1, i + 2, i + 3};
+        t = t * (2.0 / (FIT_N - 1)) - 1.0;
+        lanes p = (c[0] * t + c[1]) * t + c[2], root = 1.0 + p * p;
+        for (int k = 0; k < 4; k++)
+            root[k] = sqrt(root[k]);
+        lanes r = 0.5 + 0.5 * p / root, d = 0.5 / (root * root * root);
         for (int k = 0; k < 3; k++) {
-            double w = space->fit[k][i];
-            value[k] += w * r;
-            slope[k][0] += w * d * t * t;
-            slope[k][1] += w * d * t;
-            slope[k][2] += w * d;
+            lanes w;
+            memcpy(&w, &space->fit[k][i], sizeof w);
+            v[k] += w * r;
+            s[k][2] += w *= d;
+            s[k][1] += w *= t;
+            s[k][0] += w *= t;
         }
     }
+    for (int k = 0; k < 3; k++) {
+        value[k] = sum_lanes(v[k]);
+        for (int j = 0; j < 3; j++)
+            slope[k][j] = sum_lanes(s[k][j]);
+    }
+}
+
+static normal_equations evaluate(const color_space *space, const double rgb[3],
+                                 const double c[3], double stiffness)
+{
     normal_equations n = {0};
+    double value[3], slope[3][3];
+    integrate(space, c, value, slope);
     for (int k = 0; k < 3; k++) {
         double miss = rgb[k] - value[k];
-        n.error2 += miss * miss;
+        n.objective += miss * miss;
         n.largest = fmax(n.largest, fabs(miss));
         for (int i = 0; i < 3; i++) {
             n.b[i] += slope[k][i] * miss;
@@ -49,17 +72,21 @@ static normal_equations evaluate(const color_space *space, const double rgb[3],
                 n.a[i][j] += slope[k][i] * slope[k][j];
         }
     }
+    for (int i = 0; i < 2; i++) {
+        n.objective += stiffness * c[i] * c[i];
+        n.b[i] -= stiffness * c[i];
+        n.a[i][i] += stiffness;
+    }
     return n;
 }
 
 /* Solves (A + damping diag(A)) x = b by Cramer's rule. */
 static bool damped_step(const normal_equations *n, double damping, double x[3])
 {
-    double m[3][3];
+    double m[3][3], minor[3][3];
     memcpy(m, n->a, sizeof m);
     for (int i = 0; i < 3; i++)
         m[i][i] *= 1.0 + damping;
-    double minor[3][3];
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             int p = (i + 1) % 3, q = (i + 2) % 3, r = (j + 1) % 3, s = (j + 2) % 3;
@@ -73,27 +100,30 @@ static bool damped_step(const normal_equations *n, double damping, double x[3])
     return isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]);
 }
 
-double smooth_fit(const color_space *space, const double rgb[3], double c[3])
+double smooth_fit(const color_space *space, const double rgb[3], double stiffness,
+                  double c[3])
 {
-    double goal = 1e-7 * fmax(1e-3, fmax(rgb[0], fmax(rgb[1], rgb[2])));
+    const double brightness = fmax(1e-6, fmax(rgb[0], fmax(rgb[1], rgb[2])));
+    const double weight = stiffness * brightness * brightness;
     double damping = 1e-3;
-    normal_equations now = evaluate(space, rgb, c);
-    for (int step = 0; step < MAX_STEPS && now.largest > goal && damping < 1e12; step++) {
-        double delta[3], trial[3];
-        if (!damped_step(&now, damping, delta)) {
-            damping *= 10.0;
+    normal_equations now = evaluate(space, rgb, c, weight);
+    for (int step = 0; step < MAX_STEPS && damping < 1e9; step++) {
+        double trial[3];
+        bool finite = damped_step(&now, damping, trial);
+        for (int i = 0; i < 3; i++)
+            trial[i] += c[i];
+        normal_equations then = evaluate(space, rgb, trial, weight);
+        if (!finite || !(then.objective < now.objective)) {
+            damping = fmax(damping, 1e-6) * 8.0;
             continue;
         }
-        for (int i = 0; i < 3; i++)
-            trial[i] = fmin(fmax(c[i] + delta[i], -MAX_COEFFICIENT), MAX_COEFFICIENT);
-        normal_equations then = evaluate(space, rgb, trial);
-        if (then.error2 < now.error2) {
-            now = then;
-            memcpy(c, trial, sizeof trial);
-            damping *= 0.1;
-        } else {
-            damping *= 4.0;
-        }
+        bool settled = then.largest < 1e-8 * brightness ||
+                       then.objective > (1.0 - SETTLED) * now.objective;
+        now = then;
+        memcpy(c, trial, sizeof trial);
+        damping *= 0.05;
+        if (settled)
+            break;
     }
     return now.largest;
 }
@@ -117,7 +147,7 @@ void smooth_solve(const color_space *space, const float rgb[3], float coefficien
         target[i] = rgb[i] > 0.0f ? fmin((double)rgb[i], 1.0) : 0.0;
     c[2] = smooth_inverse((target[0] + target[1] + target[2]) / 3.0);
     if (!smooth_is_grey(rgb))
-        smooth_fit(space, target, c);
+        smooth_fit(space, target, SMOOTH_STIFFNESS, c);
     for (int i = 0; i < 3; i++)
         coefficients[i] = (float)c[i];
 }

@@ -1,9 +1,8 @@
 /*
  * Named spectra: one row per name, pbrt's names first where it has one.
  *
- * A name means what it says: pbrt's names whose figures we do not hold (metal-CuZn-eta)
- * are unknown here rather than filled with something similar. Where the same matter is
- * sold under two names (BK7 and its lead-free N-BK7) both are rows.
+ * The plain glass names are pbrt's and stand, as there, for SCHOTT's lead-free N- types.
+ * A name whose figures we do not hold is unknown, never filled with something similar.
  */
 #include "color/curve_make.h"
 #include "color/data/tables.h"
@@ -94,6 +93,27 @@ static curve *make_glass(const named_row *row)
     return NULL;
 }
 
+static double oxide(double nm, const void *data)
+{
+    const oxide_formula *o = data;
+    double square = nm * nm * 1e-6;
+    return sqrt(o->a + o->b / (square - o->c) + square * (o->d + square * o->e));
+}
+
+static curve *make_oxide_eta(const named_row *row)
+{
+    for (const oxide_formula *o = measured_oxides; o->name; o++)
+        if (strcmp(o->name, row->source) == 0)
+            return curve_from_function(oxide, o, false);
+    return NULL;
+}
+
+static curve *make_oxide_k(const named_row *row)
+{
+    (void)row;
+    return curve_constant(0.0f);
+}
+
 static double metal_eta(const metal_point *p)
 {
     return (double)p->eta;
@@ -138,6 +158,11 @@ static curve *make_k(const named_row *row)
     {                                                                                    \
         "metal-" symbol "-k", make_k, symbol, 0                                          \
     }
+#define OXIDE(formula)                                                                   \
+    {"metal-" formula "-eta", make_oxide_eta, formula, 0},                               \
+    {                                                                                    \
+        "metal-" formula "-k", make_oxide_k, formula, 0                                  \
+    }
 #define FLUORESCENT(number)                                                              \
     {                                                                                    \
         "stdillum-F" #number, make_fluorescent, NULL, number                             \
@@ -165,18 +190,28 @@ static const named_row rows[] = {
     METAL("Au"),
     METAL("Cr"),
     METAL("Cu"),
+    METAL("CuZn"),
     METAL("Fe"),
     METAL("Ni"),
     METAL("Pt"),
     METAL("Ti"),
+    OXIDE("MgO"),
+    OXIDE("TiO2"),
     {"glass-BK7", make_glass, "N-BK7", 0},
     {"glass-BAF10", make_glass, "N-BAF10", 0},
     {"glass-FK51A", make_glass, "N-FK51A", 0},
+    {"glass-LASF9", make_glass, "N-LASF9", 0},
+    {"glass-F5", make_glass, "N-SF5", 0},
+    {"glass-F10", make_glass, "N-SF10", 0},
+    {"glass-F11", make_glass, "N-SF11", 0},
     {"glass-N-BK7", make_glass, "N-BK7", 0},
     {"glass-N-BAF10", make_glass, "N-BAF10", 0},
     {"glass-N-FK51A", make_glass, "N-FK51A", 0},
     {"glass-N-LAK8", make_glass, "N-LAK8", 0},
+    {"glass-N-LASF9", make_glass, "N-LASF9", 0},
+    {"glass-N-SF5", make_glass, "N-SF5", 0},
     {"glass-N-SF6", make_glass, "N-SF6", 0},
+    {"glass-N-SF10", make_glass, "N-SF10", 0},
     {"glass-N-SF11", make_glass, "N-SF11", 0},
     {"glass-N-SF66", make_glass, "N-SF66", 0},
     {"glass-SiO2", make_glass, "SiO2", 0},

@@ -8,8 +8,10 @@
 
 enum {
     N_COLOR_SPACES = 4,
-    FIT_STEP = 5, /**< nm between the nodes of the fit's quadrature */
-    FIT_N = 69,   /**< nodes from LAMBDA_MIN to LAMBDA_MAX */
+    FIT_STEP = 2, /**< nm between the nodes of the fit's quadrature */
+    FIT_N = 171,  /**< nodes from LAMBDA_MIN to LAMBDA_MAX */
+    FIT_PADDED =
+        172, /**< FIT_N rounded up to whole vectors; the weights there are zero */
 };
 
 /** @brief The smooth curve is a quadratic in t = (nm - SMOOTH_CENTER) / SMOOTH_HALF. */
@@ -29,7 +31,7 @@ struct color_space {
     const float *illuminant; /**< GRID_N values, photometric integral of equal energy */
     /** Component k of a reflectance R under the illuminant is sum_i fit[k][i] R(node i).
      */
-    double fit[3][FIT_N];
+    double fit[3][FIT_PADDED];
     int index; /**< place in the list of spaces, 0..N_COLOR_SPACES-1 */
 };
 

@@ -9,6 +9,10 @@
  * 2007 (20 degrees C).
  * F. Peter, "Über Brechungsindizes und Absorptionskonstanten des Diamanten", 1923.
  * Malitson's and Peter's poles are published as wavelengths, hence the squares.
+ *
+ * Oxides: n² = a + b / (λ² - c) + d λ² + e λ⁴.
+ * R. E. Stephens, I. H. Malitson, "Index of refraction of magnesium oxide", 1952.
+ * J. R. Devore, "Refractive indices of rutile and sphalerite", 1951 (extraordinary ray).
  */
 #include "color/data/tables.h"
 
@@ -25,9 +29,18 @@ const glass_formula measured_glasses[] = {
     {"N-LAK8",
      {1.33183167, 0.546623206, 1.19084015},
      {0.00620023871, 0.0216465439, 82.5827736}},
+    {"N-LASF9",
+     {2.00029547, 0.298926886, 1.80691843},
+     {0.0121426017, 0.0538736236, 156.530829}},
+    {"N-SF5",
+     {1.52481889, 0.187085527, 1.42729015},
+     {0.011254756, 0.0588995392, 129.141675}},
     {"N-SF6",
      {1.77931763, 0.338149866, 2.08734474},
      {0.0133714182, 0.0617533621, 174.01759}},
+    {"N-SF10",
+     {1.62153902, 0.256287842, 1.64447552},
+     {0.0122241457, 0.0595736775, 147.468793}},
     {"N-SF11",
      {1.73759695, 0.313747346, 1.89878101},
      {0.013188707, 0.0623068142, 155.23629}},
@@ -41,5 +54,11 @@ const glass_formula measured_glasses[] = {
      {5.684027565e-1, 1.726177391e-1, 2.086189578e-2, 1.130748688e-1},
      {5.101829712e-3, 1.821153936e-2, 2.620722293e-2, 1.069792721e1}},
     {"diamond", {0.3306, 4.3356}, {0.1750 * 0.1750, 0.1060 * 0.1060}},
+    {0},
+};
+
+const oxide_formula measured_oxides[] = {
+    {"MgO", 2.956362, 0.02195770, 0.01428322, -0.01062387, -0.0000204968},
+    {"TiO2", 7.197, 0.3322, 0.0843, 0.0, 0.0},
     {0},
 };

@@ -6,6 +6,7 @@
  * Cu); "Optical constants of transition metals", 1974 (Cr, Fe, Ni, Ti).
  * A. D. Rakic, "Algorithm for the determination of intrinsic optical constants of metal
  * films: application to aluminum", 1995 (Al).
+ * M. R. Querry, "Optical constants", CRDC-CR-85034, 1985 (brass).
  * A. D. Rakic et al., "Optical properties of metallic films for vertical-cavity
  * optoelectronic devices", 1998 (Pt; every sixth figure of the model's table).
  */
@@ -63,6 +64,26 @@ static const metal_point cu[] = {
     {756.0f, 0.24f, 4.665f}, {821.1f, 0.26f, 5.18f},  {892.0f, 0.3f, 5.768f},
 };
 
+/* Querry 1985, 70 % copper, 30 % zinc */
+static const metal_point cuzn[] = {
+    {360.0f, 1.503f, 1.815f}, {370.0f, 1.497f, 1.818f}, {380.0f, 1.487f, 1.818f},
+    {390.0f, 1.471f, 1.813f}, {400.0f, 1.445f, 1.805f}, {410.0f, 1.405f, 1.794f},
+    {420.0f, 1.350f, 1.786f}, {430.0f, 1.278f, 1.784f}, {440.0f, 1.191f, 1.797f},
+    {450.0f, 1.094f, 1.829f}, {460.0f, 0.994f, 1.883f}, {470.0f, 0.900f, 1.957f},
+    {480.0f, 0.816f, 2.046f}, {490.0f, 0.745f, 2.145f}, {500.0f, 0.686f, 2.250f},
+    {510.0f, 0.639f, 2.358f}, {520.0f, 0.602f, 2.464f}, {530.0f, 0.573f, 2.568f},
+    {540.0f, 0.549f, 2.668f}, {550.0f, 0.527f, 2.765f}, {560.0f, 0.505f, 2.860f},
+    {570.0f, 0.484f, 2.958f}, {580.0f, 0.468f, 3.059f}, {590.0f, 0.460f, 3.159f},
+    {600.0f, 0.450f, 3.253f}, {610.0f, 0.452f, 3.345f}, {620.0f, 0.449f, 3.434f},
+    {630.0f, 0.445f, 3.522f}, {640.0f, 0.444f, 3.609f}, {650.0f, 0.444f, 3.695f},
+    {660.0f, 0.445f, 3.778f}, {670.0f, 0.444f, 3.860f}, {680.0f, 0.444f, 3.943f},
+    {690.0f, 0.445f, 4.025f}, {700.0f, 0.446f, 4.106f}, {710.0f, 0.448f, 4.186f},
+    {720.0f, 0.450f, 4.266f}, {730.0f, 0.452f, 4.346f}, {740.0f, 0.455f, 4.424f},
+    {750.0f, 0.457f, 4.501f}, {760.0f, 0.458f, 4.579f}, {770.0f, 0.460f, 4.657f},
+    {780.0f, 0.464f, 4.737f}, {790.0f, 0.469f, 4.814f}, {800.0f, 0.473f, 4.890f},
+    {810.0f, 0.478f, 4.965f}, {820.0f, 0.481f, 5.039f}, {830.0f, 0.483f, 5.115f},
+};
+
 /* Johnson & Christy 1974 */
 static const metal_point fe[] = {
     {354.0f, 1.93f, 2.35f}, {368.0f, 2.02f, 2.43f}, {381.0f, 2.12f, 2.5f},
@@ -111,9 +132,15 @@ static const metal_point ti[] = {
 };
 
 const metal_table measured_metals[] = {
-    {"Ag", ag, sizeof ag / sizeof *ag}, {"Al", al, sizeof al / sizeof *al},
-    {"Au", au, sizeof au / sizeof *au}, {"Cr", cr, sizeof cr / sizeof *cr},
-    {"Cu", cu, sizeof cu / sizeof *cu}, {"Fe", fe, sizeof fe / sizeof *fe},
-    {"Ni", ni, sizeof ni / sizeof *ni}, {"Pt", pt, sizeof pt / sizeof *pt},
-    {"Ti", ti, sizeof ti / sizeof *ti}, {0},
+    {"Ag", ag, sizeof ag / sizeof *ag},
+    {"Al", al, sizeof al / sizeof *al},
+    {"Au", au, sizeof au / sizeof *au},
+    {"Cr", cr, sizeof cr / sizeof *cr},
+    {"Cu", cu, sizeof cu / sizeof *cu},
+    {"CuZn", cuzn, sizeof cuzn / sizeof *cuzn},
+    {"Fe", fe, sizeof fe / sizeof *fe},
+    {"Ni", ni, sizeof ni / sizeof *ni},
+    {"Pt", pt, sizeof pt / sizeof *pt},
+    {"Ti", ti, sizeof ti / sizeof *ti},
+    {0},
 };

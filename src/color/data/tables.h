@@ -44,3 +44,11 @@ typedef struct glass_formula {
 } glass_formula;
 
 extern const glass_formula measured_glasses[];
+
+/** @brief n² = a + b / (λ² - c) + d λ² + e λ⁴, λ in µm; clear over the visible. */
+typedef struct oxide_formula {
+    const char *name; /**< NULL ends the list */
+    double a, b, c, d, e;
+} oxide_formula;
+
+extern const oxide_formula measured_oxides[];
