@@ -6,111 +6,11 @@
  * Statistical checks: each χ² must have p > 1e-8, so that a run of all of them fails by
  * chance with p < 1e-6; means are compared within 5.5 standard errors. Seeds are fixed.
  */
+#include "bsdf_zoo.h"
 #include "chi2.h"
-#include "scene/bsdf_models.h"
 #include "scene/fresnel.h"
 
 #define TINY_P 1e-8
-
-/* A bsdf to be tested. */
-typedef struct model {
-    const char *name;
-    void (*make)(bsdf *b);
-    double least_albedo; /* what it must send back at least, at 45 degrees */
-} model;
-
-static const spectrum RAMP = {0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.9f};
-static const spectrum FLINT = {1.76f, 1.74f, 1.73f, 1.72f, 1.71f, 1.705f, 1.7f, 1.695f};
-
-static spectrum gold_eta(void)
-{
-    return (spectrum){1.66f, 1.64f, 1.41f, 0.75f, 0.4f, 0.22f, 0.16f, 0.14f};
-}
-
-static spectrum gold_k(void)
-{
-    return (spectrum){1.95f, 1.92f, 1.82f, 2.0f, 2.5f, 2.97f, 3.4f, 3.9f};
-}
-
-static void make_diffuse(bsdf *b)
-{
-    bsdf_make_diffuse(b, RAMP);
-}
-
-static void make_mirror(bsdf *b)
-{
-    bsdf_make_conductor(b, gold_eta(), gold_k(), (ggx){0});
-}
-
-static void make_satin_gold(bsdf *b)
-{
-    bsdf_make_conductor(b, gold_eta(), gold_k(), ggx_make(0.1f, 0.1f));
-}
-
-static void make_brushed_gold(bsdf *b)
-{
-    bsdf_make_conductor(b, gold_eta(), gold_k(), ggx_make(0.5f, 0.12f));
-}
-
-static void make_matt_gold(bsdf *b)
-{
-    bsdf_make_conductor(b, gold_eta(), gold_k(), ggx_make(0.8f, 0.8f));
-}
-
-static void make_glass(bsdf *b)
-{
-    bsdf_make_dielectric(b, spectrum_fill(1.5f), false, (ggx){0});
-}
-
-static void make_flint(bsdf *b)
-{
-    bsdf_make_dielectric(b, FLINT, true, (ggx){0});
-}
-
-static void make_frosted_glass(bsdf *b)
-{
-    bsdf_make_dielectric(b, spectrum_fill(1.5f), false, ggx_make(0.15f, 0.15f));
-}
-
-static void make_rough_glass(bsdf *b)
-{
-    bsdf_make_dielectric(b, spectrum_fill(1.5f), false, ggx_make(0.6f, 0.35f));
-}
-
-static void make_rough_flint(bsdf *b)
-{
-    bsdf_make_dielectric(b, FLINT, true, ggx_make(0.2f, 0.2f));
-}
-
-static void make_air_bubble(bsdf *b)
-{
-    bsdf_make_dielectric(b, spectrum_fill(1.0f / 1.33f), false, ggx_make(0.3f, 0.3f));
-}
-
-static void make_refractor(bsdf *b)
-{
-    bsdf_make_refractor(b, FLINT, true);
-}
-
-static void make_window(bsdf *b)
-{
-    bsdf_make_thin_dielectric(b, FLINT);
-}
-
-static void make_clear(bsdf *b)
-{
-    bsdf_make_clear(b);
-}
-
-static const model MODELS[] = {
-    {"diffuse", make_diffuse, 0.2},         {"mirror", make_mirror, 0.3},
-    {"satin gold", make_satin_gold, 0.3},   {"brushed gold", make_brushed_gold, 0.3},
-    {"matt gold", make_matt_gold, 0.2},     {"glass", make_glass, 0.9999},
-    {"flint", make_flint, 0.9999},          {"frosted glass", make_frosted_glass, 0.98},
-    {"rough glass", make_rough_glass, 0.9}, {"rough flint", make_rough_flint, 0.97},
-    {"air bubble", make_air_bubble, 0.75},  {"refractor", make_refractor, 0.9999},
-    {"window", make_window, 0.9999},        {"clear", make_clear, 0.9999},
-};
 
 static const unsigned MASKS[] = {
     LOBE_ALL,
@@ -490,6 +390,27 @@ static void test_refractor(void)
     g_assert_cmpfloat(s.weight[2], ==, 1.0f);
 }
 
+/* The highlight reflects its share at normal incidence and never more. */
+static void test_phong_energy(void)
+{
+    frame up = frame_from_normal(vec3_make(0, 0, 1));
+    for (int k = 0; k < 5; k++) {
+        float n = (float[]){0, 3, 20, 300, 10000}[k];
+        bsdf b = {.lane = ALL_LANES, .shading = up, .n_geom = up.n};
+        bsdf_make_phong(&b, spectrum_fill(0.5f), spectrum_fill(1.0f), n);
+        for (int i = 0; i < 10; i++) {
+            float z = 1.0f - (float)i / 10.0f;
+            drawing d = {
+                .b = b, .wo = vec3_make(sqrtf(1.0f - z * z), 0, z), .mask = LOBE_ALL};
+            float error;
+            float all = mean_weight(&d, 20000, &error)[0];
+            g_assert_cmpfloat(all, <, 1.0f + 5.5f * error + 1e-3f);
+            if (i == 0)
+                g_assert_cmpfloat(fabsf(all - 1.0f), <, 5.5f * error + 1e-3f);
+        }
+    }
+}
+
 /* Fresnel at normal incidence, at Brewster's angle and of a metal against the formulas
  * for these cases. */
 static void test_fresnel(void)
@@ -525,5 +446,9 @@ int main(int argc, char **argv)
     g_test_add_func("/bsdf/modes", test_modes);
     g_test_add_func("/bsdf/disagreeing-normals", test_disagreeing_normals);
     g_test_add_func("/bsdf/refractor", test_refractor);
-    return g_test_run();
+    g_test_add_func("/bsdf/phong-energy", test_phong_energy);
+    zoo_open();
+    int failed = g_test_run();
+    zoo_close();
+    return failed;
 }

@@ -6,6 +6,8 @@
 #include "scene/material.h"
 #include "scene/scene.h"
 
+#include <string.h>
+
 static const source_place here = {"m.pbrt", 4, 9};
 static const bsdf_options plain = {0}, deterministic = {.deterministic = true};
 static const surface_hit flat = {.n = {0, 0, 1, 0},
@@ -144,7 +146,8 @@ static unsigned class_of(const char *kind, float roughness)
     add_float(p, "roughness", roughness);
     material *m = make(kind, p);
     bsdf b = at(m, &plain);
-    g_assert_cmpint(material_casts_caustics(m), ==, !(b.lobes & LOBE_DIFFUSE));
+    g_assert_cmpint(material_casts_caustics(m), ==,
+                    (b.lobes & (LOBE_SPECULAR | LOBE_GLOSSY)) != 0);
     material_free(m);
     return b.lobes & ~(unsigned)LOBE_ANY_SIDE;
 }
@@ -246,6 +249,83 @@ static void test_thin_pane_keeps_direction(void)
     material_free(m);
 }
 
+static float coated_albedo(params *p)
+{
+    material *m = make("coateddiffuse", p);
+    bsdf b = at(m, &plain);
+    float albedo =
+        bsdf_albedo(&b, vec3_make(0.6f, 0, 0.8f), LOBE_DIFFUSE | LOBE_ANY_SIDE)[0];
+    material_free(m);
+    return albedo;
+}
+
+static params *white(const char *name, float value)
+{
+    params *p = list();
+    float ones[4] = {300, 1, 900, 1};
+    g_assert_true(
+        params_add_numbers(p, here, PARAM_SPECTRUM, "reflectance", ones, 4, NULL));
+    if (strcmp(name, "maxdepth") == 0)
+        g_assert_true(params_add_integers(p, here, PARAM_INTEGER, name,
+                                          (int[]){(int)value}, 1, NULL));
+    else
+        add_float(p, name, value);
+    return p;
+}
+
+/* Each parameter changes what is seen, in the direction that it should. */
+static void test_coated_diffuse(void)
+{
+    float usual = coated_albedo(white("thickness", 0.01f));
+    g_assert_cmpfloat(coated_albedo(white("thickness", 0.1f)), <, usual - 0.05f);
+    g_assert_cmpfloat(coated_albedo(white("maxdepth", 1.0f)), <, usual - 0.3f);
+    g_assert_cmpfloat(coated_albedo(white("maxdepth", 100.0f)), >, usual + 0.01f);
+    g_assert_cmpfloat(coated_albedo(white("eta", 1.1f)), >, usual + 0.01f);
+    material *m = make("coateddiffuse", list());
+    g_assert_true(material_casts_caustics(m));
+    bsdf b = at(m, &plain);
+    g_assert_cmpuint(b.lobes, ==, LOBE_SPECULAR | LOBE_DIFFUSE | LOBE_REFLECTION);
+    g_assert_false(b.lambertian);
+    b = at(m, &deterministic);
+    g_assert_true(b.lambertian);
+    material_free(m);
+    g_assert_cmpuint(class_of("coateddiffuse", 0.04f), ==, LOBE_GLOSSY | LOBE_DIFFUSE);
+    params *p = list();
+    add_rgb(p, "albedo", 0.1f, 0.1f, 0.1f);
+    refuse("coateddiffuse", p,
+           "m.pbrt:4:9: parameter 'albedo': a coat that scatters is not supported, "
+           "expected 0");
+    refuse("coateddiffuse", white("maxdepth", 0.0f),
+           "m.pbrt:4:9: parameter 'maxdepth': expected a number >= 1, found 0");
+    refuse("coateddiffuse", white("thickness", -1.0f),
+           "m.pbrt:4:9: parameter 'thickness': expected a number >= 0, found -1");
+}
+
+static unsigned phong_lobes(float exponent, bool *caustics)
+{
+    params *p = list();
+    add_float(p, "exponent", exponent);
+    material *m = make("phong", p);
+    bsdf b = at(m, &plain);
+    *caustics = material_casts_caustics(m);
+    material_free(m);
+    return b.lobes;
+}
+
+static void test_phong(void)
+{
+    bool caustics;
+    g_assert_cmpuint(phong_lobes(21.0f, &caustics), ==,
+                     LOBE_GLOSSY | LOBE_DIFFUSE | LOBE_REFLECTION);
+    g_assert_true(caustics);
+    g_assert_cmpuint(phong_lobes(20.0f, &caustics), ==, LOBE_DIFFUSE | LOBE_REFLECTION);
+    g_assert_false(caustics);
+    params *p = list();
+    add_float(p, "exponent", -1.0f);
+    refuse("phong", p,
+           "m.pbrt:4:9: parameter 'exponent': expected a number in 0..1e+06, found -1");
+}
+
 static void test_textured_inputs(void)
 {
     scene s = empty_scene();
@@ -337,6 +417,8 @@ int main(int argc, char **argv)
     g_test_add_func("/material/dispersion-by-eta", test_dispersion_by_eta);
     g_test_add_func("/material/deterministic", test_deterministic);
     g_test_add_func("/material/thin-pane", test_thin_pane_keeps_direction);
+    g_test_add_func("/material/coated-diffuse", test_coated_diffuse);
+    g_test_add_func("/material/phong", test_phong);
     g_test_add_func("/material/textured-inputs", test_textured_inputs);
     g_test_add_func("/material/refusals", test_refusals);
     return g_test_run();

@@ -157,7 +157,8 @@ static bool rough_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned 
     return s.pdf > 0.0f;
 }
 
-void ggx_shares(ggx g, vec3 wo, float eta, float *reflected, float *transmitted)
+/* Share of light from o (above) that is reflected and transmitted, by 64 points. */
+static void facet_shares(ggx g, vec3 wo, float eta, float *reflected, float *transmitted)
 {
     enum { N = 8 };
     *reflected = *transmitted = 0.0f;
@@ -181,7 +182,7 @@ static spectrum rough_albedo(const bsdf *b, vec3 wo, unsigned lobes)
     int n = d->disperses ? N_LANES : 1;
     for (int i = 0; i < n; i++) {
         float r, t;
-        ggx_shares(d->roughness, o, eta[i], &r, &t);
+        facet_shares(d->roughness, o, eta[i], &r, &t);
         out[i] = (lobe_wanted(lobes, kind | LOBE_REFLECTION) ? r : 0.0f) +
                  (lobe_wanted(lobes, kind | LOBE_TRANSMISSION) ? t : 0.0f);
     }

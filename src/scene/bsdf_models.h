@@ -7,6 +7,7 @@
 #pragma once
 
 #include "scene/bsdf.h"
+#include "scene/material_coat.h"
 #include "scene/microfacet.h"
 
 /** @brief True if the lobe (one class, one side) is among those of a mask. */
@@ -63,6 +64,13 @@ void bsdf_make_thin_dielectric(bsdf *b, spectrum eta);
 /** @brief A thin plate that lets everything pass. */
 void bsdf_make_clear(bsdf *b);
 
-/** @brief Share of light that a rough boundary seen from wo (z > 0) reflects and
- * transmits, by a 64-point rule over the visible normals: for choices and previews. */
-void ggx_shares(ggx g, vec3 wo, float eta, float *reflected, float *transmitted);
+/** @brief A diffuse base under a dielectric coat that may absorb.
+ *  @param rho albedo of the base
+ *  @param eta index of the coat over that outside, within the table's range
+ *  @param table of the coat, borrowed
+ *  @param bounces off the base, at most, before light is given up */
+void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, ggx roughness,
+                      const coat_table *table, int bounces);
+
+/** @brief Normalised Blinn-Phong; where reflectance + specular > 1 the former is cut. */
+void bsdf_make_phong(bsdf *b, spectrum reflectance, spectrum specular, float exponent);

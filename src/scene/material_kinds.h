@@ -9,3 +9,5 @@ extern const material_kind material_diffuse;
 extern const material_kind material_conductor;
 extern const material_kind material_dielectric;
 extern const material_kind material_thin_dielectric;
+extern const material_kind material_coated_diffuse;
+extern const material_kind material_phong;

@@ -1,0 +1,38 @@
+/*
+ * What a dielectric coat does to light on its way to the base and back, tabulated when a
+ * material is made.
+ *
+ *   above   μ ──┬── reflected(μ)              η, GGX alpha, thickness
+ *   coat        └── crossing(μ) ──► base      absorbed on the way: exp(-thickness / cos)
+ *               base ──► internal ──► base, or ──► escape ──► above
+ *
+ * All are for light of one wavelength; internal and escape are for light that leaves the
+ * base by Lambert's law.
+ */
+#pragma once
+
+#include "scene/microfacet.h"
+
+#include <stddef.h>
+
+/** @brief Ranges of the coat's numbers; min = max if constant. */
+typedef struct coat_range {
+    float alpha_min, alpha_max;
+    float eta_min, eta_max; /**< coat over outside */
+    float thickness;        /**< optical depth of the coat, straight through */
+} coat_range;
+
+typedef struct coat_table coat_table;
+
+coat_table *coat_table_new(const coat_range *range);
+void coat_table_free(coat_table *table);
+
+/** @brief Share of light from cosine mu reflected by the coat's facets. */
+float coat_reflected(const coat_table *table, float alpha, float eta, float mu);
+/** @brief Share of light from cosine mu that reaches the base. By reciprocity it is also
+ * η² times the radiance that leaves towards mu for unit radiance leaving the base. */
+float coat_crossing(const coat_table *table, float alpha, float eta, float mu);
+/** @brief Share of light leaving the base that the coat sends back to it. */
+float coat_internal(const coat_table *table, float alpha, float eta);
+/** @brief Share of light leaving the base that gets out. */
+float coat_escape(const coat_table *table, float alpha, float eta);
