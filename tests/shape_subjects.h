@@ -68,6 +68,17 @@ static inline shape *make(const subject *s, const shape_place *at)
     return made;
 }
 
+/* The square -1..1 in the plane z = 0, front up. */
+static inline shape *unit_square(const shape_place *at)
+{
+    static const float points[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+    static const int indices[6] = {0, 1, 2, 0, 2, 3};
+    g_autoptr(params) p = params_new(here, "/", NULL);
+    params_add_numbers(p, here, PARAM_POINT3, "P", points, 12, NULL);
+    params_add_integers(p, here, PARAM_INTEGER, "indices", indices, 6, NULL);
+    return shape_new("trianglemesh", p, at, NULL);
+}
+
 static inline accel *accel_of(shape *const *shapes, size_t n)
 {
     GError *error = NULL;

@@ -36,16 +36,6 @@ static void add_point(params *p, const char *name, float x, float y, float z)
     params_add_numbers(p, here, PARAM_POINT3, name, numbers, 3, NULL);
 }
 
-static shape *unit_square(const shape_place *at)
-{
-    static const float points[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
-    static const int indices[6] = {0, 1, 2, 0, 2, 3};
-    g_autoptr(params) p = params_new(here, "/", color_space_srgb());
-    params_add_numbers(p, here, PARAM_POINT3, "P", points, 12, NULL);
-    params_add_integers(p, here, PARAM_INTEGER, "indices", indices, 6, NULL);
-    return shape_new("trianglemesh", p, at, NULL);
-}
-
 static lamp make_lamp(const char *kind, const params *p, shape *on)
 {
     GError *error = NULL;

@@ -327,18 +327,13 @@ static void test_offset_rays_leave_spheres(void)
 /* A large slanted square through the origin: hits have tiny coordinates there. */
 static void test_offset_rays_leave_squares(void)
 {
-    static const float points[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
-    static const int indices[6] = {0, 1, 2, 0, 2, 3};
     for (int e = -3; e <= 3; e++) {
         for (int turn = 0; turn < 4; turn++) {
             double scale = pow(10, e);
             transform size = transform_scale(scale, scale, scale);
             transform rotate = transform_rotate(17.0 + 31.0 * turn, turn, 1, 0.3);
             shape_place at = {.to_world = transform_multiply(&size, &rotate)};
-            g_autoptr(params) p = params_new(here, "/", NULL);
-            params_add_numbers(p, here, PARAM_POINT3, "P", points, 12, NULL);
-            params_add_integers(p, here, PARAM_INTEGER, "indices", indices, 6, NULL);
-            shape *s = shape_new("trianglemesh", p, &at, NULL);
+            shape *s = unit_square(&at);
             accel *a = accel_of(&s, 1);
             for (uint32_t n = 0; n < 2000; n++) {
                 sampler random = sampler_make(81, n);

@@ -140,7 +140,7 @@ static double solid_angle(const shape *s, vec3 ref)
         vec2 u = sampler_2d(&random);
         if (!shape_sample_toward(s, ref, sampler_1d(&random), u, &at))
             continue;
-        surface_hit hit = {.p = at.p, .n_geom = at.n};
+        surface_hit hit = {.p = at.p, .n_geom = at.n, .primitive = at.primitive};
         g_assert_cmpfloat(fabsf(shape_pdf_toward(s, ref, &hit) / at.pdf - 1), <, 1e-3);
         sum += 1 / (double)at.pdf;
     }
@@ -167,6 +167,14 @@ static void test_solid_angles(void)
     g_assert_cmpfloat(
         fabs(solid_angle(sphere, vec3_make(0.5f, 0.5f, 0)) / (4 * G_PI) - 1), <, 1e-3);
     shape_free(sphere);
+    shape *square_shape = unit_square(&at);
+    for (int i = 0; i < 4; i++) { /* close: each triangle half the view; far: tiny */
+        const double height[4] = {0.05, 0.5, 3, 200};
+        expected = 4 * asin(1 / (1 + height[i] * height[i]));
+        vec3 ref = vec3_make(0, 0, (float)height[i]);
+        g_assert_cmpfloat(fabs(solid_angle(square_shape, ref) / expected - 1), <, 1e-3);
+    }
+    shape_free(square_shape);
 }
 
 /* Toward a sphere, a ray in the sampled direction first meets the sampled point. */

@@ -13,8 +13,12 @@
  * ray that starts on it is bounded here per hit (field error), since the coordinates of
  * the hit alone do not tell: a large slanted triangle through the origin has hits with
  * tiny coordinates.
+ *
+ * Toward a point a triangle is chosen by area, then sampled uniformly by solid angle; one
+ * that looks tiny or fills nearly the hemisphere by area, where the former loses digits.
  */
 #include "base/memory.h"
+#include "scene/mesh_triangle.h"
 #include "scene/shape_kinds.h"
 
 #include "math/distribution.h"
@@ -30,12 +34,6 @@ typedef struct mesh_shape {
     distribution areas;
 } mesh_shape;
 
-typedef struct triangle {
-    uint32_t vertex[3];
-    double p[3][3];
-    double cross[3]; /* (p1 - p0) x (p2 - p0): twice the area, along the normal */
-} triangle;
-
 void mesh_clear(mesh *m)
 {
     big_free(m->positions);
@@ -44,24 +42,6 @@ void mesh_clear(mesh *m)
     big_free(m->uvs);
     big_free(m->indices);
     *m = (mesh){0};
-}
-
-static void get_triangle(const mesh *m, size_t primitive, triangle *t)
-{
-    for (int i = 0; i < 3; i++) {
-        t->vertex[i] = m->indices[3 * primitive + (size_t)i];
-        for (int k = 0; k < 3; k++)
-            t->p[i][k] = (double)m->positions[3 * (size_t)t->vertex[i] + (size_t)k];
-    }
-    double a[3], b[3];
-    for (int k = 0; k < 3; k++) {
-        a[k] = t->p[1][k] - t->p[0][k];
-        b[k] = t->p[2][k] - t->p[0][k];
-    }
-    for (int k = 0; k < 3; k++) {
-        int i = (k + 1) % 3, j = (k + 2) % 3;
-        t->cross[k] = a[i] * b[j] - a[j] * b[i];
-    }
 }
 
 static double length_double(const double v[3])
@@ -140,8 +120,8 @@ static bool init_areas(mesh_shape *s, GError **error)
         return false;
     for (size_t i = 0; i < s->m.n_triangles; i++) {
         triangle t;
-        get_triangle(&s->m, i, &t);
-        areas[i] = (float)(0.5 * length_double(t.cross));
+        triangle_get(&s->m, i, &t);
+        areas[i] = (float)triangle_area(&t);
     }
     bool done = distribution_init(&s->areas, areas, s->m.n_triangles, error);
     big_free(areas);
@@ -369,7 +349,7 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     (void)r;
     const mesh_shape *s = self;
     triangle t;
-    get_triangle(&s->m, hit->primitive, &t);
+    triangle_get(&s->m, hit->primitive, &t);
     const double b[3] = {1.0 - (double)u - (double)v, (double)u, (double)v};
     vec2 uv[3];
     corner_uvs(&s->m, &t, uv);
@@ -382,9 +362,37 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     hit->error = rounding_error(&t, hit->p, hit->n_geom);
 }
 
+/* Solid angles between which Arvo's formula is used. */
+static bool is_sampled_by_angle(double solid_angle)
+{
+    return solid_angle > 3e-4 && solid_angle < 6.0;
+}
+
 static float area(const void *self)
 {
     return (float)distribution_total(&((const mesh_shape *)self)->areas);
+}
+
+static shape_sample sample_at(const mesh_shape *s, size_t primitive, const triangle *t,
+                              const double b[3])
+{
+    vec2 uv[3];
+    corner_uvs(&s->m, t, uv);
+    vec3 shading, p = point_of(t, b), n = normal_of(s, t, b, &shading);
+    return (shape_sample){.p = p,
+                          .n = n,
+                          .uv = interpolate_uv(uv, b),
+                          .primitive = (uint32_t)primitive,
+                          .pdf = 1.0f / area(s),
+                          .error = rounding_error(t, p, n)};
+}
+
+static void weights_by_area(vec2 u, double b[3])
+{
+    vec2 w = warp_triangle(u);
+    b[0] = 1.0 - (double)w.x - (double)w.y;
+    b[1] = (double)w.x;
+    b[2] = (double)w.y;
 }
 
 static shape_sample sample_area(const void *self, float u_primitive, vec2 u)
@@ -392,18 +400,50 @@ static shape_sample sample_area(const void *self, float u_primitive, vec2 u)
     const mesh_shape *s = self;
     size_t primitive = distribution_sample(&s->areas, &u_primitive);
     triangle t;
-    get_triangle(&s->m, primitive, &t);
-    vec2 w = warp_triangle(u);
-    const double b[3] = {1.0 - (double)w.x - (double)w.y, (double)w.x, (double)w.y};
-    vec2 uv[3];
-    corner_uvs(&s->m, &t, uv);
-    vec3 shading, p = point_of(&t, b), n = normal_of(s, &t, b, &shading);
-    return (shape_sample){.p = p,
-                          .n = n,
-                          .uv = interpolate_uv(uv, b),
-                          .primitive = (uint32_t)primitive,
-                          .pdf = 1.0f / area(self),
-                          .error = rounding_error(&t, p, n)};
+    triangle_get(&s->m, primitive, &t);
+    double b[3];
+    weights_by_area(u, b);
+    return sample_at(s, primitive, &t, b);
+}
+
+/* Per solid angle at ref, of a point of the triangle, as sample_toward chooses it. */
+static float pdf_of(const mesh_shape *s, const triangle *t, double solid_angle, vec3 ref,
+                    vec3 p, vec3 n)
+{
+    double pdf = 1.0 / distribution_total(&s->areas);
+    if (is_sampled_by_angle(solid_angle)) {
+        pdf *= triangle_area(t) / solid_angle;
+    } else {
+        vec3 d = p - ref;
+        float distance2 = length3_2(d);
+        pdf *= (double)(distance2 * sqrtf(distance2) / fabsf(dot3(n, d)));
+    }
+    return isfinite(pdf) ? (float)pdf : 0.0f;
+}
+
+static bool sample_toward(const void *self, vec3 ref, float u_primitive, vec2 u,
+                          shape_sample *out)
+{
+    const mesh_shape *s = self;
+    size_t primitive = distribution_sample(&s->areas, &u_primitive);
+    triangle t;
+    triangle_get(&s->m, primitive, &t);
+    double b[3], solid_angle = triangle_solid_angle(&t, ref);
+    if (is_sampled_by_angle(solid_angle))
+        triangle_sample_solid_angle(&t, ref, u, b);
+    else
+        weights_by_area(u, b);
+    *out = sample_at(s, primitive, &t, b);
+    out->pdf = pdf_of(s, &t, solid_angle, ref, out->p, out->n);
+    return out->pdf > 0.0f;
+}
+
+static float pdf_toward(const void *self, vec3 ref, const surface_hit *hit)
+{
+    const mesh_shape *s = self;
+    triangle t;
+    triangle_get(&s->m, hit->primitive, &t);
+    return pdf_of(s, &t, triangle_solid_angle(&t, ref), ref, hit->p, hit->n_geom);
 }
 
 const shape_kind mesh_kind = {
@@ -415,4 +455,6 @@ const shape_kind mesh_kind = {
     .fill_hit = fill_hit,
     .area = area,
     .sample_area = sample_area,
+    .sample_toward = sample_toward,
+    .pdf_toward = pdf_toward,
 };
