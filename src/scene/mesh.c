@@ -44,11 +44,6 @@ void mesh_clear(mesh *m)
     *m = (mesh){0};
 }
 
-static double length_double(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* ---- Building ---- */
 
 static bool check_numbers(const float *numbers, size_t n, size_t width, const char *what,
@@ -275,10 +270,7 @@ static vec3 interpolate3(const float *values, const triangle *t, const double b[
 
 static vec3 point_of(const triangle *t, const double b[3])
 {
-    vec3 p = {0};
-    for (int k = 0; k < 3; k++)
-        p[k] = (float)(b[0] * t->p[0][k] + b[1] * t->p[1][k] + b[2] * t->p[2][k]);
-    return p;
+    return dvec3_to_float(b[0] * t->p[0] + b[1] * t->p[1] + b[2] * t->p[2]);
 }
 
 /* The true normal, turned to the outside; *shading is the interpolated one. Degenerate
@@ -286,10 +278,10 @@ static vec3 point_of(const triangle *t, const double b[3])
 static vec3 normal_of(const mesh_shape *s, const triangle *t, const double b[3],
                       vec3 *shading)
 {
-    double length = length_double(t->cross);
+    double length = dvec3_length(t->cross);
     vec3 n = vec3_make(0.0f, 0.0f, 1.0f);
-    for (int k = 0; k < 3 && length > 0.0; k++)
-        n[k] = (float)(t->cross[k] / length);
+    if (length > 0.0)
+        n = dvec3_to_float(t->cross / length);
     if (!s->m.normals)
         return *shading = s->flip ? -n : n;
     vec3 interpolated = normalize3(interpolate3(s->m.normals, t, b));
@@ -306,26 +298,20 @@ static void corner_uvs(const mesh *m, const triangle *t, vec2 uv[3])
 
 static vec2 interpolate_uv(const vec2 uv[3], const double b[3])
 {
-    return (vec2){
-        (float)(b[0] * (double)uv[0].x + b[1] * (double)uv[1].x + b[2] * (double)uv[2].x),
-        (float)(b[0] * (double)uv[0].y + b[1] * (double)uv[1].y + b[2] * (double)uv[2].y),
-    };
+    float b0 = (float)b[0], b1 = (float)b[1], b2 = (float)b[2];
+    return (vec2){b0 * uv[0].x + b1 * uv[1].x + b2 * uv[2].x,
+                  b0 * uv[0].y + b1 * uv[1].y + b2 * uv[2].y};
 }
 
 /* dp/du from two edges and their differences in uv; zero if uv does not tell. */
 static vec3 tangent_of(const triangle *t, const vec2 uv[3])
 {
-    double du1 = (double)uv[1].x - (double)uv[0].x,
-           dv1 = (double)uv[1].y - (double)uv[0].y;
-    double du2 = (double)uv[2].x - (double)uv[0].x,
-           dv2 = (double)uv[2].y - (double)uv[0].y;
-    double determinant = du1 * dv2 - dv1 * du2;
-    vec3 dpdu = {0};
-    for (int k = 0; k < 3; k++) {
-        double edge1 = t->p[1][k] - t->p[0][k], edge2 = t->p[2][k] - t->p[0][k];
-        dpdu[k] = (float)((dv2 * edge1 - dv1 * edge2) / determinant);
-    }
-    return finite3(dpdu) ? dpdu : vec3_make(0.0f, 0.0f, 0.0f);
+    float du1 = uv[1].x - uv[0].x, dv1 = uv[1].y - uv[0].y;
+    float du2 = uv[2].x - uv[0].x, dv2 = uv[2].y - uv[0].y;
+    float determinant = du1 * dv2 - dv1 * du2;
+    vec3 along = dv2 * dvec3_to_float(t->edge[0]) - dv1 * dvec3_to_float(t->edge[1]);
+    vec3 dpdu = along / determinant;
+    return finite3(dpdu) ? dpdu : (vec3){0};
 }
 
 /* With v the vertices relative to p, D their largest coordinates and N = e1 x e2, the
@@ -334,12 +320,10 @@ static vec3 tangent_of(const triangle *t, const vec2 uv[3])
 static float rounding_error(const triangle *t, vec3 p, vec3 n)
 {
     vec3 d = {0};
-    for (int i = 0; i < 3; i++) {
-        vec3 v = vec3_make((float)t->p[i][0], (float)t->p[i][1], (float)t->p[i][2]);
-        d = max3(d, abs3(v - p));
-    }
+    for (int i = 0; i < 3; i++)
+        d = max3(d, abs3(dvec3_to_float(t->p[i]) - p));
     const float epsilon = 0x1p-23f;
-    float length = (float)length_double(t->cross);
+    float length = sqrtf((float)dvec3_dot(t->cross, t->cross));
     float bound = 2.0f * dot3(abs3(n), d) + 6.0f * d[0] * d[1] * d[2] / length;
     return epsilon * fminf(bound, 16.0f * max_component3(d));
 }

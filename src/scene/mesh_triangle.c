@@ -1,118 +1,89 @@
 #include "scene/mesh_triangle.h"
 
 #include <glib.h>
+#include <string.h>
 
-static double dot_double(const double a[3], const double b[3])
+static dvec3 corner_of(const mesh *m, uint32_t vertex)
 {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross_double(const double a[3], const double b[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-static void normalize_double(double v[3])
-{
-    double length = sqrt(dot_double(v, v));
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
+    vec3 p; /* the padding after the last position is what is read beyond it */
+    memcpy(&p, m->positions + 3 * (size_t)vertex, sizeof p);
+    p[3] = 0.0f;
+    return dvec3_from_float(p);
 }
 
 void triangle_get(const mesh *m, size_t primitive, triangle *t)
 {
-    double edge[2][3];
-    for (int i = 0; i < 3; i++) {
-        t->vertex[i] = m->indices[3 * primitive + (size_t)i];
-        for (int k = 0; k < 3; k++)
-            t->p[i][k] = (double)m->positions[3 * (size_t)t->vertex[i] + (size_t)k];
+    for (size_t i = 0; i < 3; i++) {
+        t->vertex[i] = m->indices[3 * primitive + i];
+        t->p[i] = corner_of(m, t->vertex[i]);
     }
-    for (int k = 0; k < 3; k++) {
-        edge[0][k] = t->p[1][k] - t->p[0][k];
-        edge[1][k] = t->p[2][k] - t->p[0][k];
-    }
-    cross_double(edge[0], edge[1], t->cross);
+    t->edge[0] = t->p[1] - t->p[0];
+    t->edge[1] = t->p[2] - t->p[0];
+    t->cross = dvec3_cross(t->edge[0], t->edge[1]);
 }
 
 double triangle_area(const triangle *t)
 {
-    return 0.5 * sqrt(dot_double(t->cross, t->cross));
+    return 0.5 * dvec3_length(t->cross);
 }
 
 /* Unit directions from ref to the corners. */
-static void directions(const triangle *t, vec3 ref, double d[3][3])
+static void directions(const triangle *t, vec3 ref, dvec3 d[3])
 {
     for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++)
-            d[i][k] = t->p[i][k] - (double)ref[k];
-        normalize_double(d[i]);
+        d[i] = t->p[i] - dvec3_from_float(ref);
+        d[i] /= dvec3_length(d[i]);
     }
 }
 
 double triangle_solid_angle(const triangle *t, vec3 ref)
 {
-    double d[3][3], normal[3];
+    dvec3 d[3];
     directions(t, ref, d);
-    cross_double(d[1], d[2], normal);
-    double volume = fabs(dot_double(d[0], normal));
+    double volume = fabs(dvec3_dot(d[0], dvec3_cross(d[1], d[2])));
     double sum =
-        1.0 + dot_double(d[0], d[1]) + dot_double(d[1], d[2]) + dot_double(d[2], d[0]);
+        1.0 + dvec3_dot(d[0], d[1]) + dvec3_dot(d[1], d[2]) + dvec3_dot(d[2], d[0]);
     return 2.0 * atan2(volume, sum);
 }
 
 /* The unit direction at cosine c from axis, in the plane of axis and v. */
-static void turn_toward(const double axis[3], const double v[3], double c, double out[3])
+static dvec3 turn_toward(dvec3 axis, dvec3 v, double c)
 {
-    double along = dot_double(axis, v), across[3];
-    for (int i = 0; i < 3; i++)
-        across[i] = v[i] - along * axis[i];
-    normalize_double(across);
+    dvec3 across = v - dvec3_dot(axis, v) * axis;
     double s = sqrt(fmax(0.0, 1.0 - c * c));
-    for (int i = 0; i < 3; i++)
-        out[i] = c * axis[i] + s * across[i];
+    return c * axis + s / dvec3_length(across) * across;
 }
 
 /* The angle at corner d[0] between the great circles to d[1] and d[2]. */
-static double corner_angle(const double d[3][3])
+static double corner_angle(const dvec3 d[3])
 {
-    double n1[3], n2[3], n3[3];
-    cross_double(d[0], d[1], n1);
-    cross_double(d[0], d[2], n2);
-    cross_double(n1, n2, n3);
-    return atan2(sqrt(dot_double(n3, n3)), dot_double(n1, n2));
+    dvec3 n1 = dvec3_cross(d[0], d[1]), n2 = dvec3_cross(d[0], d[2]);
+    return atan2(dvec3_length(dvec3_cross(n1, n2)), dvec3_dot(n1, n2));
 }
 
-static void sample_direction(const double d[3][3], double solid_angle, vec2 u,
-                             double w[3])
+static dvec3 sample_direction(const dvec3 d[3], double solid_angle, vec2 u)
 {
     /* The sub-triangle of area u.x Ω that shares corner 0 and side 0-1 ... */
     double alpha = corner_angle(d), part = (double)u.x * solid_angle;
     double s = sin(part - alpha), t = cos(part - alpha);
     double a = t - cos(alpha);
-    double b = s + sin(alpha) * dot_double(d[0], d[1]);
+    double b = s + sin(alpha) * dvec3_dot(d[0], d[1]);
     double q = ((b * t - a * s) * cos(alpha) - b) / ((b * s + a * t) * sin(alpha));
-    double corner[3];
-    turn_toward(d[0], d[2], isfinite(q) ? CLAMP(q, -1.0, 1.0) : 1.0, corner);
+    dvec3 corner = turn_toward(d[0], d[2], isfinite(q) ? CLAMP(q, -1.0, 1.0) : 1.0);
     /* ... and a point between corner 1 and its far corner. */
-    double z = 1.0 - (double)u.y * (1.0 - dot_double(corner, d[1]));
-    turn_toward(d[1], corner, z, w);
+    double z = 1.0 - (double)u.y * (1.0 - dvec3_dot(corner, d[1]));
+    return turn_toward(d[1], corner, z);
 }
 
 void triangle_sample_solid_angle(const triangle *t, vec3 ref, vec2 u, double b[3])
 {
-    double d[3][3], w[3], edge1[3], edge2[3], from[3], h[3], g[3];
+    dvec3 d[3];
     directions(t, ref, d);
-    sample_direction((const double(*)[3])d, triangle_solid_angle(t, ref), u, w);
-    for (int k = 0; k < 3; k++) {
-        edge1[k] = t->p[1][k] - t->p[0][k];
-        edge2[k] = t->p[2][k] - t->p[0][k];
-        from[k] = (double)ref[k] - t->p[0][k];
-    }
-    cross_double(w, edge2, h);
-    cross_double(from, edge1, g);
-    double scale = 1.0 / dot_double(edge1, h);
-    double b1 = dot_double(from, h) * scale, b2 = dot_double(w, g) * scale;
+    dvec3 w = sample_direction(d, triangle_solid_angle(t, ref), u);
+    dvec3 from = dvec3_from_float(ref) - t->p[0];
+    dvec3 h = dvec3_cross(w, t->edge[1]), g = dvec3_cross(from, t->edge[0]);
+    double scale = 1.0 / dvec3_dot(t->edge[0], h);
+    double b1 = dvec3_dot(from, h) * scale, b2 = dvec3_dot(w, g) * scale;
     b[1] = isfinite(b1) ? CLAMP(b1, 0.0, 1.0) : 0.0;
     b[2] = isfinite(b2) ? CLAMP(b2, 0.0, 1.0 - b[1]) : 0.0;
     b[0] = 1.0 - b[1] - b[2];
