@@ -156,7 +156,7 @@ static void test_maxdepth_bounds_both_ways(void)
     set(&s, "maxdepth", "0");
     g_assert_cmpint(s.max_forward_bounces, ==, 0);
     refuse("maxdepth", "-1",
-           "setting 'maxdepth': expected a whole number from -1 to 1000000, found '-1'");
+           "setting 'maxdepth': expected a whole number from 0 to 1000000, found '-1'");
 }
 
 static void test_refusals(void)

@@ -187,8 +187,14 @@ settings settings_default(void)
     return s;
 }
 
+/** pbrt's name, which sets two settings at once. */
+static bool is_depth(const char *name)
+{
+    return g_ascii_strcasecmp(name, "maxdepth") == 0;
+}
+
 /** What the row accepts, in words; owned by the caller. */
-static char *expected(const setting_row *row)
+static char *expected(const setting_row *row, const char *name)
 {
     if (row->type == SETTING_BOOL)
         return g_strdup("true or false");
@@ -196,9 +202,10 @@ static char *expected(const setting_row *row)
         g_autofree char *words = g_strjoinv(", ", (char **)row->words);
         return g_strdup_printf("one of %s", words);
     }
+    double low = is_depth(name) ? 0.0 : row->low;
     return g_strdup_printf("%s from %.16g to %.16g%s%s",
                            row->type == SETTING_COUNT ? "a whole number" : "a number",
-                           row->low, row->high, *row->unit ? " " : "", row->unit);
+                           low, row->high, *row->unit ? " " : "", row->unit);
 }
 
 static bool read_bool(const char *text, double *out)
@@ -275,7 +282,7 @@ static bool set_row(settings *s, const setting_row *row, const char *name,
                     const char *text)
 {
     double number;
-    if (g_ascii_strcasecmp(name, "maxdepth") == 0)
+    if (is_depth(name))
         return set_depth(s, text);
     int cone = class_of_cone_alias(row, name);
     if (cone >= 0 && read_number(text, &number) && number < 1.0) {
@@ -326,7 +333,7 @@ bool settings_set(settings *s, const char *name, const char *value, GError **err
     g_autofree char *text = g_strstrip(g_strdup(value));
     if (set_row(s, row, name, text))
         return true;
-    g_autofree char *words = expected(row);
+    g_autofree char *words = expected(row, name);
     error_set(error, ERROR_USAGE, "setting '%s': expected %s, found '%s'", name, words,
               text);
     return false;
