@@ -13,7 +13,7 @@ struct texture {
     bool is_spectrum;
 };
 
-static const texture_kind *const kinds[] = {&texture_constant};
+static const texture_kind *const kinds[] = {&texture_constant, &texture_imagemap};
 
 static const texture_kind *find_kind(const char *name, const params *p, GError **error)
 {

@@ -6,3 +6,4 @@
 #include "scene/texture.h"
 
 extern const texture_kind texture_constant;
+extern const texture_kind texture_imagemap;

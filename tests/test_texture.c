@@ -1,0 +1,251 @@
+/*
+ * texture: image look-ups against a naive twin, in pbrt-v4's orientation, with every
+ * parameter acting, and bad ones refused at their place.
+ */
+#include "image/image.h"
+#include "math/sampler.h"
+#include "scene/texture.h"
+
+#include <glib/gstdio.h>
+#include <string.h>
+
+enum { WIDTH = 4, HEIGHT = 3 };
+
+static const source_place here = {"t.pbrt", 5, 2};
+static char *folder, *colour_path, *cutout_path;
+
+static float texel_value(int x, int y, int c)
+{
+    return 0.05f + 0.9f * (float)((x * 7 + y * 5 + c * 3) % 11) / 10.0f;
+}
+
+static void write_image(const char *path, bool with_alpha)
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    int n = with_alpha ? 4 : 3;
+    g_autoptr(image) img = image_new(WIDTH, HEIGHT, n, names, NULL);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        for (int c = 0; c < n; c++)
+            img->pixels[i * n + c] = texel_value(i % WIDTH, i / WIDTH, c);
+    g_assert_true(image_write(img, path, NULL, NULL));
+}
+
+static params *list(const char *path)
+{
+    params *p = params_new((source_place){"t.pbrt", 1, 1}, folder, color_space_srgb());
+    if (path)
+        params_add_strings(p, here, PARAM_STRING, "filename", &path, 1, NULL);
+    return p;
+}
+
+static params *with_number(params *p, const char *name, float x)
+{
+    g_assert_true(params_add_numbers(p, here, PARAM_FLOAT, name, &x, 1, NULL));
+    return p;
+}
+
+static params *with_word(params *p, const char *name, const char *word)
+{
+    g_assert_true(params_add_strings(p, here, PARAM_STRING, name, &word, 1, NULL));
+    return p;
+}
+
+/* A look-up through an input that borrows the texture. */
+static float number_at(params *p, float u, float v)
+{
+    GError *error = NULL;
+    texture *t = texture_new(NULL, "imagemap", false, p, &error);
+    g_assert_no_error(error);
+    float_input in = {.texture = t};
+    surface_hit hit = {.uv = {u, v}};
+    float x = float_input_eval(&in, &hit);
+    texture_free(t);
+    params_free(p);
+    return x;
+}
+
+/* The average of the channels, bilinear, repeating: written out the slow way. */
+static double naive(double u, double v)
+{
+    double x = u * WIDTH - 0.5, y = (1.0 - v) * HEIGHT - 0.5, sum = 0.0;
+    for (int j = -40; j < 40; j++)
+        for (int i = -40; i < 40; i++) {
+            double weight = fmax(0.0, 1.0 - fabs(x - i)) * fmax(0.0, 1.0 - fabs(y - j));
+            int a = ((i % WIDTH) + WIDTH) % WIDTH, b = ((j % HEIGHT) + HEIGHT) % HEIGHT;
+            for (int c = 0; c < 3; c++)
+                sum += weight * (double)texel_value(a, b, c) / 3.0;
+        }
+    return sum;
+}
+
+static void assert_close(double a, double b)
+{
+    g_assert_cmpfloat(fabs(a - b), <, 2e-4);
+}
+
+static void test_bilinear(void)
+{
+    for (uint64_t i = 0; i < 40; i++) {
+        sampler s = sampler_make(1, i);
+        vec2 uv = sampler_2d(&s);
+        uv.x = 5.0f * uv.x - 2.0f, uv.y = 5.0f * uv.y - 2.0f;
+        assert_close((double)number_at(list(colour_path), uv.x, uv.y),
+                     naive((double)uv.x, (double)uv.y));
+    }
+}
+
+/* (0, 0) is the lower left corner: the last row. */
+static void test_orientation(void)
+{
+    float u = 0.5f / WIDTH, v = 0.5f / HEIGHT, corner = 0, top = 0;
+    for (int c = 0; c < 3; c++) {
+        corner += texel_value(0, HEIGHT - 1, c) / 3.0f;
+        top += texel_value(0, 0, c) / 3.0f;
+    }
+    assert_close((double)number_at(list(colour_path), u, v), (double)corner);
+    assert_close((double)number_at(list(colour_path), u, 1.0f - v), (double)top);
+}
+
+static void test_parameters_act(void)
+{
+    double plain = naive(0.3, 0.6);
+    assert_close(
+        (double)number_at(with_number(list(colour_path), "scale", 0.5f), 0.3f, 0.6f),
+        0.5 * plain);
+    params *p = list(colour_path);
+    params_add_integers(p, here, PARAM_BOOL, "invert", (int[]){1}, 1, NULL);
+    assert_close((double)number_at(p, 0.3f, 0.6f), 1.0 - plain);
+    p = with_number(with_number(list(colour_path), "uscale", 2.0f), "udelta", 0.1f);
+    p = with_number(with_number(p, "vscale", 3.0f), "vdelta", -0.2f);
+    assert_close((double)number_at(p, 0.3f, 0.6f), naive(0.7, 1.6));
+    p = with_word(list(colour_path), "filter", "point");
+    float nearest = 0;
+    for (int c = 0; c < 3; c++)
+        nearest += texel_value(1, 1, c) / 3.0f;
+    assert_close((double)number_at(p, 0.3f, 0.6f), (double)nearest);
+}
+
+static void test_wrap(void)
+{
+    params *p = with_word(list(colour_path), "wrap", "black");
+    assert_close((double)number_at(p, 1.5f, 0.5f), 0.0);
+    float edge = 0;
+    for (int c = 0; c < 3; c++)
+        edge += texel_value(WIDTH - 1, 1, c) / 3.0f;
+    p = with_word(list(colour_path), "wrap", "black");
+    assert_close((double)number_at(p, 1.0f, 0.5f), 0.5 * (double)edge);
+    p = with_word(list(colour_path), "wrap", "clamp");
+    assert_close((double)number_at(p, 7.0f, 0.5f), (double)edge);
+}
+
+/* An alpha channel that cuts out is what a number is read from. */
+static void test_alpha(void)
+{
+    float u = 1.5f / WIDTH, v = 1.0f - 0.5f / HEIGHT;
+    float alpha = number_at(list(cutout_path), u, v);
+    g_assert_cmpfloat(fabsf(alpha - texel_value(1, 0, 3)), <, 4e-3f); /* 8 bits */
+}
+
+static spectrum colours_at(params *p, curve_role role, const wavelengths *w)
+{
+    GError *error = NULL;
+    texture *t = texture_new(NULL, "imagemap", true, p, &error);
+    g_assert_no_error(error);
+    g_assert_true(texture_is_spectrum(t));
+    spectrum_input in = {.texture = t, .role = role};
+    surface_hit hit = {.uv = {1.5f / WIDTH, 0.5f}};
+    spectrum x = spectrum_input_eval(&in, &hit, w);
+    texture_free(t);
+    params_free(p);
+    return x;
+}
+
+/* A texel is the spectrum that the same rgb parameter would be. */
+static void test_spectra(void)
+{
+    wavelengths w = wavelengths_at(0.3f);
+    static const curve_role roles[] = {CURVE_ALBEDO, CURVE_UNBOUNDED, CURVE_EMISSION};
+    for (int i = 0; i < 3; i++) {
+        float scale = roles[i] == CURVE_ALBEDO ? 0.9f : 3.0f, rgb[3];
+        for (int c = 0; c < 3; c++)
+            rgb[c] = scale * texel_value(1, 1, c);
+        g_autoptr(curve) same = curve_rgb(color_space_srgb(), rgb, roles[i], NULL);
+        spectrum truth = curve_eval(same, &w);
+        spectrum found =
+            colours_at(with_number(list(colour_path), "scale", scale), roles[i], &w);
+        for (int k = 0; k < N_LANES; k++)
+            g_assert_cmpfloat(fabsf(found[k] - truth[k]), <, 2e-3f * scale);
+    }
+}
+
+/* An 8-bit grey of one half, read in each encoding. */
+static void test_encoding(void)
+{
+    static const char *const names[] = {"R", "G", "B"};
+    g_autofree char *path = g_build_filename(folder, "grey.png", NULL);
+    g_autoptr(image) img = image_new(2, 2, 3, names, NULL);
+    for (int i = 0; i < 12; i++)
+        img->pixels[i] = srgb_decode(0.5f);
+    g_assert_true(image_write(img, path, NULL, NULL));
+    double grey = 128.0 / 255.0;
+    float srgb = number_at(list(path), 0.5f, 0.5f);
+    g_assert_cmpfloat(fabs((double)srgb - (double)srgb_decode((float)grey)), <, 4e-3);
+    float linear = number_at(with_word(list(path), "encoding", "linear"), 0.5f, 0.5f);
+    g_assert_cmpfloat(fabs((double)linear - grey), <, 4e-3);
+    float gamma = number_at(with_word(list(path), "encoding", "gamma 3"), 0.5f, 0.5f);
+    g_assert_cmpfloat(fabs((double)gamma - pow(grey, 3)), <, 4e-3);
+}
+
+static void refuse(params *p, const char *kind, const char *part)
+{
+    g_autoptr(GError) error = NULL;
+    g_assert_null(texture_new(NULL, kind, true, p, &error));
+    g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
+    if (!g_str_has_prefix(error->message, "t.pbrt:") || !strstr(error->message, part))
+        g_error("expected '%s' in '%s'", part, error->message);
+    params_free(p);
+}
+
+static void test_refusals(void)
+{
+    refuse(list(colour_path), "marble", "found 'marble'");
+    refuse(list(NULL), "imagemap", "needs a 'filename'");
+    refuse(list("none.png"), "imagemap", "none.png");
+    refuse(with_word(list(colour_path), "filter", "ewa"), "imagemap", "found 'ewa'");
+    refuse(with_word(list(colour_path), "wrap", "octahedralsphere"), "imagemap",
+           "found 'octahedralsphere'");
+    refuse(with_word(list(colour_path), "mapping", "planar"), "imagemap",
+           "found 'planar'");
+    refuse(with_word(list(colour_path), "encoding", "gamma x"), "imagemap",
+           "found 'gamma x'");
+    refuse(with_number(list(colour_path), "turbulence", 1.0f), "imagemap",
+           "unknown parameter 'turbulence' of texture 'imagemap'");
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    folder = g_dir_make_tmp("nephroid-texture-XXXXXX", NULL);
+    colour_path = g_build_filename(folder, "colour.pfm", NULL);
+    cutout_path = g_build_filename(folder, "cutout.png", NULL);
+    write_image(colour_path, false);
+    write_image(cutout_path, true);
+    g_test_add_func("/texture/bilinear", test_bilinear);
+    g_test_add_func("/texture/orientation", test_orientation);
+    g_test_add_func("/texture/parameters-act", test_parameters_act);
+    g_test_add_func("/texture/wrap", test_wrap);
+    g_test_add_func("/texture/alpha", test_alpha);
+    g_test_add_func("/texture/spectra", test_spectra);
+    g_test_add_func("/texture/encoding", test_encoding);
+    g_test_add_func("/texture/refusals", test_refusals);
+    int failed = g_test_run();
+    g_autofree char *grey = g_build_filename(folder, "grey.png", NULL);
+    g_unlink(grey);
+    g_unlink(colour_path);
+    g_unlink(cutout_path);
+    g_rmdir(folder);
+    g_free(folder);
+    g_free(colour_path);
+    g_free(cutout_path);
+    return failed;
+}
