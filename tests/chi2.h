@@ -78,7 +78,7 @@ static inline double chi2_integral(chi2_density density, void *data, const doubl
     double coarse = chi2_midpoints(density, data, box), fine[4];
     for (int i = 0; i < 4; i++)
         sum += fine[i] = chi2_midpoints(density, data, parts[i]);
-    if (depth >= 1 && (depth >= 7 || fabs(sum - coarse) < 1e-6 + 1e-4 * sum))
+    if (depth >= 1 && (depth >= 7 || fabs(sum - coarse) < 1e-5 + 1e-3 * sum))
         return sum;
     sum = 0.0;
     for (int i = 0; i < 4; i++)

@@ -86,12 +86,23 @@ static void check_chi2(const model *m, float degrees, unsigned mask, float tilt)
                 mask, (double)tilt, p);
 }
 
+/* Whether an earlier mask asks this model for the same lobes. */
+static bool asked_already(const model *m, size_t k)
+{
+    bsdf b = make(m, 0.0f, ALL_LANES);
+    for (size_t i = 0; i < k; i++)
+        if ((MASKS[i] & b.lobes) == (MASKS[k] & b.lobes))
+            return true;
+    return false;
+}
+
 static void test_density(void)
 {
-    static const float DEGREES[] = {5.0f, 45.0f, 80.0f, 135.0f, 165.0f};
+    static const float DEGREES[] = {5.0f, 30.0f, 80.0f, 135.0f, 165.0f};
     for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++) {
         for (size_t k = 0; k < G_N_ELEMENTS(MASKS); k++)
-            check_chi2(&MODELS[m], 45.0f, MASKS[k], 0.0f);
+            if (!asked_already(&MODELS[m], k))
+                check_chi2(&MODELS[m], 45.0f, MASKS[k], 0.0f);
         for (size_t a = 0; a < G_N_ELEMENTS(DEGREES); a++)
             check_chi2(&MODELS[m], DEGREES[a], LOBE_ALL, a & 1 ? 0.3f : 0.0f);
     }
