@@ -215,7 +215,7 @@ static bool find_bounds(scene *s, GError **error)
         s->bounds = box3_union(s->bounds, on->kind->bounds(on->self));
     }
     bool is_empty = box3_is_empty(s->bounds);
-    s->center = is_empty ? (vec3){0} : box3_center(s->bounds);
+    s->center = is_empty ? vec3_make(0.0f, 0.0f, 0.0f) : box3_center(s->bounds);
     /* A little larger, so that what lies on the box is inside whatever the rounding. */
     float far =
         is_empty ? 0.0f : max_component3(max3(abs3(s->bounds.low), abs3(s->bounds.high)));
