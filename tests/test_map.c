@@ -257,6 +257,31 @@ static void test_grid_same_as_list(void)
     test_same_as_list(MAP_GRID);
 }
 
+/* A hashed grid whose queries meet two hundred rows: some wrap round, some overlap. */
+static void test_grid_hashed_rows(void)
+{
+    photon_store store = make_store(place_cube, 4000);
+    pair maps = {.list = build_copy(MAP_LIST, &store, 0, 1),
+                 .other = build_copy(MAP_GRID, &store, 0.01f, 1)};
+    for (uint32_t i = 0; i < 1500; i++)
+        compare_within(&maps, field_photon(place_cube, 12, i).p, 0.07f, NULL);
+    g_assert_cmpuint(maps.n_found, >, 5000);
+    clear_pair(&maps);
+    photon_store_clear(&store);
+}
+
+/* Photons of one cell keep the order of the store. */
+static void test_grid_keeps_order(void)
+{
+    enum { N = 70000 };
+    photon_store store = make_store(place_same, N);
+    for (uint32_t i = 0; i < N; i++)
+        store.wi[i] = i;
+    g_autoptr(photon_map) map = build_map(MAP_GRID, &store, 0.1f, 2);
+    for (uint32_t i = 0; i < N; i++)
+        g_assert_cmpuint(photon_map_store(map)->wi[i], ==, i);
+}
+
 /* What the list finds, straight from the definition. */
 static void test_list_by_definition(void)
 {
@@ -396,6 +421,8 @@ int main(int argc, char **argv)
     g_test_add_func("/map/list/by-definition", test_list_by_definition);
     g_test_add_func("/map/kdtree/same-as-list", test_kdtree_same_as_list);
     g_test_add_func("/map/grid/same-as-list", test_grid_same_as_list);
+    g_test_add_func("/map/grid/hashed-rows", test_grid_hashed_rows);
+    g_test_add_func("/map/grid/keeps-order", test_grid_keeps_order);
     g_test_add_func("/map/empty", test_empty);
     g_test_add_func("/map/parallel-is-serial", test_parallel_is_serial);
     g_test_add_func("/map/memory", test_memory);

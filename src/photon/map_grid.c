@@ -98,31 +98,25 @@ static double count_cells(grid *g, float cell)
     return n;
 }
 
-/* Chooses the width of cells; returns their number. */
-static double choose_cell(grid *g, size_t n, float radius)
+/* Chooses the width of cells for a radius; returns their number, which is above `most`
+ * only if twice the width would not help. */
+static double choose_cell(grid *g, float radius, double most)
 {
-    float extent = max_component3(g->high - g->low);
-    float smallest = fmaxf(extent / MAX_CELLS_AN_AXIS, 1e-30f);
-    float cell = fmaxf(radius, smallest);
-    double enough = (double)MAX(n, MIN_SLOTS);
-    if (radius > 0.0f) {
-        while (count_cells(g, cell) > enough && cell < 2.0f * radius)
-            cell *= 1.0625f;
-        return count_cells(g, cell);
+    for (float cell = radius; cell < 2.0f * radius; cell *= 1.0625f) {
+        double cells = count_cells(g, cell);
+        if (cells <= most)
+            return cells;
     }
-    double wanted = fmax(0.25 * (double)n, 1.0);
-    for (cell = fmaxf(extent, smallest); cell > smallest; cell *= 0.84f) {
-        if (count_cells(g, cell) >= wanted)
-            break;
-    }
-    return count_cells(g, fmaxf(cell, smallest));
+    return count_cells(g, radius);
 }
 
-static void grid_free(photon_map *map)
+/* The same when no radius is known: a cell for every four photons. */
+static double choose_cell_by_density(grid *g, float extent, size_t n)
 {
-    grid *g = map->index;
-    big_free(g->start);
-    big_free(g);
+    float cell = extent;
+    while (count_cells(g, cell) < 0.25 * (double)n && cell > extent / MAX_CELLS_AN_AXIS)
+        cell *= 0.84f;
+    return count_cells(g, cell);
 }
 
 static size_t power_of_two_at_most(size_t n)
@@ -133,16 +127,33 @@ static size_t power_of_two_at_most(size_t n)
     return power;
 }
 
+/* Sets the width of cells, their number, and whether they are hashed. */
+static void shape_grid(grid *g, size_t n, float radius)
+{
+    size_t most = MAX(n, MIN_SLOTS);
+    float extent = fmaxf(max_component3(g->high - g->low), 1e-20f);
+    double cells =
+        radius > 0.0f
+            ? choose_cell(g, fmaxf(radius, extent / MAX_CELLS_AN_AXIS), (double)most)
+            : choose_cell_by_density(g, extent, n);
+    g->hashed = cells > (double)most;
+    g->n_slots = g->hashed ? power_of_two_at_most(most) : (size_t)cells;
+}
+
+static void grid_free(photon_map *map)
+{
+    grid *g = map->index;
+    big_free(g->start);
+    big_free(g);
+}
+
 static bool grid_build(photon_map *map, float radius, unsigned threads, GError **error)
 {
     grid *g = map->index = big_alloc(1, sizeof *g, "photon grid", error);
     if (!g)
         return false;
     find_bounds(g, &map->store);
-    double cells = choose_cell(g, map->store.n, radius);
-    size_t most = MAX(map->store.n, MIN_SLOTS);
-    g->hashed = cells > (double)most;
-    g->n_slots = g->hashed ? power_of_two_at_most(most) : (size_t)cells;
+    shape_grid(g, map->store.n, radius);
     g->start = big_alloc(g->n_slots + 1, sizeof *g->start, "photon grid", error);
     if (!g->start)
         return false;
