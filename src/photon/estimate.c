@@ -94,35 +94,39 @@ static void flush(gather *g)
 
 /* ---- Finding ---- */
 
-/* A run of photons, within the fixed radius. */
-static void gather_run(size_t begin, size_t end, void *data)
+/* Runs of photons, within the fixed radius. */
+static void gather_runs(const photon_run *runs, size_t n, void *data)
 {
     gather *g = data;
-    for (size_t i = begin; i < end; i += LANES) {
-        floats8 distance2;
-        unsigned bits = probe_block(&g->probe, i, end, g->r2, &distance2);
-        if (!bits)
-            continue;
-        floats8 weight = kernel_eval8(&g->options->kernel, distance2, g->inv_r2);
-        for (; bits; bits &= bits - 1) {
-            int lane = __builtin_ctz(bits);
-            g->index[g->n_block] = i + (size_t)lane;
-            g->weight[g->n_block++] = weight[lane];
+    for (const photon_run *run = runs; run < runs + n; run++) {
+        for (size_t i = run->begin; i < run->end; i += LANES) {
+            floats8 distance2;
+            unsigned bits = probe_block(&g->probe, i, run->end, g->r2, &distance2);
+            if (!bits)
+                continue;
+            for (size_t j = 0; j < LANES; j += 2)
+                __builtin_prefetch(&g->probe.store->flux[i + j]);
+            floats8 weight = kernel_eval8(&g->options->kernel, distance2, g->inv_r2);
+            g->n_block +=
+                pack8(weight, bits, i, g->weight + g->n_block, g->index + g->n_block);
+            if (g->n_block >= BLOCK)
+                flush(g);
         }
-        if (g->n_block >= BLOCK)
-            flush(g);
     }
 }
 
 /* Photons listed in hits. */
 static void gather_hits(gather *g, const photon_hits *hits)
 {
-    for (size_t i = 0; i < hits->n; i++) {
-        g->index[g->n_block] = hits->index[i];
-        g->weight[g->n_block++] =
-            kernel_eval(&g->options->kernel, hits->distance2[i], g->r2);
-        if (g->n_block >= BLOCK)
-            flush(g);
+    for (size_t begin = 0; begin < hits->n; begin += BLOCK) {
+        g->n_block = MIN(BLOCK, hits->n - begin);
+        memcpy(g->index, hits->index + begin, g->n_block * sizeof *g->index);
+        for (size_t i = 0; i < g->n_block; i += LANES) {
+            floats8 distance2 = load8(hits->distance2 + begin + i);
+            store8(g->weight + i,
+                   kernel_eval8(&g->options->kernel, distance2, g->inv_r2));
+        }
+        flush(g);
     }
 }
 
@@ -140,7 +144,7 @@ static bool gather_within(gather *g, const photon_map *map, estimate_scratch *sc
     if (map->store.n == 0)
         return true;
     if (map->kind->runs)
-        map->kind->runs(map, g->probe.p, radius, gather_run, g);
+        map->kind->runs(map, g->probe.p, radius, gather_runs, g);
     else if (!map->kind->within(map, &g->probe, radius, &scratch->hits))
         return false;
     gather_hits(g, &scratch->hits);

@@ -12,7 +12,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#ifdef __AVX2__
+#ifdef __AVX__
 #include <immintrin.h>
 #endif
 
@@ -20,6 +20,9 @@ enum { LANES = 8 };
 
 typedef float floats8 __attribute__((vector_size(32)));
 typedef int32_t ints8 __attribute__((vector_size(32)));
+typedef float floats4 __attribute__((vector_size(16)));
+typedef int32_t ints4 __attribute__((vector_size(16)));
+typedef size_t sizes4 __attribute__((vector_size(32)));
 
 static inline floats8 fill8(float x)
 {
@@ -95,7 +98,7 @@ static inline floats8 abs8(floats8 a)
 /** @brief One bit a lane of a mask, lane 0 lowest. */
 static inline unsigned bits8(ints8 mask)
 {
-#ifdef __AVX2__
+#ifdef __AVX__
     return (unsigned)_mm256_movemask_ps((__m256)mask);
 #else
     unsigned bits = 0;
@@ -103,4 +106,37 @@ static inline unsigned bits8(ints8 mask)
         bits |= ((unsigned)mask[i] & 1u) << i;
     return bits;
 #endif
+}
+
+/** @brief Four values in the order named by lanes. */
+static inline floats4 permute4(floats4 values, ints4 lanes)
+{
+#ifdef __AVX__
+    return (floats4)_mm_permutevar_ps((__m128)values, (__m128i)lanes);
+#else
+    return (floats4){values[lanes[0]], values[lanes[1]], values[lanes[2]],
+                     values[lanes[3]]};
+#endif
+}
+
+/** @brief Appends the lanes named by bits, lowest first: their values, and first + lane.
+ *  Without branches: both arrays must have room for eight more. @return their number */
+static inline size_t pack8(floats8 values, unsigned bits, size_t first, float *value,
+                           size_t *index)
+{
+    /* The lanes of each set of four, in order; what follows them is overwritten next. */
+    static const ints4 lanes[16] = {
+        {0}, {0},    {1},    {0, 1},    {2},    {0, 2},    {1, 2},    {0, 1, 2},
+        {3}, {0, 3}, {1, 3}, {0, 1, 3}, {2, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 2, 3}};
+    size_t n = 0;
+    for (int half = 0; half < LANES; half += 4) {
+        unsigned four = bits >> half & 15u;
+        floats4 v = {values[half], values[half + 1], values[half + 2], values[half + 3]};
+        v = permute4(v, lanes[four]);
+        sizes4 i = __builtin_convertvector(lanes[four], sizes4) + (first + (size_t)half);
+        memcpy(value + n, &v, sizeof v);
+        memcpy(index + n, &i, sizeof i);
+        n += (size_t)__builtin_popcount(four);
+    }
+    return n;
 }

@@ -59,7 +59,7 @@ bool photon_hits_reserve(photon_hits *hits, size_t capacity)
 {
     if (capacity <= hits->capacity)
         return true;
-    size_t room = MAX(capacity, 2 * hits->capacity);
+    size_t room = MAX(capacity + LANES, 2 * hits->capacity);
     size_t *index =
         big_grow(hits->index, hits->n, room, sizeof *index, "photons found", NULL);
     if (!index)
@@ -98,9 +98,8 @@ typedef struct within_search {
     bool refused;
 } within_search;
 
-static void within_run(size_t begin, size_t end, void *data)
+static void within_run(size_t begin, size_t end, within_search *search)
 {
-    within_search *search = data;
     photon_hits *hits = search->hits;
     for (size_t i = begin; i < end; i += LANES) {
         floats8 distance2;
@@ -111,18 +110,21 @@ static void within_run(size_t begin, size_t end, void *data)
             search->refused = true;
             return;
         }
-        for (; bits; bits &= bits - 1) {
-            int lane = __builtin_ctz(bits);
-            hits->index[hits->n] = i + (size_t)lane;
-            hits->distance2[hits->n++] = distance2[lane];
-        }
+        hits->n +=
+            pack8(distance2, bits, i, hits->distance2 + hits->n, hits->index + hits->n);
     }
+}
+
+static void within_runs(const photon_run *runs, size_t n, void *data)
+{
+    for (size_t i = 0; i < n; i++)
+        within_run(runs[i].begin, runs[i].end, data);
 }
 
 bool photon_map_within_runs(const photon_map *map, const photon_probe *probe,
                             float radius, photon_hits *hits)
 {
     within_search search = {probe, hits, radius * radius, false};
-    map->kind->runs(map, probe->p, radius, within_run, &search);
+    map->kind->runs(map, probe->p, radius, within_runs, &search);
     return !search.refused;
 }

@@ -185,16 +185,12 @@ static bool cells_within(const grid *g, vec3 p, float radius, cell_range *range)
     return true;
 }
 
-static void dense_runs(const grid *g, const cell_range *range, photon_run_visitor visit,
-                       void *data)
+static void dense_runs(const grid *g, const cell_range *range, run_batch *batch)
 {
     for (int32_t z = range->low[2]; z <= range->high[2]; z++) {
         for (int32_t y = range->low[1]; y <= range->high[1]; y++) {
-            size_t row = row_slot(g, y, z);
-            size_t begin = g->start[row + (size_t)range->low[0]];
-            size_t end = g->start[row + (size_t)range->high[0] + 1];
-            if (begin < end)
-                visit(begin, end, data);
+            const size_t *row = g->start + row_slot(g, y, z);
+            run_batch_add(batch, row[range->low[0]], row[range->high[0] + 1]);
         }
     }
 }
@@ -230,15 +226,14 @@ static size_t collect_rows(const grid *g, const cell_range *range, slot_run *run
     return n;
 }
 
-static void hashed_runs(const grid *g, const cell_range *range, photon_run_visitor visit,
-                        void *data)
+static void hashed_runs(const grid *g, const cell_range *range, run_batch *batch)
 {
     slot_run runs[2 * MAX_HASHED_ROWS];
     double width = (double)(range->high[0] - range->low[0]) + 1.0;
     double rows = ((double)(range->high[1] - range->low[1]) + 1.0) *
                   ((double)(range->high[2] - range->low[2]) + 1.0);
     if (rows > MAX_HASHED_ROWS || rows * width > 0.5 * (double)g->n_slots) {
-        visit(0, g->start[g->n_slots], data);
+        run_batch_add(batch, 0, g->start[g->n_slots]);
         return;
     }
     size_t n = collect_rows(g, range, runs), slot = 0;
@@ -247,8 +242,7 @@ static void hashed_runs(const grid *g, const cell_range *range, photon_run_visit
         if (first >= runs[i].last)
             continue;
         slot = runs[i].last;
-        if (g->start[first] < g->start[slot])
-            visit(g->start[first], g->start[slot], data);
+        run_batch_add(batch, g->start[first], g->start[slot]);
     }
 }
 
@@ -259,22 +253,27 @@ static void grid_runs(const photon_map *map, vec3 p, float radius,
     cell_range range;
     if (!cells_within(g, p, radius, &range))
         return;
+    run_batch batch;
+    run_batch_begin(&batch, &map->store, visit, data);
     if (g->hashed)
-        hashed_runs(g, &range, visit, data);
+        hashed_runs(g, &range, &batch);
     else
-        dense_runs(g, &range, visit, data);
+        dense_runs(g, &range, &batch);
+    run_batch_flush(&batch);
 }
 
 /* ---- Nearest ---- */
 
-static void count_run(size_t begin, size_t end, void *data)
+static void count_runs(const photon_run *runs, size_t n, void *data)
 {
-    *(size_t *)data += end - begin;
+    for (size_t i = 0; i < n; i++)
+        *(size_t *)data += runs[i].end - runs[i].begin;
 }
 
-static void nearest_run(size_t begin, size_t end, void *data)
+static void nearest_runs(const photon_run *runs, size_t n, void *data)
 {
-    nearest_add_run(data, begin, end);
+    for (size_t i = 0; i < n; i++)
+        nearest_add_run(data, runs[i].begin, runs[i].end);
 }
 
 /* The radius beyond which there is no photon. */
@@ -292,7 +291,7 @@ static float guess_radius(const photon_map *map, vec3 p, size_t k, float largest
     float radius = 0.5f * g->cell;
     size_t found = 0;
     for (; radius < largest; radius *= 2.0f) {
-        grid_runs(map, p, radius, count_run, &found);
+        grid_runs(map, p, radius, count_runs, &found);
         if (found > 0)
             break;
     }
@@ -322,7 +321,7 @@ static bool grid_nearest(const photon_map *map, const photon_probe *probe, size_
     for (;; r = grow_radius(r, hits->n, k)) {
         bool last = !(r < largest);
         nearest_restart(&set, last ? radius : r);
-        grid_runs(map, probe->p, last ? radius : r, nearest_run, &set);
+        grid_runs(map, probe->p, last ? radius : r, nearest_runs, &set);
         if (last || hits->n >= k)
             break;
     }

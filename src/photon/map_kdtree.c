@@ -379,18 +379,19 @@ static void kdtree_runs(const photon_map *map, vec3 p, float radius,
 {
     const kdtree *tree = map->index;
     float limit = radius * radius;
-    size_t begin = 0, end = 0;
+    run_batch batch;
+    run_batch_begin(&batch, &map->store, visit, data);
+    photon_run run = {0, 0};
     kd_entry stack[MAX_STACK];
     stack[0] = (kd_entry){0.0f, tree->n_levels, 0};
     for (size_t top = 1; top > 0;) {
         kd_entry node = stack[--top];
         if (node.level == 0) {
-            if (node.node * LEAF != end) {
-                if (begin < end)
-                    visit(begin, end, data);
-                begin = node.node * LEAF;
+            if (node.node * LEAF != run.end) {
+                run_batch_add(&batch, run.begin, run.end);
+                run.begin = node.node * LEAF;
             }
-            end = MIN((node.node + 1) * LEAF, map->store.n);
+            run.end = MIN((node.node + 1) * LEAF, map->store.n);
             continue;
         }
         const kd_group *group = tree->groups + tree->offset[node.level] + node.node;
@@ -400,8 +401,8 @@ static void kdtree_runs(const photon_map *map, vec3 p, float radius,
             stack[top++] = (kd_entry){0.0f, node.level - 1, child};
         }
     }
-    if (begin < end)
-        visit(begin, end, data);
+    run_batch_add(&batch, run.begin, run.end);
+    run_batch_flush(&batch);
 }
 
 const photon_map_kind photon_map_kdtree = {

@@ -162,11 +162,10 @@ void nearest_add_run(nearest_set *set, size_t begin, size_t end)
     for (size_t i = begin; i < end; i += LANES) {
         floats8 distance2;
         unsigned bits = probe_block(set->probe, i, end, set->limit, &distance2);
-        for (; bits; bits &= bits - 1) {
-            int lane = __builtin_ctz(bits);
-            hits->index[hits->n] = i + (size_t)lane;
-            hits->distance2[hits->n++] = distance2[lane];
-        }
+        if (!bits)
+            continue;
+        hits->n +=
+            pack8(distance2, bits, i, hits->distance2 + hits->n, hits->index + hits->n);
         if (hits->n > set->full)
             nearest_cut(set);
     }
