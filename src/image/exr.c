@@ -52,17 +52,18 @@ static int64_t file_size(exr_const_context_t context, void *data)
     return (int64_t)job->source->size;
 }
 
+/* Like pread: fewer bytes at the file's end, which the library knows how to judge. */
 static int64_t read_bytes(exr_const_context_t context, void *data, void *buffer,
                           uint64_t size, uint64_t offset,
                           exr_stream_error_func_ptr_t report)
 {
     const exr_job *job = data;
-    if (offset > job->source->size || size > job->source->size - offset) {
-        report(context, EXR_ERR_READ_IO, "it ends early");
-        return -1;
-    }
-    memcpy(buffer, job->source->bytes + offset, size);
-    return (int64_t)size;
+    (void)context;
+    (void)report;
+    uint64_t left = job->source->size - MIN(offset, job->source->size);
+    size_t n = MIN(size, left);
+    memcpy(buffer, job->source->bytes + job->source->size - left, n);
+    return (int64_t)n;
 }
 
 static int64_t write_bytes(exr_const_context_t context, void *data, const void *buffer,
