@@ -18,6 +18,21 @@ typedef struct vec2 {
 #define PI_F 3.14159265358979323846f
 #define INV_PI_F 0.31830988618379067154f
 
+/*
+ * In place of fminf and fmaxf, which gcc calls from libm as their rules for NaN ask: a
+ * call into SSE code from AVX code costs up to 0.3 µs on some processors, these cost one
+ * instruction. If one of the two is NaN the result is b.
+ */
+static inline float minf(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static inline float maxf(float a, float b)
+{
+    return a > b ? a : b;
+}
+
 static inline vec3 vec3_make(float x, float y, float z)
 {
     return (vec3){x, y, z, 0.0f};
@@ -60,7 +75,7 @@ static inline vec3 face_forward(vec3 a, vec3 b)
 
 static inline float max_component3(vec3 a)
 {
-    return fmaxf(a[0], fmaxf(a[1], a[2]));
+    return maxf(a[0], maxf(a[1], a[2]));
 }
 
 static inline vec3 abs3(vec3 a)
@@ -70,12 +85,12 @@ static inline vec3 abs3(vec3 a)
 
 static inline vec3 min3(vec3 a, vec3 b)
 {
-    return vec3_make(fminf(a[0], b[0]), fminf(a[1], b[1]), fminf(a[2], b[2]));
+    return vec3_make(minf(a[0], b[0]), minf(a[1], b[1]), minf(a[2], b[2]));
 }
 
 static inline vec3 max3(vec3 a, vec3 b)
 {
-    return vec3_make(fmaxf(a[0], b[0]), fmaxf(a[1], b[1]), fmaxf(a[2], b[2]));
+    return vec3_make(maxf(a[0], b[0]), maxf(a[1], b[1]), maxf(a[2], b[2]));
 }
 
 static inline bool finite3(vec3 a)

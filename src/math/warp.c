@@ -14,13 +14,13 @@ vec2 warp_disk(vec2 u)
 vec3 warp_cosine_hemisphere(vec2 u)
 {
     vec2 d = warp_disk(u);
-    return vec3_make(d.x, d.y, sqrtf(fmaxf(0.0f, 1.0f - d.x * d.x - d.y * d.y)));
+    return vec3_make(d.x, d.y, sqrtf(maxf(0.0f, 1.0f - d.x * d.x - d.y * d.y)));
 }
 
 vec3 warp_sphere(vec2 u)
 {
     float z = 1.0f - 2.0f * u.x;
-    float r = 2.0f * sqrtf(fmaxf(0.0f, u.x * (1.0f - u.x)));
+    float r = 2.0f * sqrtf(maxf(0.0f, u.x * (1.0f - u.x)));
     float phi = 2.0f * PI_F * u.y;
     return vec3_make(r * cosf(phi), r * sinf(phi), z);
 }
@@ -28,7 +28,7 @@ vec3 warp_sphere(vec2 u)
 vec3 warp_cone(vec2 u, float one_minus_cos)
 {
     float below_one = u.x * one_minus_cos;
-    float r = sqrtf(fmaxf(0.0f, below_one * (2.0f - below_one)));
+    float r = sqrtf(maxf(0.0f, below_one * (2.0f - below_one)));
     float phi = 2.0f * PI_F * u.y;
     return vec3_make(r * cosf(phi), r * sinf(phi), 1.0f - below_one);
 }

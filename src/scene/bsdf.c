@@ -26,7 +26,7 @@ static bool to_local(const bsdf *b, vec3 world, local_direction *out)
 /* Veach 1997, eq. 5.19, without the cosine |wi·n| that callers multiply with. */
 static float adjoint_factor(const local_direction *wo, const local_direction *wi)
 {
-    float from = fminf(fabsf(wo->w[2] / wo->cos_geom), MAX_GRAZING_RATIO);
+    float from = minf(fabsf(wo->w[2] / wo->cos_geom), MAX_GRAZING_RATIO);
     return from * fabsf(wi->cos_geom / wi->w[2]);
 }
 

@@ -208,7 +208,7 @@ static spectrum coated_albedo(const bsdf *b, vec3 wo, unsigned lobes)
 static float series(float x, int n)
 {
     return x < 0.999f ? (1.0f - powf(x, (float)n)) / (1.0f - x)
-                      : fminf((float)n, 1.0f / fmaxf(1.0f - x, 1e-6f));
+                      : minf((float)n, 1.0f / maxf(1.0f - x, 1e-6f));
 }
 
 static bool same_in_all_lanes(spectrum s)

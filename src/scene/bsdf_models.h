@@ -22,7 +22,7 @@ static inline unsigned ggx_class(ggx g)
 {
     if (ggx_is_smooth(g))
         return LOBE_SPECULAR;
-    return fmaxf(g.alpha_x, g.alpha_y) < GLOSSY_ALPHA ? LOBE_GLOSSY : LOBE_DIFFUSE;
+    return maxf(g.alpha_x, g.alpha_y) < GLOSSY_ALPHA ? LOBE_GLOSSY : LOBE_DIFFUSE;
 }
 
 /** @brief The value that decides in random choices: of the lane kept, or the mean. */

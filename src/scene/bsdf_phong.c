@@ -81,7 +81,7 @@ static float phong_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
 static vec3 sample_half(float n, vec2 u)
 {
     float z = powf(1.0f - u.x, 1.0f / (n + 1.0f)), phi = 2.0f * PI_F * u.y;
-    float r = sqrtf(fmaxf(0.0f, 1.0f - z * z));
+    float r = sqrtf(maxf(0.0f, 1.0f - z * z));
     return vec3_make(r * cosf(phi), r * sinf(phi), z);
 }
 
@@ -143,7 +143,7 @@ void bsdf_make_phong(bsdf *b, spectrum reflectance, spectrum specular, float exp
     *p = (phong){.specular = specular, .exponent = n};
     p->factor = (n + 2.0f) * (n + 4.0f) / (8.0f * PI_F * (n + exp2f(-0.5f * n)));
     for (int i = 0; i < N_LANES; i++)
-        p->diffuse[i] = fminf(reflectance[i], 1.0f - specular[i]);
+        p->diffuse[i] = minf(reflectance[i], 1.0f - specular[i]);
     b->ops = &ops;
     b->lobes = shine_lobe(p) | MATT;
     b->lambertian = !(shine_lobe(p) & LOBE_DIFFUSE);

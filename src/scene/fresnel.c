@@ -10,7 +10,7 @@ spectrum fresnel_dielectric_lanes(float cos_o, spectrum eta)
 
 spectrum fresnel_conductor(float cos_o, spectrum eta, spectrum k)
 {
-    float c = fminf(fabsf(cos_o), 1.0f), c2 = c * c, s2 = 1.0f - c2;
+    float c = minf(fabsf(cos_o), 1.0f), c2 = c * c, s2 = 1.0f - c2;
     /* a + i b is the root of (eta + i k)² - sin², so that a² + b² and a suffice. */
     spectrum real = eta * eta - k * k - s2;
     spectrum imaginary = 2.0f * eta * k;
@@ -28,7 +28,7 @@ spectrum fresnel_conductor(float cos_o, spectrum eta, spectrum k)
 bool refract3(vec3 w, vec3 m, float eta, vec3 *t)
 {
     float cos_o = dot3(w, m);
-    float cos_t2 = 1.0f - fmaxf(0.0f, 1.0f - cos_o * cos_o) / (eta * eta);
+    float cos_t2 = 1.0f - maxf(0.0f, 1.0f - cos_o * cos_o) / (eta * eta);
     if (!(cos_t2 > 0.0f))
         return false;
     *t = normalize3(m * (cos_o / eta - sqrtf(cos_t2)) - w / eta);

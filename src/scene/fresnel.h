@@ -20,7 +20,7 @@ static inline float fresnel_dielectric(float cos_o, float eta)
     float cos_t = sqrtf(cos_t2);
     float parallel = (eta * cos_o - cos_t) / (eta * cos_o + cos_t);
     float perpendicular = (cos_o - eta * cos_t) / (cos_o + eta * cos_t);
-    return fminf(1.0f, 0.5f * (parallel * parallel + perpendicular * perpendicular));
+    return minf(1.0f, 0.5f * (parallel * parallel + perpendicular * perpendicular));
 }
 
 /** @brief The same at eight wavelengths. */

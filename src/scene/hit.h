@@ -42,8 +42,8 @@ typedef struct surface_hit {
 static inline vec3 hit_offset(const surface_hit *hit, vec3 direction)
 {
     vec3 a = abs3(hit->p);
-    float scale = fmaxf(max_component3(a), 1e-3f * hit->t) * 4e-6f;
-    scale = fmaxf(scale, hit->error);
+    float scale = maxf(max_component3(a), 1e-3f * hit->t) * 4e-6f;
+    scale = maxf(scale, hit->error);
     return hit->p + hit->n_geom * (dot3(direction, hit->n_geom) < 0.0f ? -scale : scale);
 }
 

@@ -34,7 +34,7 @@ typedef struct boundary {
 
 static float attenuation(float thickness, float cosine)
 {
-    return thickness > 0.0f ? expf(-thickness / fmaxf(cosine, 1e-6f)) : 1.0f;
+    return thickness > 0.0f ? expf(-thickness / maxf(cosine, 1e-6f)) : 1.0f;
 }
 
 /* Shares of light from cosine mu that leave again on this side and on the other, each
@@ -43,7 +43,7 @@ static void meet(const boundary *at, float mu, bool inside, double *back, double
 {
     float depth_back = inside ? at->thickness : 0.0f;
     float depth_through = inside ? 0.0f : at->thickness;
-    vec3 o = vec3_make(sqrtf(fmaxf(0.0f, 1.0f - mu * mu)), 0.0f, fmaxf(mu, 1e-5f)), t;
+    vec3 o = vec3_make(sqrtf(maxf(0.0f, 1.0f - mu * mu)), 0.0f, maxf(mu, 1e-5f)), t;
     int n = ggx_is_smooth(at->roughness) ? 1 : FACETS;
     *back = *through = 0.0;
     for (int k = 0; k < n * n; k++) {
@@ -189,7 +189,7 @@ float coat_crossing(const coat_table *table, float alpha, float eta, float mu)
     if (alpha < SMOOTH_ALPHA) {
         float cos_t2 = 1.0f - (1.0f - mu * mu) / (eta * eta);
         return (1.0f - fresnel_dielectric(mu, eta)) *
-               attenuation(table->thickness, sqrtf(fmaxf(cos_t2, 0.0f)));
+               attenuation(table->thickness, sqrtf(maxf(cos_t2, 0.0f)));
     }
     corners c = find_corners(table, alpha, eta);
     return at_cosine(&c, offsetof(node, crossing), mu);

@@ -35,7 +35,7 @@ static bool check_medium(const params *p, GError **error)
         !params_float(p, "g", &g, error))
         return false;
     for (float nm = LAMBDA_MIN; albedo && nm <= LAMBDA_MAX; nm += 5.0f)
-        most = fmaxf(most, curve_at(albedo, nm));
+        most = maxf(most, curve_at(albedo, nm));
     if (most > 1e-4f) {
         error_at(error, params_find(p, "albedo")->place,
                  "parameter 'albedo': a coat that scatters is not supported, expected 0");
@@ -78,12 +78,12 @@ static coat_range range_of(const plastic *m, float thickness)
         .alpha_max = 1.0f, .eta_min = INFINITY, .eta_max = 0.0f, .thickness = thickness};
     if (roughness_input_is_constant(&m->roughness)) {
         ggx g = roughness_input_eval(&m->roughness, NULL);
-        range.alpha_min = fminf(g.alpha_x, g.alpha_y);
-        range.alpha_max = fmaxf(g.alpha_x, g.alpha_y);
+        range.alpha_min = minf(g.alpha_x, g.alpha_y);
+        range.alpha_max = maxf(g.alpha_x, g.alpha_y);
     }
     for (float nm = LAMBDA_MIN; nm <= LAMBDA_MAX; nm += 5.0f) {
-        range.eta_min = fminf(range.eta_min, curve_at(m->eta, nm));
-        range.eta_max = fmaxf(range.eta_max, curve_at(m->eta, nm));
+        range.eta_min = minf(range.eta_min, curve_at(m->eta, nm));
+        range.eta_max = maxf(range.eta_max, curve_at(m->eta, nm));
     }
     return range;
 }

@@ -42,8 +42,8 @@ bool roughness_input_init(roughness_input *in, const struct scene *s, const para
 
 ggx roughness_input_eval(const roughness_input *in, const surface_hit *hit)
 {
-    float u = fmaxf(0.0f, float_input_eval(&in->u, hit));
-    float v = fmaxf(0.0f, float_input_eval(&in->v, hit));
+    float u = maxf(0.0f, float_input_eval(&in->u, hit));
+    float v = maxf(0.0f, float_input_eval(&in->v, hit));
     return in->remap ? ggx_make(sqrtf(u), sqrtf(v)) : ggx_make(u, v);
 }
 

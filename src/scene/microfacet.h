@@ -26,7 +26,7 @@ typedef struct ggx {
 
 static inline bool ggx_is_smooth(ggx g)
 {
-    return fmaxf(g.alpha_x, g.alpha_y) < SMOOTH_ALPHA;
+    return maxf(g.alpha_x, g.alpha_y) < SMOOTH_ALPHA;
 }
 
 /** @brief A distribution from two alphas >= 0; a rough one keeps at least 1e-4. */
@@ -35,7 +35,7 @@ static inline ggx ggx_make(float alpha_x, float alpha_y)
     ggx g = {alpha_x, alpha_y};
     if (ggx_is_smooth(g))
         return (ggx){0.0f, 0.0f};
-    return (ggx){fmaxf(alpha_x, 1e-4f), fmaxf(alpha_y, 1e-4f)};
+    return (ggx){maxf(alpha_x, 1e-4f), maxf(alpha_y, 1e-4f)};
 }
 
 /** @brief s(w), see above. */
@@ -54,7 +54,7 @@ static inline float ggx_density(ggx g, vec3 m)
 /** @brief pdf_solid_angle of ggx_sample_visible. */
 static inline float ggx_visible_pdf(ggx g, vec3 wo, vec3 m)
 {
-    return ggx_density(g, m) * fmaxf(0.0f, dot3(wo, m)) * 2.0f /
+    return ggx_density(g, m) * maxf(0.0f, dot3(wo, m)) * 2.0f /
            (wo[2] + ggx_stretched(g, wo));
 }
 

@@ -87,7 +87,7 @@ static bool has_chromaticities(const color_space *space, const float xy[8])
     float own[8], off = 0.0f;
     color_space_chromaticities(space, own);
     for (int i = 0; i < 8; i++)
-        off = fmaxf(off, fabsf(own[i] - xy[i]));
+        off = maxf(off, fabsf(own[i] - xy[i]));
     return off < 2e-3f;
 }
 
@@ -251,7 +251,7 @@ static float imagemap_eval_float(const void *self, const surface_hit *hit)
                  mix(&f, m->channels[2])) *
                 (1.0f / 3.0f);
     value *= m->scale;
-    return m->invert ? fmaxf(0.0f, 1.0f - value) : value;
+    return m->invert ? maxf(0.0f, 1.0f - value) : value;
 }
 
 /* RGB to spectrum as curve_rgb does it, without making a curve where time matters. */
@@ -263,12 +263,12 @@ static spectrum to_spectrum(const color_space *space, const float rgb[3],
         return c ? curve_eval(c, w) : (spectrum){0};
     }
     /* An albedo fills the unit cube; other quantities are halved into its middle. */
-    float top = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2])), unit[3], coefficients[3];
+    float top = maxf(rgb[0], maxf(rgb[1], rgb[2])), unit[3], coefficients[3];
     float scale = role == CURVE_ALBEDO ? 1.0f : 2.0f * top;
     if (!(top > 0.0f))
         return (spectrum){0};
     for (int i = 0; i < 3; i++)
-        unit[i] = fminf(rgb[i] / scale, 1.0f);
+        unit[i] = minf(rgb[i] / scale, 1.0f);
     smooth_from_rgb(space, unit, coefficients);
     return smooth_eval(coefficients, w) * scale;
 }
@@ -281,7 +281,7 @@ static spectrum imagemap_eval_spectrum(const void *self, const surface_hit *hit,
     float rgb[3];
     for (int i = 0; i < 3; i++) {
         float value = m->scale * mix(&f, m->channels[i]);
-        rgb[i] = fmaxf(0.0f, m->invert ? 1.0f - value : value);
+        rgb[i] = maxf(0.0f, m->invert ? 1.0f - value : value);
     }
     if (m->grey && role != CURVE_EMISSION)
         return spectrum_fill(rgb[0]);
