@@ -9,8 +9,7 @@
 
 #include "base/memory.h"
 #include "format/input.h"
-#include "format/number.h"
-#include "format/ply_header.h"
+#include "format/ply_values.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,167 +23,13 @@ typedef struct column {
     size_t stride;
 } column;
 
-typedef struct ply_reader {
-    const char *file;
-    ply_header header;
-    const char *begin, *at, *end;
-    const char *line_start; /**< of text */
-    int line;
-    bool swap; /**< bytes are in the other order than ours */
-    mesh m;
-    size_t n_vertices, capacity; /**< capacity: indices there is room for */
-} ply_reader;
-
-static bool fail(const ply_reader *r, GError **error, const char *format, ...)
-    G_GNUC_PRINTF(3, 4);
-
-/** An error where the reading stands: at a line of text, at a byte of binary data. */
-static bool fail(const ply_reader *r, GError **error, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    g_autofree char *text = g_strdup_vprintf(format, args);
-    va_end(args);
-    if (r->header.encoding == PLY_TEXT)
-        error_set(error, ERROR_INPUT, "%s:%d:%d: %s", r->file, r->line,
-                  (int)(r->at - r->line_start) + 1, text);
-    else
-        error_set(error, ERROR_INPUT, "%s: byte %zu: %s", r->file,
-                  (size_t)(r->at - r->begin), text);
-    return false;
-}
-
-static size_t remaining(const ply_reader *r)
-{
-    return (size_t)(r->end - r->at);
-}
-
-/** A number of binary data in the order of this machine; at least its size is there. */
-static double load(const char *from, ply_type type, bool swap)
-{
-    union {
-        uint8_t u8;
-        int8_t i8;
-        uint16_t u16;
-        int16_t i16;
-        uint32_t u32;
-        int32_t i32;
-        uint64_t u64;
-        float f32;
-        double f64;
-    } v;
-    memcpy(&v, from, ply_type_size(type));
-    if (swap && ply_type_size(type) == 2)
-        v.u16 = GUINT16_SWAP_LE_BE(v.u16);
-    else if (swap && ply_type_size(type) == 4)
-        v.u32 = GUINT32_SWAP_LE_BE(v.u32);
-    else if (swap && ply_type_size(type) == 8)
-        v.u64 = GUINT64_SWAP_LE_BE(v.u64);
-    switch (type) {
-    case PLY_INT8:
-        return v.i8;
-    case PLY_UINT8:
-        return v.u8;
-    case PLY_INT16:
-        return v.i16;
-    case PLY_UINT16:
-        return v.u16;
-    case PLY_INT32:
-        return v.i32;
-    case PLY_UINT32:
-        return v.u32;
-    case PLY_FLOAT32:
-        return (double)v.f32;
-    case PLY_FLOAT64:
-        break;
-    }
-    return v.f64;
-}
-
-/** The next word of a text file; 0 long at its end. */
-static size_t next_word(ply_reader *r)
-{
-    for (; r->at < r->end && g_ascii_isspace(*r->at); r->at++)
-        if (*r->at == '\n') {
-            r->line++;
-            r->line_start = r->at + 1;
-        }
-    const char *p = r->at;
-    while (p < r->end && !g_ascii_isspace(*p))
-        p++;
-    return (size_t)(p - r->at);
-}
-
-static bool read_word(ply_reader *r, ply_type type, double *out, GError **error)
-{
-    size_t length = next_word(r);
-    if (length == 0)
-        return fail(r, error, "expected a number, found the end of the file");
-    float single = 0.0f;
-    bool is_single = type == PLY_FLOAT32;
-    bool fine = is_single ? number_float(r->at, length, &single)
-                          : number_double(r->at, length, out);
-    if (!fine) {
-        g_autofree char *found = g_utf8_make_valid(r->at, (gssize)MIN(length, 60));
-        return fail(r, error, "expected a number, found '%s'", found);
-    }
-    if (is_single)
-        *out = (double)single;
-    r->at += length;
-    return true;
-}
-
-static bool read_number(ply_reader *r, ply_type type, double *out, GError **error)
-{
-    if (r->header.encoding == PLY_TEXT)
-        return read_word(r, type, out, error);
-    if (remaining(r) < ply_type_size(type))
-        return fail(r, error, "expected a number, found the end of the file");
-    *out = load(r->at, type, r->swap);
-    r->at += ply_type_size(type);
-    return true;
-}
-
-static bool read_length(ply_reader *r, const ply_property *p, size_t *n, GError **error)
-{
-    double length;
-    if (!read_number(r, p->count_type, &length, error))
-        return false;
-    if (!(length >= 0.0 && length <= 4294967295.0) || length > floor(length))
-        return fail(r, error, "expected a list's length, found %g", length);
-    *n = (size_t)length;
-    return true;
-}
-
-static bool skip_numbers(ply_reader *r, ply_type type, size_t n, GError **error)
-{
-    if (r->header.encoding == PLY_TEXT) {
-        double ignored;
-        for (size_t i = 0; i < n; i++)
-            if (!read_word(r, PLY_FLOAT64, &ignored, error))
-                return false;
-        return true;
-    }
-    if (remaining(r) / ply_type_size(type) < n)
-        return fail(r, error, "expected %zu numbers, found the end of the file", n);
-    r->at += n * ply_type_size(type);
-    return true;
-}
-
-static bool skip_property(ply_reader *r, const ply_property *p, GError **error)
-{
-    size_t n = 1;
-    return (!p->is_list || read_length(r, p, &n, error)) &&
-           skip_numbers(r, p->type, n, error);
-}
-
 static bool skip_element(ply_reader *r, const ply_element *e, GError **error)
 {
     if (e->properties->len == 0)
         return true;
     for (size_t row = 0; row < e->count; row++)
         for (guint i = 0; i < e->properties->len; i++)
-            if (!skip_property(r, ply_property_at(e, i), error))
+            if (!ply_skip_property(r, ply_property_at(e, i), error))
                 return false;
     return true;
 }
@@ -193,7 +38,7 @@ static bool skip_element(ply_reader *r, const ply_element *e, GError **error)
 static bool check_count(const ply_reader *r, const ply_element *e, GError **error)
 {
     size_t least = ply_least_row(&r->header, e);
-    size_t most = least ? (remaining(r) + 1) / least : e->count;
+    size_t most = least ? (ply_remaining(r) + 1) / least : e->count;
     if (e->count <= most)
         return true;
     error_set(error, ERROR_INPUT,
@@ -241,7 +86,7 @@ static bool plan_columns(ply_reader *r, const ply_element *e, column *columns,
     for (int i = 0; i < N_COLUMNS; i++)
         columns[i].property = -1;
     if (!has_all(e, points, 3))
-        return fail(r, error, "expected vertices with x, y and z, found none");
+        return ply_fail(r, error, "expected vertices with x, y and z, found none");
     if (!alloc_rows(&m->positions, e->count, 3, "vertices", error))
         return false;
     add_columns(columns, e, points, 3, m->positions);
@@ -284,7 +129,7 @@ static bool read_fixed_rows(ply_reader *r, const ply_element *e, const column *c
                 if (plain)
                     memcpy(to, from, sizeof *to);
                 else
-                    *to = (float)load(from, type[c], r->swap);
+                    *to = (float)ply_load(from, type[c], r->swap);
             }
         }
     }
@@ -302,11 +147,11 @@ static bool read_row(ply_reader *r, const ply_element *e, const column *columns,
         while (c < N_COLUMNS && columns[c].property != (int)i)
             c++;
         if (c == N_COLUMNS) {
-            if (!skip_property(r, p, error))
+            if (!ply_skip_property(r, p, error))
                 return false;
             continue;
         }
-        if (!read_number(r, p->type, &value, error))
+        if (!ply_read_number(r, p->type, &value, error))
             return false;
         columns[c].to[row * columns[c].stride] = (float)value;
     }
@@ -334,7 +179,7 @@ static bool read_vertices(ply_reader *r, const ply_element *e, GError **error)
 {
     column columns[N_COLUMNS];
     if (r->m.positions)
-        return fail(r, error, "expected one element 'vertex', found another");
+        return ply_fail(r, error, "expected one element 'vertex', found another");
     if (!plan_columns(r, e, columns, error))
         return false;
     bool is_fixed = r->header.encoding != PLY_TEXT;
@@ -370,11 +215,11 @@ static bool read_corner(ply_reader *r, const ply_property *p, uint32_t *out,
                         GError **error)
 {
     double index;
-    if (!read_number(r, p->type, &index, error))
+    if (!ply_read_number(r, p->type, &index, error))
         return false;
     if (!(index >= 0.0 && index < (double)r->n_vertices) || index > floor(index))
-        return fail(r, error, "expected a vertex from 0 to %zu, found %.10g",
-                    r->n_vertices - 1, index);
+        return ply_fail(r, error, "expected a vertex from 0 to %zu, found %.10g",
+                        r->n_vertices - 1, index);
     *out = (uint32_t)index;
     return true;
 }
@@ -384,10 +229,11 @@ static bool read_face(ply_reader *r, const ply_property *p, GError **error)
 {
     size_t n = 0;
     uint32_t v[4];
-    if (!read_length(r, p, &n, error))
+    if (!ply_read_length(r, p, &n, error))
         return false;
     if (n != 3 && n != 4)
-        return fail(r, error, "expected a face of 3 or 4 vertices, found one of %zu", n);
+        return ply_fail(r, error, "expected a face of 3 or 4 vertices, found one of %zu",
+                        n);
     for (size_t i = 0; i < n; i++)
         if (!read_corner(r, p, &v[i], error))
             return false;
@@ -412,7 +258,7 @@ static size_t read_plain_triangles(ply_reader *r, const ply_element *e)
     bool is_plain = r->header.encoding != PLY_TEXT && !r->swap &&
                     e->properties->len == 1 && ply_type_size(p->count_type) == 1 &&
                     (p->type == PLY_INT32 || p->type == PLY_UINT32);
-    size_t n = is_plain ? MIN(e->count, remaining(r) / FACE) : 0;
+    size_t n = is_plain ? MIN(e->count, ply_remaining(r) / FACE) : 0;
     uint32_t *to = r->m.indices;
     for (size_t i = 0; i < n; i++, r->at += FACE, to += 3) {
         memcpy(to, r->at + 1, 3 * sizeof *to);
@@ -432,9 +278,10 @@ static bool read_faces(ply_reader *r, const ply_element *e, GError **error)
     if (list < 0)
         list = ply_find_property(e, "vertex_index");
     if (list < 0 || !ply_property_at(e, (guint)list)->is_list)
-        return fail(r, error, "expected faces with a list vertex_indices, found none");
+        return ply_fail(r, error,
+                        "expected faces with a list vertex_indices, found none");
     if (r->m.indices)
-        return fail(r, error, "expected one element 'face', found another");
+        return ply_fail(r, error, "expected one element 'face', found another");
     r->capacity = 3 * e->count + 6;
     r->m.indices = big_alloc(r->capacity, sizeof *r->m.indices, "triangles", error);
     if (!r->m.indices)
@@ -442,7 +289,8 @@ static bool read_faces(ply_reader *r, const ply_element *e, GError **error)
     for (size_t row = read_plain_triangles(r, e); row < e->count; row++)
         for (guint i = 0; i < e->properties->len; i++) {
             const ply_property *p = ply_property_at(e, i);
-            if (!(i == (guint)list ? read_face(r, p, error) : skip_property(r, p, error)))
+            if (!(i == (guint)list ? read_face(r, p, error)
+                                   : ply_skip_property(r, p, error)))
                 return false;
         }
     return true;

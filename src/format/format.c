@@ -1,0 +1,64 @@
+/*
+ * The table of scene formats.
+ */
+#include "format/format.h"
+
+#include "format/reader.h"
+
+#include <string.h>
+
+static const format_reader *const readers[] = {&pbrt_reader};
+
+static const format_reader *find_reader(const char *path)
+{
+    g_autofree char *name = g_ascii_strdown(path, -1);
+    if (g_str_has_suffix(name, ".gz"))
+        name[strlen(name) - 3] = '\0';
+    for (size_t i = 0; i < G_N_ELEMENTS(readers); i++)
+        for (const char *const *e = readers[i]->extensions; *e; e++)
+            if (g_str_has_suffix(name, *e))
+                return readers[i];
+    return NULL;
+}
+
+static void refuse(const char *path, GError **error)
+{
+    g_autoptr(GString) known = g_string_new(NULL);
+    for (size_t i = 0; i < G_N_ELEMENTS(readers); i++) {
+        g_autofree char *extensions = g_strjoinv(", ", (char **)readers[i]->extensions);
+        g_string_append_printf(known, "%s%s (%s)", i ? ", " : "", readers[i]->name,
+                               extensions);
+    }
+    const char *dot = strrchr(path, '.');
+    bool has_extension = dot && !strchr(dot, '/');
+    error_at(error, (source_place){g_intern_string(path), 0, 0},
+             "expected a scene file: %s, found %s", known->str,
+             has_extension ? dot : "no extension");
+}
+
+/** What only the whole scene can tell has no line; the file it is of is named. */
+static bool commit(scene *s, const char *path, unsigned threads, GError **error)
+{
+    g_autoptr(GError) inner = NULL;
+    if (scene_commit(s, threads, &inner))
+        return true;
+    bool is_input = g_error_matches(inner, NEPH_ERROR, ERROR_INPUT);
+    if (is_input && !g_str_has_prefix(inner->message, path))
+        g_prefix_error(&inner, "%s: ", path);
+    g_propagate_error(error, g_steal_pointer(&inner));
+    return false;
+}
+
+scene *format_load(const char *path, unsigned threads, const log_sink *log,
+                   GError **error)
+{
+    const format_reader *reader = find_reader(path);
+    if (!reader) {
+        refuse(path, error);
+        return NULL;
+    }
+    g_autoptr(scene) s = scene_new(log);
+    if (!reader->read(s, path, error) || !commit(s, path, threads, error))
+        return NULL;
+    return g_steal_pointer(&s);
+}

@@ -1,0 +1,16 @@
+/*
+ * Scene files, whatever their format, become a committed scene.
+ */
+#pragma once
+
+#include "scene/scene.h"
+
+/**
+ * @brief Reads a scene file and commits the scene.
+ * @param threads for the acceleration structure; 0 = all
+ * @param log may be NULL; must outlive the scene
+ * @return the scene, owned by the caller; NULL with ERROR_INPUT whose message holds up to
+ * 20 lines "file:line:column: expected ..., found ...", or with ERROR_FAILED
+ */
+scene *format_load(const char *path, unsigned threads, const log_sink *log,
+                   GError **error);

@@ -1,0 +1,290 @@
+/*
+ * Integrators and samplers as settings. "photonmap" takes the settings' own names; pbrt's
+ * own integrators, which all converge to the same image, become the photon mapping that
+ * costs about as much.
+ */
+#include "format/pbrt_parser.h"
+
+#include <string.h>
+
+enum { SPP_OF_PATHS = 4 };
+
+/** What the sampler asks for; 0: nothing. */
+typedef struct sampling {
+    int pixel_samples;
+    const param *where; /**< that said so */
+} sampling;
+
+/** pbrt's other integrators, and what else they accept. */
+typedef struct path_integrator {
+    const char *name;
+    const char *accepted[8];
+} path_integrator;
+
+static const path_integrator path_integrators[] = {
+    {"path", {"regularize", "lightsampler"}},
+    {"volpath", {"regularize", "lightsampler"}},
+    {"simplepath", {"samplebsdf", "samplelights"}},
+    {"simplevolpath", {NULL}},
+    {"randomwalk", {NULL}},
+    {"lightpath", {NULL}},
+    {"bdpt", {"regularize"}},
+    {"mlt",
+     {"regularize", "bootstrapsamples", "chains", "mutationsperpixel",
+      "largestepprobability", "sigma"}},
+};
+
+static void note(const pbrt_parser *parser, source_place place, const char *format, ...)
+    G_GNUC_PRINTF(3, 4);
+
+static void note(const pbrt_parser *parser, source_place place, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    g_autofree char *text = g_strdup_vprintf(format, args);
+    va_end(args);
+    log_message(&parser->scene->log, LOG_NOTE, "%s:%d:%d: %s", place.file, place.line,
+                place.column, text);
+}
+
+/** Sets a setting; a refusal is reported at the place. */
+static void set(pbrt_parser *parser, source_place place, const char *name,
+                const char *value)
+{
+    g_autoptr(GError) error = NULL;
+    if (!settings_set(&parser->scene->settings, name, value, &error))
+        pbrt_error(parser, place, "%s", error->message);
+}
+
+static void set_count(pbrt_parser *parser, source_place place, const char *name,
+                      int64_t value)
+{
+    g_autofree char *text = g_strdup_printf("%" G_GINT64_FORMAT, value);
+    set(parser, place, name, text);
+}
+
+/** The shortest decimal that is this float. */
+static char *float_text(float value)
+{
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    for (int digits = 6; digits <= 9; digits++) {
+        char format[8];
+        g_snprintf(format, sizeof format, "%%.%dg", digits);
+        g_ascii_formatd(text, sizeof text, format, (double)value);
+        float back = (float)g_ascii_strtod(text, NULL);
+        if (memcmp(&back, &value, sizeof back) == 0)
+            break;
+    }
+    return g_strdup(text);
+}
+
+/** A parameter's one value as text; NULL if it has another number of them or a type that
+ * no setting has. */
+static char *param_text(const param *q)
+{
+    if (q->n != 1)
+        return NULL;
+    if (q->type == PARAM_FLOAT)
+        return float_text(q->numbers[0]);
+    if (q->type == PARAM_INTEGER)
+        return g_strdup_printf("%d", q->integers[0]);
+    if (q->type == PARAM_BOOL)
+        return g_strdup(q->integers[0] ? "true" : "false");
+    return q->type == PARAM_STRING ? g_strdup(q->strings[0]) : NULL;
+}
+
+static void set_from_param(pbrt_parser *parser, const param *q)
+{
+    g_autofree char *text = param_text(q);
+    if (text)
+        set(parser, q->place, q->name, text);
+    else
+        pbrt_error(parser, q->place, "parameter '%s': expected one value, found %zu",
+                   q->name, q->n);
+}
+
+static const param *integer_of(pbrt_parser *parser, const params *p, const char *name,
+                               int *out)
+{
+    GError *error = NULL;
+    if (!params_integer(p, name, out, &error)) {
+        pbrt_report(parser, error);
+        return NULL;
+    }
+    return params_find(p, name);
+}
+
+static void apply_seed(pbrt_parser *parser, const params *p)
+{
+    int seed;
+    const param *q = integer_of(parser, p, "seed", &seed);
+    if (q)
+        set_from_param(parser, q);
+}
+
+/** Samples a pixel by rows and columns. */
+static void read_stratified(pbrt_parser *parser, const params *p, sampling *out)
+{
+    int x = 4, y = 4;
+    const param *across = integer_of(parser, p, "xsamples", &x);
+    const param *down = integer_of(parser, p, "ysamples", &y);
+    params_find(p, "jitter");
+    if ((across && x < 1) || (down && y < 1) || (int64_t)x * y > INT_MAX) {
+        pbrt_error(parser, p->place, "expected xsamples and ysamples > 0, found %d, %d",
+                   x, y);
+        return;
+    }
+    out->pixel_samples = x * y;
+    out->where = across ? across : down;
+}
+
+static void read_pixel_samples(pbrt_parser *parser, const params *p, sampling *out)
+{
+    int n = 0;
+    const param *q = integer_of(parser, p, "pixelsamples", &n);
+    params_find(p, "randomization");
+    if (q && n < 1) {
+        pbrt_error(parser, q->place,
+                   "parameter 'pixelsamples': expected a number > 0, "
+                   "found %d",
+                   n);
+        return;
+    }
+    out->pixel_samples = n;
+    out->where = q;
+}
+
+static sampling read_sampler(pbrt_parser *parser)
+{
+    static const char *const kinds[] = {"halton",      "sobol",       "zsobol",
+                                        "paddedsobol", "independent", "stratified",
+                                        "pmj02bn",     NULL};
+    sampling out = {0};
+    const pending *sampler = &parser->sampler;
+    if (!sampler->kind)
+        return out;
+    if (!g_strv_contains(kinds, sampler->kind)) {
+        g_autofree char *known = g_strjoinv(", ", (char **)kinds);
+        pbrt_error(parser, sampler->place, "expected one of %s, found \"%s\"", known,
+                   sampler->kind);
+        return out;
+    }
+    note(parser, sampler->place, "Sampler '%s': Owen-scrambled Sobol' points are used",
+         sampler->kind);
+    if (strcmp(sampler->kind, "stratified") == 0)
+        read_stratified(parser, sampler->p, &out);
+    else
+        read_pixel_samples(parser, sampler->p, &out);
+    apply_seed(parser, sampler->p);
+    pbrt_check_used(parser, sampler->p, "Sampler", sampler->kind);
+    return out;
+}
+
+static void apply_photonmap(pbrt_parser *parser, const sampling *samples)
+{
+    const params *p = parser->integrator.p;
+    if (samples->where)
+        set_count(parser, samples->where->place, "spp", samples->pixel_samples);
+    for (guint i = 0; i < p->list->len; i++) {
+        const param *q = p->list->pdata[i];
+        if (settings_find(q->name))
+            set_from_param(parser, params_find(p, q->name));
+    }
+}
+
+/** pbrt's maxdepth, 5 if not given. */
+static int apply_depth(pbrt_parser *parser)
+{
+    const pending *in = &parser->integrator;
+    int depth = 5;
+    const param *q = integer_of(parser, in->p, "maxdepth", &depth);
+    set_count(parser, q ? q->place : in->place, "maxdepth", depth);
+    return depth;
+}
+
+/** Stochastic progressive photon mapping: an iteration is a pass of one sample a pixel.
+ */
+static void apply_sppm(pbrt_parser *parser, const sampling *samples)
+{
+    const pending *in = &parser->integrator;
+    const film_settings *film = &parser->scene->film;
+    int photons = -1;
+    float radius = 1.0f;
+    GError *error = NULL;
+    apply_depth(parser);
+    integer_of(parser, in->p, "photonsperiteration", &photons);
+    if (!params_float(in->p, "radius", &radius, &error))
+        pbrt_report(parser, error);
+    g_autofree char *text = float_text(radius);
+    int64_t pixels = (int64_t)film->width * film->height;
+    set_count(parser, in->place, "photons", photons > 0 ? photons : MAX(pixels, 1));
+    set(parser, in->place, "radius", text);
+    set(parser, in->place, "spp", "1");
+    if (samples->where)
+        set_count(parser, samples->where->place, "passes", samples->pixel_samples);
+    apply_seed(parser, in->p);
+}
+
+static const path_integrator *find_path_integrator(const char *name)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(path_integrators); i++)
+        if (strcmp(path_integrators[i].name, name) == 0)
+            return &path_integrators[i];
+    return NULL;
+}
+
+/** pixelsamples in all, a few a pass. */
+static void apply_samples(pbrt_parser *parser, const sampling *samples)
+{
+    if (!samples->where)
+        return;
+    int passes = MAX(1, samples->pixel_samples / SPP_OF_PATHS);
+    set_count(parser, samples->where->place, "passes", passes);
+    set_count(parser, samples->where->place, "spp",
+              MIN(samples->pixel_samples, SPP_OF_PATHS));
+}
+
+static void apply_path(pbrt_parser *parser, const path_integrator *kind,
+                       const sampling *samples)
+{
+    const pending *in = &parser->integrator;
+    const settings *s = &parser->scene->settings;
+    int depth = apply_depth(parser);
+    apply_samples(parser, samples);
+    for (int i = 0; kind->accepted[i]; i++) {
+        const param *q = params_find(in->p, kind->accepted[i]);
+        if (q)
+            note(parser, q->place, "'%s' of integrator '%s' has no meaning for photons",
+                 q->name, kind->name);
+    }
+    note(parser, in->place,
+         "integrator '%s' becomes photonmap with %" G_GINT64_FORMAT
+         " passes of %" G_GINT64_FORMAT " samples a pixel and maxdepth %d",
+         kind->name, s->passes, s->spp, depth);
+}
+
+void pbrt_apply_integrator(pbrt_parser *parser)
+{
+    const pending *in = &parser->integrator;
+    sampling samples = read_sampler(parser);
+    if (!in->kind) {
+        apply_samples(parser, &samples);
+        return;
+    }
+    const path_integrator *path = find_path_integrator(in->kind);
+    if (strcmp(in->kind, "photonmap") == 0) {
+        apply_photonmap(parser, &samples);
+    } else if (strcmp(in->kind, "sppm") == 0) {
+        apply_sppm(parser, &samples);
+    } else if (path) {
+        apply_path(parser, path, &samples);
+    } else {
+        pbrt_error(parser, in->place,
+                   "expected Integrator \"photonmap\" or one of pbrt's (sppm, path, "
+                   "volpath, simplepath, simplevolpath, randomwalk, lightpath, bdpt, "
+                   "mlt), found \"%s\"",
+                   in->kind);
+        return;
+    }
+    pbrt_check_used(parser, in->p, "Integrator", in->kind);
+}

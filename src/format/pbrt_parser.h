@@ -1,0 +1,169 @@
+/*
+ * The state shared by the parts of the pbrt-v4 reader.
+ *
+ *   pbrt.c            files, the table of directives, includes
+ *   pbrt_params.c     "type name" values ... lists
+ *   pbrt_transform.c  the current transform
+ *   pbrt_state.c      attributes: what AttributeBegin keeps and AttributeEnd brings back
+ *   pbrt_options.c    what stands before WorldBegin, kept until then
+ *   pbrt_integrator.c integrators and samplers as settings
+ *   pbrt_world.c      materials, textures, lights and shapes, given to the scene
+ *
+ * A handler reads a directive's arguments. It returns false if they do not follow the
+ * grammar, and reading goes on at the next directive; other errors it reports, and
+ * returns true. Either way the error is in the list already.
+ */
+#pragma once
+
+#include "format/lexer.h"
+#include "scene/scene.h"
+
+enum { MAX_ERRORS = 20, MAX_DEPTH = 64 };
+
+/** Kinds of directives that Attribute gives parameters to. */
+typedef enum attribute_target {
+    TARGET_SHAPE,
+    TARGET_LIGHT,
+    TARGET_MATERIAL,
+    TARGET_TEXTURE,
+    N_TARGETS
+} attribute_target;
+
+/** Parameters from one Attribute directive, and those given before it. */
+typedef struct attribute {
+    const params *given;
+    const struct attribute *before;
+} attribute;
+
+enum { MATERIAL_DEFAULT = -2 }; /**< no Material directive yet; NO_INDEX: interface */
+
+/** What AttributeBegin keeps. */
+typedef struct graphics_state {
+    transform ctm;
+    bool is_animated; /**< ActiveTransform is not All */
+    bool reverse_orientation;
+    int material;
+    const params *area_light; /**< owned by the parser; NULL: none */
+    const color_space *space;
+    const attribute *attributes[N_TARGETS];
+} graphics_state;
+
+typedef struct saved_state {
+    graphics_state state;
+    source_place place; /**< of the AttributeBegin */
+} saved_state;
+
+/** A directive kept until WorldBegin. */
+typedef struct pending {
+    char *kind; /**< NULL: not given */
+    params *p;
+    source_place place;
+    transform ctm;
+} pending;
+
+/** Numbers being read, floats or ints; grows, never shrinks. */
+typedef struct scratch {
+    void *data;
+    size_t n, capacity;
+} scratch;
+
+typedef struct pbrt_parser {
+    scene *scene;
+    char *base_directory;  /**< of the main file: relative names start there */
+    lexer *words;          /**< of the file being read */
+    GPtrArray *open_files; /**< canonical names, for loops of includes */
+
+    GPtrArray *errors; /**< char* */
+    GError *fatal;     /**< what made going on pointless, such as no memory */
+
+    bool in_world;
+    bool in_object; /**< between ObjectBegin and ObjectEnd, whose content is skipped */
+    graphics_state state;
+    GArray *saved;                  /**< saved_state */
+    GHashTable *coordinate_systems; /**< name -> transform* */
+    GHashTable *interfaces;         /**< names of materials that are none */
+    int default_material;           /**< its index once made, or NO_INDEX */
+    GPtrArray *kept;                /**< params* that outlive their directive */
+    GPtrArray *attributes;          /**< attribute* */
+    pending film, filter, sampler, integrator, camera;
+    scratch values; /**< of the parameter being read */
+} pbrt_parser;
+
+typedef bool (*directive_handler)(pbrt_parser *parser, source_place place);
+
+/* ---- pbrt.c ---- */
+
+/** @brief Takes an error into the list. */
+void pbrt_report(pbrt_parser *parser, GError *error);
+/** @brief "expected `what`, found <the word>" at the word. @return false */
+bool pbrt_expected(pbrt_parser *parser, const char *what, const token *found);
+/** @brief An error of the reader's own at a place. */
+void pbrt_error(pbrt_parser *parser, source_place place, const char *format, ...)
+    G_GNUC_PRINTF(3, 4);
+/** @brief True when reading on is of no use. */
+bool pbrt_should_stop(const pbrt_parser *parser);
+/** @brief A quoted string argument; owned by the caller, NULL if there is none. `what`
+ * names it in the error; *place, if not NULL, gets where it stands. */
+char *pbrt_read_string(pbrt_parser *parser, const char *what, source_place *place);
+/** @brief Reads another file's directives as if they stood here. */
+void pbrt_include(pbrt_parser *parser, const char *name, source_place place);
+
+/* ---- pbrt_params.c ---- */
+
+/** @brief A parameter list up to the next directive, without attributes; NULL if it does
+ * not follow the grammar. Owned by the caller. */
+params *pbrt_read_params(pbrt_parser *parser, source_place place);
+/** @brief The same with what Attribute gave to the target filled in. */
+params *pbrt_read_params_for(pbrt_parser *parser, source_place place,
+                             attribute_target target);
+/** @brief Reports parameters that nobody asked for. */
+void pbrt_check_used(pbrt_parser *parser, const params *p, const char *what,
+                     const char *kind);
+
+/* ---- handlers ---- */
+
+bool pbrt_identity(pbrt_parser *parser, source_place place);
+bool pbrt_translate(pbrt_parser *parser, source_place place);
+bool pbrt_scale(pbrt_parser *parser, source_place place);
+bool pbrt_rotate(pbrt_parser *parser, source_place place);
+bool pbrt_look_at(pbrt_parser *parser, source_place place);
+bool pbrt_transform(pbrt_parser *parser, source_place place);
+bool pbrt_concat_transform(pbrt_parser *parser, source_place place);
+bool pbrt_coordinate_system(pbrt_parser *parser, source_place place);
+bool pbrt_coord_sys_transform(pbrt_parser *parser, source_place place);
+bool pbrt_transform_times(pbrt_parser *parser, source_place place);
+bool pbrt_active_transform(pbrt_parser *parser, source_place place);
+/** @brief Remembers the current transform under a name. */
+void pbrt_name_transform(pbrt_parser *parser, const char *name, const transform *t);
+
+bool pbrt_attribute(pbrt_parser *parser, source_place place);
+bool pbrt_attribute_begin(pbrt_parser *parser, source_place place);
+bool pbrt_attribute_end(pbrt_parser *parser, source_place place);
+bool pbrt_reverse_orientation(pbrt_parser *parser, source_place place);
+bool pbrt_color_space(pbrt_parser *parser, source_place place);
+bool pbrt_medium_interface(pbrt_parser *parser, source_place place);
+bool pbrt_make_named_medium(pbrt_parser *parser, source_place place);
+bool pbrt_object_begin(pbrt_parser *parser, source_place place);
+bool pbrt_object_end(pbrt_parser *parser, source_place place);
+bool pbrt_object_instance(pbrt_parser *parser, source_place place);
+/** @brief Reports AttributeBegins that were never ended, down to a depth. */
+void pbrt_close_attributes(pbrt_parser *parser, guint depth);
+
+bool pbrt_film(pbrt_parser *parser, source_place place);
+bool pbrt_pixel_filter(pbrt_parser *parser, source_place place);
+bool pbrt_sampler(pbrt_parser *parser, source_place place);
+bool pbrt_integrator(pbrt_parser *parser, source_place place);
+bool pbrt_camera(pbrt_parser *parser, source_place place);
+bool pbrt_accelerator(pbrt_parser *parser, source_place place);
+bool pbrt_option(pbrt_parser *parser, source_place place);
+bool pbrt_world_begin(pbrt_parser *parser, source_place place);
+/** @brief Turns the integrator and sampler that were kept into settings. */
+void pbrt_apply_integrator(pbrt_parser *parser);
+
+bool pbrt_material(pbrt_parser *parser, source_place place);
+bool pbrt_make_named_material(pbrt_parser *parser, source_place place);
+bool pbrt_named_material(pbrt_parser *parser, source_place place);
+bool pbrt_texture(pbrt_parser *parser, source_place place);
+bool pbrt_light_source(pbrt_parser *parser, source_place place);
+bool pbrt_area_light_source(pbrt_parser *parser, source_place place);
+bool pbrt_shape(pbrt_parser *parser, source_place place);

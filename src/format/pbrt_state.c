@@ -1,0 +1,143 @@
+/*
+ * The graphics state: what AttributeBegin keeps, AttributeEnd brings back, and the
+ * directives that change nothing else. Media and instances are refused here by name.
+ */
+#include "format/pbrt_parser.h"
+
+#include <string.h>
+
+bool pbrt_attribute_begin(pbrt_parser *parser, source_place place)
+{
+    saved_state saved = {parser->state, place};
+    g_array_append_val(parser->saved, saved);
+    return true;
+}
+
+bool pbrt_attribute_end(pbrt_parser *parser, source_place place)
+{
+    if (parser->saved->len == 0) {
+        pbrt_error(parser, place,
+                   "expected AttributeBegin before AttributeEnd, found none");
+        return true;
+    }
+    guint last = parser->saved->len - 1;
+    parser->state = g_array_index(parser->saved, saved_state, last).state;
+    g_array_set_size(parser->saved, last);
+    return true;
+}
+
+void pbrt_close_attributes(pbrt_parser *parser, guint depth)
+{
+    while (parser->saved->len > depth && !pbrt_should_stop(parser)) {
+        guint last = parser->saved->len - 1;
+        source_place place = g_array_index(parser->saved, saved_state, last).place;
+        pbrt_error(parser, place,
+                   "expected AttributeEnd for this AttributeBegin, found the end of the "
+                   "file");
+        pbrt_attribute_end(parser, place);
+    }
+}
+
+bool pbrt_attribute(pbrt_parser *parser, source_place place)
+{
+    static const char *const names[N_TARGETS] = {"shape", "light", "material", "texture"};
+    source_place at = place;
+    g_autofree char *target = pbrt_read_string(parser, "a kind of directive", &at);
+    params *given = target ? pbrt_read_params(parser, place) : NULL;
+    if (!given)
+        return false;
+    g_ptr_array_add(parser->kept, given);
+    for (int i = 0; i < N_TARGETS; i++)
+        if (strcmp(target, names[i]) == 0) {
+            attribute *a = g_new(attribute, 1);
+            *a = (attribute){given, parser->state.attributes[i]};
+            g_ptr_array_add(parser->attributes, a);
+            parser->state.attributes[i] = a;
+            return true;
+        }
+    if (strcmp(target, "medium") == 0)
+        pbrt_error(parser, at, "participating media are not supported");
+    else
+        pbrt_error(parser, at,
+                   "expected \"shape\", \"light\", \"material\" or \"texture\", found "
+                   "\"%s\"",
+                   target);
+    return true;
+}
+
+bool pbrt_reverse_orientation(pbrt_parser *parser, source_place place)
+{
+    (void)place;
+    parser->state.reverse_orientation = !parser->state.reverse_orientation;
+    return true;
+}
+
+bool pbrt_color_space(pbrt_parser *parser, source_place place)
+{
+    source_place at = place;
+    g_autofree char *name = pbrt_read_string(parser, "a colour space", &at);
+    if (!name)
+        return false;
+    const color_space *space = color_space_find(name);
+    if (space)
+        parser->state.space = space;
+    else
+        pbrt_error(parser, at,
+                   "expected \"srgb\", \"rec2020\", \"dci-p3\" or \"aces2065-1\", found "
+                   "\"%s\"",
+                   name);
+    return true;
+}
+
+/** One name for both sides, or two; empty is vacuum. */
+bool pbrt_medium_interface(pbrt_parser *parser, source_place place)
+{
+    g_autofree char *inside = pbrt_read_string(parser, "a medium", &place);
+    if (!inside)
+        return false;
+    g_autofree char *outside = NULL;
+    if (lexer_peek(parser->words).kind == TOKEN_STRING)
+        outside = pbrt_read_string(parser, "a medium", *inside ? NULL : &place);
+    if (*inside || (outside && *outside))
+        pbrt_error(parser, place, "participating media are not supported, found \"%s\"",
+                   *inside ? inside : outside);
+    return true;
+}
+
+bool pbrt_make_named_medium(pbrt_parser *parser, source_place place)
+{
+    g_autofree char *name = pbrt_read_string(parser, "a name", NULL);
+    g_autoptr(params) p = name ? pbrt_read_params(parser, place) : NULL;
+    if (!p)
+        return false;
+    pbrt_error(parser, place, "participating media are not supported, found \"%s\"",
+               name);
+    return true;
+}
+
+bool pbrt_object_begin(pbrt_parser *parser, source_place place)
+{
+    g_autofree char *name = pbrt_read_string(parser, "a name", NULL);
+    if (!name)
+        return false;
+    pbrt_error(parser, place, "object instancing is not supported, found \"%s\"", name);
+    parser->in_object = true;
+    return true;
+}
+
+bool pbrt_object_end(pbrt_parser *parser, source_place place)
+{
+    if (!parser->in_object)
+        pbrt_error(parser, place, "expected ObjectBegin before ObjectEnd, found none");
+    parser->in_object = false;
+    return true;
+}
+
+bool pbrt_object_instance(pbrt_parser *parser, source_place place)
+{
+    g_autofree char *name = pbrt_read_string(parser, "a name", NULL);
+    if (!name)
+        return false;
+    pbrt_error(parser, place, "object instancing is not supported, found \"%s\"", name);
+    return true;
+}

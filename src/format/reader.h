@@ -1,0 +1,15 @@
+/*
+ * What a file format must do; one row each in format.c's table.
+ */
+#pragma once
+
+#include "scene/scene.h"
+
+typedef struct format_reader {
+    const char *name;              /**< as messages call it */
+    const char *const *extensions; /**< lower case, with the dot, NULL-terminated */
+    /** Builds the scene from the file; does not commit. false with an error. */
+    bool (*read)(scene *s, const char *path, GError **error);
+} format_reader;
+
+extern const format_reader pbrt_reader;
