@@ -15,6 +15,7 @@
  * Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001.
  */
 #include "base/memory.h"
+#include "math/box.h"
 #include "photon/map_kind.h"
 #include "photon/nearest.h"
 
@@ -110,13 +111,10 @@ static void split_at(kd_item *items, size_t n, int axis, size_t rank)
 
 static int widest_axis(const kd_item *items, size_t n)
 {
-    vec3 low = vec3_make(INFINITY, INFINITY, INFINITY), high = -low;
-    for (size_t i = 0; i < n; i++) {
-        vec3 p = vec3_make(items[i].x[0], items[i].x[1], items[i].x[2]);
-        low = min3(low, p);
-        high = max3(high, p);
-    }
-    vec3 extent = high - low;
+    box3 box = box3_empty();
+    for (size_t i = 0; i < n; i++)
+        box = box3_with_point(box, (vec3){items[i].x[0], items[i].x[1], items[i].x[2]});
+    vec3 extent = box.high - box.low;
     if (extent[0] >= extent[1] && extent[0] >= extent[2])
         return 0;
     return extent[1] >= extent[2] ? 1 : 2;
@@ -199,39 +197,24 @@ static bool order_photons(photon_map *map, unsigned threads, GError **error)
     return ok;
 }
 
-/* The bounds of child number `child` on the level below, in lane `lane` of its group. */
-static void set_box(kd_group *group, int lane, const float low[3], const float high[3])
+static box3 leaf_bounds(const photon_store *s, size_t leaf)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        group->low[axis][lane] = low[axis];
-        group->high[axis][lane] = high[axis];
-    }
-}
-
-static void leaf_bounds(const photon_store *s, size_t leaf, float low[3], float high[3])
-{
-    const float *const x[3] = {s->x, s->y, s->z};
+    box3 box = box3_empty();
     size_t end = MIN((leaf + 1) * LEAF, s->n);
-    for (int axis = 0; axis < 3; axis++) {
-        low[axis] = INFINITY;
-        high[axis] = -INFINITY;
-        for (size_t i = leaf * LEAF; i < end; i++) {
-            low[axis] = fminf(low[axis], x[axis][i]);
-            high[axis] = fmaxf(high[axis], x[axis][i]);
-        }
-    }
+    for (size_t i = leaf * LEAF; i < end; i++)
+        box = box3_with_point(box, vec3_make(s->x[i], s->y[i], s->z[i]));
+    return box;
 }
 
-static void group_bounds(const kd_group *group, float low[3], float high[3])
+static box3 group_bounds(const kd_group *group)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        low[axis] = INFINITY;
-        high[axis] = -INFINITY;
-        for (int lane = 0; lane < WIDTH; lane++) {
-            low[axis] = fminf(low[axis], group->low[axis][lane]);
-            high[axis] = fmaxf(high[axis], group->high[axis][lane]);
-        }
+    box3 box = box3_empty();
+    for (int lane = 0; lane < WIDTH; lane++) {
+        vec3 low = {group->low[0][lane], group->low[1][lane], group->low[2][lane]};
+        vec3 high = {group->high[0][lane], group->high[1][lane], group->high[2][lane]};
+        box = box3_union(box, (box3){low, high});
     }
+    return box;
 }
 
 /* Nodes on a level: leaves on level 0, groups above. */
@@ -243,23 +226,29 @@ static size_t nodes_on_level(size_t n, unsigned level)
     return (n + span - 1) / span;
 }
 
+/* The bounds of a node on the level below the one being filled; empty if there is none.
+ */
+static box3 child_bounds(const kd_builder *b, size_t child)
+{
+    if (child >= nodes_on_level(b->n, b->level - 1))
+        return box3_empty();
+    if (b->level == 1)
+        return leaf_bounds(b->store, child);
+    return group_bounds(b->tree->groups + b->tree->offset[b->level - 1] + child);
+}
+
 static void fill_groups(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     const kd_builder *b = data;
-    size_t n_children = nodes_on_level(b->n, b->level - 1);
     for (size_t g = begin; g < end; g++) {
         kd_group *group = b->tree->groups + b->tree->offset[b->level] + g;
         for (int lane = 0; lane < WIDTH; lane++) {
-            float low[3] = {INFINITY, INFINITY, INFINITY};
-            float high[3] = {-INFINITY, -INFINITY, -INFINITY};
-            size_t child = g * WIDTH + (size_t)lane;
-            if (child < n_children && b->level == 1)
-                leaf_bounds(b->store, child, low, high);
-            else if (child < n_children)
-                group_bounds(b->tree->groups + b->tree->offset[b->level - 1] + child, low,
-                             high);
-            set_box(group, lane, low, high);
+            box3 box = child_bounds(b, g * WIDTH + (size_t)lane);
+            for (int axis = 0; axis < 3; axis++) {
+                group->low[axis][lane] = box.low[axis];
+                group->high[axis][lane] = box.high[axis];
+            }
         }
     }
 }

@@ -163,13 +163,14 @@ uint32_t direction_pack(vec3 w, unsigned flags)
         v = copysignf((float)OCTAHEDRON_STEPS - fabsf(o[0]), o[1]);
     }
     uint32_t best = 0;
-    float best_error = INFINITY;
+    float best_sine2 = INFINITY;
     for (unsigned corner = 0; corner < 4; corner++) {
         float cu = floorf(u) + (float)(corner & 1), cv = floorf(v) + (float)(corner >> 1);
         uint32_t packed = pack_steps(clamp_step(cu), clamp_step(cv), flags);
-        float error = length3_2(direction_unpack(packed) - w);
-        if (error < best_error) {
-            best_error = error;
+        vec3 candidate = direction_octahedron(packed);
+        float sine2 = length3_2(cross3(candidate, w)) / length3_2(candidate);
+        if (sine2 < best_sine2) {
+            best_sine2 = sine2;
             best = packed;
         }
     }
