@@ -18,6 +18,11 @@ typedef struct camera {
     float focal_distance; /**< m */
     float shutter_open, shutter_close;
     int width, height; /**< of the film, pixels */
+
+    float half_screen; /**< tan(fov / 2): half the shorter side of the screen */
+    float aspect;      /**< frameaspectratio; 0 = the film's */
+    bool has_window;   /**< a screenwindow is given, and the film's shape ignored */
+    float window[4];   /**< x_min, x_max, y_min, y_max in half_screens */
 } camera;
 
 /** @brief From pbrt's parameters: fov, screenwindow, frameaspectratio, lensradius,
@@ -27,6 +32,8 @@ bool camera_init(camera *c, const char *kind, const params *p, const transform *
 /** @brief Changes the film's size, keeping the field of view as pbrt would for that size.
  */
 void camera_resize(camera *c, int width, int height);
+/** @brief The ray through a place on the film: u_lens uniform in the unit square chooses
+ * the place on the lens, u_time the time between the shutter's opening and closing. */
 ray camera_ray(const camera *c, vec2 raster, vec2 u_lens, float u_time);
 /** @brief Area on a plane facing the camera, at distance z along its axis, that one pixel
  * covers. */
