@@ -287,9 +287,9 @@ static void refuse_mesh(const char *ply, const char *message)
         folder_write(&f, "a.ply", ply, -1);
     g_assert_null(format_load(f.main, 1, NULL, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
-    g_autofree char *mesh = g_build_filename(f.path, "a.ply", NULL);
+    g_autofree char *path = g_build_filename(f.path, "a.ply", NULL);
     g_auto(GStrv) parts = g_strsplit(message, "%s", -1);
-    g_autofree char *told = g_strjoinv(mesh, parts);
+    g_autofree char *told = g_strjoinv(path, parts);
     g_autofree char *want = g_strdup_printf("%s:4:17: %s", f.main, told);
     g_assert_cmpstr(error->message, ==, want);
     folder_remove(&f);
