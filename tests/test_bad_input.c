@@ -365,7 +365,7 @@ static void test_garbage(void)
     g_autoptr(GRand) random = g_rand_new_with_seed(2024);
     scene_folder f = folder_new(good);
     int n_loaded = 0;
-    for (int i = 0; i < 600; i++) {
+    for (int i = 0; i < 300; i++) {
         g_autoptr(GString) text = g_string_new(good);
         if (i > 0)
             spoil(text, random);
@@ -379,7 +379,7 @@ static void test_garbage(void)
         g_assert_true(s || i > 0);
         n_loaded += s != NULL;
     }
-    g_assert_cmpint(n_loaded, <, 300);
+    g_assert_cmpint(n_loaded, <, 150);
     folder_remove(&f);
 }
 

@@ -373,6 +373,8 @@ static void test_published_scenes_load_unchanged(void)
         const char *name;
         guint n_shapes, n_lights;
     } scenes[] = {{"bitterli/cornell-box/scene-v4.pbrt", 8, 1},
+                  {"bitterli/coffee/scene-v4.pbrt", 23, 3},
+                  {"bitterli/veach-mis/scene-v4.pbrt", 9, 3},
                   {"spectral/cornell-glass.pbrt", 8, 1},
                   {"spectral/ring.pbrt", 3, 1}};
     for (size_t i = 0; i < G_N_ELEMENTS(scenes); i++) {
