@@ -69,6 +69,17 @@ static vec3 place_far_away(sampler *s)
     return vec3_make(1e6f, -1e6f, 1e6f) + place_cube(s);
 }
 
+/* Some have coordinates that are no place at all. They are never found and harm none. */
+static vec3 place_broken(sampler *s)
+{
+    static const float odd[] = {NAN, INFINITY, -INFINITY, 3e38f};
+    vec3 p = place_cube(s);
+    float chance = sampler_1d(s);
+    if (chance < 0.1f)
+        p[(int)(30.0f * chance)] = odd[(int)(4.0f * sampler_1d(s))];
+    return p;
+}
+
 static const struct {
     const char *name;
     field_place place;
@@ -77,7 +88,7 @@ static const struct {
     {"planar", place_planar},       {"collinear", place_collinear},
     {"duplicate", place_duplicate}, {"lattice", place_lattice},
     {"same", place_same},           {"landscape", place_landscape},
-    {"far-away", place_far_away},
+    {"far-away", place_far_away},   {"broken", place_broken},
 };
 
 /* Some photons are exact copies of others, some differ in flux only. */
@@ -240,7 +251,7 @@ static void test_same_as_list(map_choice choice)
                 maps.other = build_copy(choice, &store, radii[r] * extent, 1);
                 compare_maps(&maps, place, extent);
             }
-            g_assert_cmpuint(maps.n_found, >, 40);
+            g_assert_true(maps.n_found > 40 || sizes[n] < 15);
             clear_pair(&maps);
             photon_store_clear(&store);
         }

@@ -37,15 +37,16 @@ typedef struct directions8 {
 
 static inline directions8 directions8_load(const uint32_t *packed)
 {
-    ints8 w = load8_int(packed);
-    ints8 u = (w & 0x7fff) - OCTAHEDRON_STEPS, v = (w >> 15 & 0x7fff) - OCTAHEDRON_STEPS;
-    ints8 below_u = u < 0, below_v = v < 0; /* -1 or 0: (a ^ s) - s is a or -a */
-    ints8 z = OCTAHEDRON_STEPS - ((u ^ below_u) - below_u) - ((v ^ below_v) - below_v);
-    ints8 fold = -z & (z < 0);
+    const float steps = (float)OCTAHEDRON_STEPS;
+    ints8 w = load8_int(packed), sign = fill8_int(INT32_MIN);
+    floats8 u = __builtin_convertvector((w & 0x7fff) - OCTAHEDRON_STEPS, floats8);
+    floats8 v = __builtin_convertvector((w >> 15 & 0x7fff) - OCTAHEDRON_STEPS, floats8);
+    floats8 norm = abs8(u) + abs8(v);
+    ints8 fold = (ints8)max8(norm - steps, fill8(0.0f));
     return (directions8){
-        .x = __builtin_convertvector(u - ((fold ^ below_u) - below_u), floats8),
-        .y = __builtin_convertvector(v - ((fold ^ below_v) - below_v), floats8),
-        .z = __builtin_convertvector(z, floats8),
+        .x = u - (floats8)(fold | ((ints8)u & sign)),
+        .y = v - (floats8)(fold | ((ints8)v & sign)),
+        .z = steps - norm,
     };
 }
 

@@ -94,19 +94,29 @@ static void flush(gather *g)
 
 /* ---- Finding ---- */
 
-/* Runs of photons, within the fixed radius. */
+/* Fetches the flux of photons i .. i + 7, soon to be weighed. */
+static void prefetch_flux(const photon_store *s, size_t i)
+{
+    for (size_t j = 0; j < LANES; j += 2)
+        __builtin_prefetch(s->flux + i + j);
+}
+
+/* Runs of photons, within the fixed radius. What does not change is copied: the compiler
+ * can not know that writing to the block leaves it as it is. */
 static void gather_runs(const photon_run *runs, size_t n, void *data)
 {
     gather *g = data;
+    const photon_probe probe = g->probe;
+    const kernel kappa = g->options->kernel;
+    const float r2 = g->r2, inv_r2 = g->inv_r2;
     for (const photon_run *run = runs; run < runs + n; run++) {
         for (size_t i = run->begin; i < run->end; i += LANES) {
             floats8 distance2;
-            unsigned bits = probe_block(&g->probe, i, run->end, g->r2, &distance2);
+            unsigned bits = probe_block(&probe, i, run->end, r2, &distance2);
             if (!bits)
                 continue;
-            for (size_t j = 0; j < LANES; j += 2)
-                __builtin_prefetch(&g->probe.store->flux[i + j]);
-            floats8 weight = kernel_eval8(&g->options->kernel, distance2, g->inv_r2);
+            prefetch_flux(probe.store, i);
+            floats8 weight = kernel_eval8(&kappa, distance2, inv_r2);
             g->n_block +=
                 pack8(weight, bits, i, g->weight + g->n_block, g->index + g->n_block);
             if (g->n_block >= BLOCK)

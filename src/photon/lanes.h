@@ -85,9 +85,14 @@ static inline floats8 choose8(ints8 mask, floats8 a, floats8 b)
     return (floats8)(((ints8)a & mask) | ((ints8)b & ~mask));
 }
 
+/** @brief a where it is larger, else b. */
 static inline floats8 max8(floats8 a, floats8 b)
 {
+#ifdef __AVX__
+    return (floats8)_mm256_max_ps((__m256)a, (__m256)b);
+#else
     return choose8(a > b, a, b);
+#endif
 }
 
 static inline floats8 abs8(floats8 a)
@@ -125,15 +130,15 @@ static inline size_t pack8(floats8 values, unsigned bits, size_t first, float *v
                            size_t *index)
 {
     /* The lanes of each set of four, in order; what follows them is overwritten next. */
-    static const ints4 lanes[16] = {
+    static const sizes4 lanes[16] = {
         {0}, {0},    {1},    {0, 1},    {2},    {0, 2},    {1, 2},    {0, 1, 2},
         {3}, {0, 3}, {1, 3}, {0, 1, 3}, {2, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 2, 3}};
     size_t n = 0;
     for (int half = 0; half < LANES; half += 4) {
         unsigned four = bits >> half & 15u;
         floats4 v = {values[half], values[half + 1], values[half + 2], values[half + 3]};
-        v = permute4(v, lanes[four]);
-        sizes4 i = __builtin_convertvector(lanes[four], sizes4) + (first + (size_t)half);
+        v = permute4(v, __builtin_convertvector(lanes[four], ints4));
+        sizes4 i = lanes[four] + (first + (size_t)half);
         memcpy(value + n, &v, sizeof v);
         memcpy(index + n, &i, sizeof i);
         n += (size_t)__builtin_popcount(four);

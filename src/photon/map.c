@@ -101,9 +101,10 @@ typedef struct within_search {
 static void within_run(size_t begin, size_t end, within_search *search)
 {
     photon_hits *hits = search->hits;
+    const photon_probe probe = *search->probe;
     for (size_t i = begin; i < end; i += LANES) {
         floats8 distance2;
-        unsigned bits = probe_block(search->probe, i, end, search->radius2, &distance2);
+        unsigned bits = probe_block(&probe, i, end, search->radius2, &distance2);
         if (!bits)
             continue;
         if (search->refused || !photon_hits_reserve(hits, hits->n + LANES)) {

@@ -79,8 +79,8 @@ static void find_bounds(grid *g, const photon_store *s)
     g->high = -g->low;
     for (size_t i = 0; i < s->n; i++) {
         vec3 p = vec3_make(s->x[i], s->y[i], s->z[i]);
-        g->low = min3(g->low, p);
-        g->high = max3(g->high, p);
+        g->low = min3(p, g->low); /* in this order a NaN changes nothing */
+        g->high = max3(p, g->high);
     }
 }
 

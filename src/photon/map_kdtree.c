@@ -109,11 +109,18 @@ static void split_at(kd_item *items, size_t n, int axis, size_t rank)
     }
 }
 
+/* In this order a NaN changes nothing. */
+static box3 with_photon(box3 box, float x, float y, float z)
+{
+    vec3 p = vec3_make(x, y, z);
+    return (box3){min3(p, box.low), max3(p, box.high)};
+}
+
 static int widest_axis(const kd_item *items, size_t n)
 {
     box3 box = box3_empty();
     for (size_t i = 0; i < n; i++)
-        box = box3_with_point(box, (vec3){items[i].x[0], items[i].x[1], items[i].x[2]});
+        box = with_photon(box, items[i].x[0], items[i].x[1], items[i].x[2]);
     vec3 extent = box.high - box.low;
     if (extent[0] >= extent[1] && extent[0] >= extent[2])
         return 0;
@@ -202,7 +209,7 @@ static box3 leaf_bounds(const photon_store *s, size_t leaf)
     box3 box = box3_empty();
     size_t end = MIN((leaf + 1) * LEAF, s->n);
     for (size_t i = leaf * LEAF; i < end; i++)
-        box = box3_with_point(box, vec3_make(s->x[i], s->y[i], s->z[i]));
+        box = with_photon(box, s->x[i], s->y[i], s->z[i]);
     return box;
 }
 

@@ -15,6 +15,8 @@
 
 typedef struct photon_probe {
     const photon_store *store;
+    const float *x, *y, *z; /* of the store */
+    const uint32_t *wi;
     vec3 p;
     vec3 n;
     bool one_sided, flat;
@@ -25,6 +27,10 @@ static inline photon_probe photon_probe_make(const photon_store *store, vec3 p,
                                              const photon_filter *filter)
 {
     photon_probe probe = {.store = store, .p = p};
+    probe.x = store->x;
+    probe.y = store->y;
+    probe.z = store->z;
+    probe.wi = store->wi;
     if (filter) {
         probe.n = filter->n;
         probe.one_sided = filter->one_sided;
@@ -50,15 +56,14 @@ static inline float probe_distance2(const photon_probe *probe, size_t i)
 
 static inline bool probe_accepts(const photon_probe *probe, size_t i)
 {
-    return !probe->one_sided || direction_dot(probe->store->wi[i], probe->n) > 0.0f;
+    return !probe->one_sided || direction_dot(probe->wi[i], probe->n) > 0.0f;
 }
 
 /** @brief probe_distance2 of photons i .. i + 7. */
 static inline floats8 probe_distance2_8(const photon_probe *probe, size_t i)
 {
-    const photon_store *s = probe->store;
-    floats8 x = load8(s->x + i) - probe->p[0], y = load8(s->y + i) - probe->p[1],
-            z = load8(s->z + i) - probe->p[2];
+    floats8 x = load8(probe->x + i) - probe->p[0], y = load8(probe->y + i) - probe->p[1],
+            z = load8(probe->z + i) - probe->p[2];
     floats8 d2 = fused8(z, z, fused8(y, y, x * x));
     if (!probe->flat)
         return d2;
@@ -77,7 +82,7 @@ static inline unsigned probe_block(const photon_probe *probe, size_t i, size_t e
     if (end - i < LANES)
         bits &= (1u << (end - i)) - 1u;
     if (bits && probe->one_sided) {
-        directions8 wi = directions8_load(probe->store->wi + i);
+        directions8 wi = directions8_load(probe->wi + i);
         bits &= bits8(directions8_dot(wi, probe->n) > 0.0f);
     }
     return bits;
