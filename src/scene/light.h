@@ -39,6 +39,8 @@ typedef struct light_kind {
     const char *name;    /**< "point", "spot", "distant", "infinite", "diffuse" (area) */
     bool is_delta;       /**< no camera ray can hit it: point, spot, distant */
     bool is_environment; /**< shines from beyond the scene */
+    bool is_parallel;    /**< emit_toward is given a direction and leaves the place across the
+                              ray open: distant and infinite lights */
     /** From parameters; area lights get their shape, others NULL. */
     void *(*create)(const struct scene *s, const params *p, const transform *to_world,
                     const shape *on, GError **error);

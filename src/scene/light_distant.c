@@ -112,6 +112,7 @@ static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
 const light_kind distant_light_kind = {
     .name = "distant",
     .is_delta = true,
+    .is_parallel = true,
     .create = create,
     .free = free_distant,
     .prepare = prepare,

@@ -113,6 +113,7 @@ static spectrum environment(const void *self, vec3 d, const wavelengths *w)
 const light_kind infinite_light_kind = {
     .name = "infinite",
     .is_environment = true,
+    .is_parallel = true,
     .create = create,
     .free = free_infinite,
     .prepare = prepare,

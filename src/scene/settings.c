@@ -12,17 +12,17 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const integrator_words[] = {"photonmap", "path", NULL};
+static const char *const integrator_words[] = {"photonmap", "path", "auto", NULL};
 static const char *const kernel_words[] = {"constant", "cone", "gaussian", "epanechnikov",
                                            NULL};
 static const char *const map_words[] = {"list", "kdtree", "grid", NULL};
 static const char *const roulette_words[] = {"mean", "max", NULL};
-static const char *const emission_words[] = {"uniform", "specular-area", NULL};
+static const char *const emission_words[] = {"uniform", "specular-area", "guided", NULL};
 
 #define AT(field) offsetof(settings, field)
 
 static const setting_row table[] = {
-    {"integrator", SETTING_CHOICE, AT(integrator), "", 0, 1, INTEGRATOR_PHOTONMAP,
+    {"integrator", SETTING_CHOICE, AT(integrator), "", 0, 2, INTEGRATOR_PHOTONMAP,
      integrator_words, "", "all",
      "The algorithm that carries light from the lamps to the eye."},
     {"passes", SETTING_COUNT, AT(passes), "", 1, 1e9, 16, NULL,
@@ -111,10 +111,10 @@ static const setting_row table[] = {
      "", "photonmap",
      "What of a photon's flux decides its survival: the mean or the largest over "
      "wavelengths."},
-    {"caustic_emission", SETTING_CHOICE, AT(caustic_emission), "", 0, 1,
-     EMISSION_SPECULAR_AREA, emission_words, "", "photonmap",
-     "Where photons for caustics are sent: as the light shines, or toward what focuses "
-     "light."},
+    {"caustic_emission", SETTING_CHOICE, AT(caustic_emission), "", 0, 2, EMISSION_GUIDED,
+     emission_words, "", "photonmap auto",
+     "Where photons for caustics are sent: as the light shines, toward what focuses "
+     "light, or where trial photons were seen to cast caustics."},
     {"multiple_samples", SETTING_BOOL, AT(multiple_samples), "", 0, 1, 1, NULL,
      "MULTIPLE_SAMPLES", "photonmap path",
      "Samples roughness and Fresnel's split; off: one deterministic path, without "

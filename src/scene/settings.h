@@ -21,10 +21,15 @@ typedef enum kernel_choice {
 } kernel_choice;
 typedef enum map_choice { MAP_LIST, MAP_KDTREE, MAP_GRID } map_choice;
 typedef enum roulette_choice { ROULETTE_MEAN, ROULETTE_MAX } roulette_choice;
-typedef enum emission_choice { EMISSION_UNIFORM, EMISSION_SPECULAR_AREA } emission_choice;
+typedef enum emission_choice {
+    EMISSION_UNIFORM,
+    EMISSION_SPECULAR_AREA,
+    EMISSION_GUIDED
+} emission_choice;
 typedef enum integrator_choice {
     INTEGRATOR_PHOTONMAP,
-    INTEGRATOR_PATH
+    INTEGRATOR_PATH,
+    INTEGRATOR_AUTO
 } integrator_choice;
 
 /** @brief Every knob. Arrays are indexed by photon class. A plain value: copy it. */

@@ -1,0 +1,96 @@
+#include "photon/emit.h"
+
+/* A ray crosses no more surfaces than this on its way through the scene: only a guard
+   against endless loops on degenerate geometry. */
+enum { MAX_CROSSINGS = 4096 };
+
+static bool casts_caustics(const scene *s, const surface_hit *hit)
+{
+    return hit->material != NO_INDEX &&
+           material_casts_caustics(s->materials->pdata[hit->material]);
+}
+
+/* A point by area on all surfaces that cast caustics. */
+static vec3 caustic_target(const scene *s, sampler *random)
+{
+    float u_shape = sampler_1d(random);
+    size_t i = distribution_sample(&s->caustic_area, &u_shape);
+    const shape *on = s->shapes->pdata[s->caustic_shapes[i]];
+    return shape_sample_area(on, u_shape, sampler_2d(random)).p;
+}
+
+/* Moves on to the next surface along a ray; distance grows by the way made. */
+static bool next_crossing(const scene *s, ray *r, float *distance, surface_hit *hit)
+{
+    if (!scene_intersect(s, r, hit))
+        return false;
+    *distance += length3(hit->p - r->origin);
+    *r = hit_ray(hit, r->direction);
+    return true;
+}
+
+/* The density with which targets chosen by area give this ray: per solid angle at its
+   origin, or for parallel light per area across it. Zero if the first surface casts no
+   caustic. */
+static double aimed_density(const scene *s, ray r, bool parallel)
+{
+    double density = 0.0, p_area = 1.0 / distribution_total(&s->caustic_area);
+    float distance = 0.0f;
+    surface_hit hit;
+    for (int i = 0; i < MAX_CROSSINGS && next_crossing(s, &r, &distance, &hit); i++) {
+        if (casts_caustics(s, &hit)) {
+            double cosine = fabs((double)dot3(hit.n_geom, r.direction));
+            double d2 = parallel ? 1.0 : (double)distance * (double)distance;
+            density += cosine > 0.0 ? p_area * d2 / cosine : 0.0;
+        } else if (!(density > 0.0) && hit.material != NO_INDEX) {
+            return 0.0;
+        }
+    }
+    return density;
+}
+
+/* Chooses a light by power; *u becomes uniform again. */
+static const light *choose_light(const scene *s, float *u, photon_start *out)
+{
+    out->light = (int)distribution_sample(&s->light_power, u);
+    out->p_light = distribution_pdf(&s->light_power, (size_t)out->light);
+    return scene_light(s, out->light);
+}
+
+static bool finish(const light_emission *emission, float density, photon_start *out)
+{
+    out->ray = emission->ray;
+    out->flux = emission->flux / (out->p_light * density);
+    return !spectrum_is_black(out->flux) && spectrum_is_finite(out->flux);
+}
+
+bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
+                       photon_start *out)
+{
+    light_emission emission;
+    float u_light = sampler_1d(random), u_primitive = sampler_1d(random);
+    vec2 u = sampler_2d(random);
+    if (!(distribution_total(&s->light_power) > 0.0))
+        return false;
+    const light *l = choose_light(s, &u_light, out);
+    vec3 target = caustic_target(s, random);
+    if (!l->kind->emit_toward(l->self, w, u_primitive, u, target, &emission))
+        return false;
+    double density = aimed_density(s, emission.ray, l->kind->is_parallel);
+    return density > 0.0 && finish(&emission, (float)density, out);
+}
+
+bool photon_emit(const scene *s, const wavelengths *w, const emission_guide *guide,
+                 sampler *random, photon_start *out)
+{
+    float u[EMISSION_DIMENSIONS];
+    light_emission emission;
+    if (!(distribution_total(&s->light_power) > 0.0))
+        return false;
+    float density = emission_guide_draw(guide, random, u);
+    const light *l = choose_light(s, &u[0], out);
+    if (!l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]}, (vec2){u[4], u[5]},
+                       &emission))
+        return false;
+    return finish(&emission, density, out);
+}

@@ -1,0 +1,37 @@
+/*
+ * Photon emission: which light, from where, whither.
+ *
+ * uniform: the light's own density. guided: the numbers that choose light, place and
+ * direction are drawn from what was learned (photon/guide.h). specular-area: aimed at a
+ * point chosen by area on the surfaces that cast caustics, for caustic photons only.
+ * Several such surfaces can lie on one ray, so the density of a direction is the sum over
+ * all of them,
+ *
+ *     p(ω) = Σ_i p_A(y_i) d_i² / |cosθ_i|,    p_A = 1 / Σ_j A_j,
+ *
+ * and a photon whose first hit is not such a surface carries nothing.
+ */
+#pragma once
+
+#include "photon/guide.h"
+#include "scene/scene.h"
+
+/** @brief A photon at its light. */
+typedef struct photon_start {
+    ray ray;
+    spectrum flux; /**< its mean over emissions is the flux of all lights (uniform), or of
+                      their light that first meets a caustic caster (specular-area) */
+    int light;     /**< index in scene->lights */
+    float p_light; /**< probability with which that light was chosen */
+} photon_start;
+
+/** @brief Emits one photon by its light's own density, or by a guide's.
+ *  @param guide NULL: uniform. @return false: nothing is carried (it still counts as
+ * emitted). */
+bool photon_emit(const scene *s, const wavelengths *w, const emission_guide *guide,
+                 sampler *random, photon_start *out);
+
+/** @brief Emits one photon toward the surfaces that cast caustics (specular-area). As
+ * above. */
+bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
+                       photon_start *out);

@@ -1,0 +1,57 @@
+/*
+ * Guided emission: photons are started where they will land in the class that is wanted,
+ * on surfaces that the camera sees.
+ *
+ * Every light turns six uniform numbers into a photon (which light, which part of it,
+ * where on it, which way). A binary tree over that unit cube holds the flux that starts
+ * in each cell and arrives usefully; numbers are drawn from the tree instead of uniformly
+ * and the flux is divided by the density. So one mechanism serves all lights, many of
+ * them, and any correlation between position and direction; a defensive share of uniform
+ * numbers keeps every path possible.
+ *
+ *            ┌──────┐  split in the middle of the axis along which arrivals are least
+ * even; ┌─┴─┐  ┌─┴─┐  a drawn number is stretched on its way down, so that its
+ *          ...            stratification survives
+ *
+ * Jensen's projection maps (1996) and the histograms of Grittmann et al. ("Efficient
+ * Caustic Rendering with Lightweight Photon Mapping", 2018), in primary sample space.
+ */
+#pragma once
+
+#include "base/parallel.h"
+#include "math/sampler.h"
+
+#include <glib.h>
+
+enum { EMISSION_DIMENSIONS = 6 }; /**< light, primitive, position (2), direction (2) */
+
+typedef struct emission_guide emission_guide;
+
+/** @brief A photon that arrived usefully: where it started, and what it was worth. */
+typedef struct emission_record {
+    float u[EMISSION_DIMENSIONS];
+    float value; /**< useful flux, already over the density it was drawn with; >= 0 */
+} emission_record;
+
+/** @brief A guide that draws uniformly. */
+emission_guide *emission_guide_new(void);
+void emission_guide_free(emission_guide *guide);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(emission_guide, emission_guide_free)
+
+/** @brief Learns from n records of photons drawn with the guide as it is: cells are split
+ * where arrivals crowd, and weights set anew. Not thread-safe; the guide is const
+ * afterwards. */
+void emission_guide_learn(emission_guide *guide, const emission_record *records,
+                          size_t n);
+
+/** @brief Draws the six numbers. @param guide NULL: uniform
+ *  @return the density they were drawn with, > 0, mean of 1/density is 1 */
+float emission_guide_draw(const emission_guide *guide, sampler *random,
+                          float u[EMISSION_DIMENSIONS]);
+
+/** @brief Density at a point of the cube. */
+float emission_guide_density(const emission_guide *guide,
+                             const float u[EMISSION_DIMENSIONS]);
+
+/** @brief Cells (for statistics and tests). */
+size_t emission_guide_cells(const emission_guide *guide);

@@ -1,0 +1,351 @@
+#include "photon/trace.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+/* Photons emitted per parallel piece of work. */
+enum { CHUNK = 4096 };
+
+/* What one chunk stored, until the chunks are joined in order. */
+typedef struct chunk_store {
+    photon_store photons;
+    uint32_t *normals;
+    uint64_t n_rays, n_not_finite;
+    GError *error;
+} chunk_store;
+
+/* One photon on its way. */
+typedef struct photon_path {
+    const trace_task *task;
+    uint64_t index;
+    sampler random;
+    ray ray;
+    spectrum flux;
+    int light, lane;
+    bool from_delta;     /* the light cannot be hit by a ray */
+    bool specular_only;  /* no lobe but SPECULAR so far */
+    unsigned n_followed; /* specular or glossy bounces */
+    unsigned n_diffuse;
+    chunk_store *out; /* NULL when telling */
+    bool want_normals;
+    void (*tell)(const photon_event *event, void *data);
+    void *tell_data;
+} photon_path;
+
+static void tell(const photon_path *path, photon_event_kind kind, const surface_hit *hit,
+                 unsigned lobe)
+{
+    if (!path->tell)
+        return;
+    photon_event event = {
+        .kind = kind,
+        .index = path->index,
+        .p = hit ? hit->p : path->ray.origin,
+        .direction = path->ray.direction,
+        .hit = hit,
+        .light = path->light,
+        .lobe = lobe,
+        .flux = path->flux,
+    };
+    path->tell(&event, path->tell_data);
+}
+
+static uint64_t stream_key(const trace_task *task)
+{
+    uint64_t key = hash_mix((uint64_t)task->how->seed, task->pass);
+    return hash_mix(key, 0x70686f746f6eu + (uint64_t)task->photon_class);
+}
+
+static emission_choice emission_mode(const trace_task *task)
+{
+    return task->photon_class == PHOTON_CAUSTIC
+               ? (emission_choice)task->how->caustic_emission
+               : EMISSION_UNIFORM;
+}
+
+/* The guide serves the caustic photons that it was made for. */
+static const emission_guide *guide_of(const trace_task *task)
+{
+    return emission_mode(task) == EMISSION_GUIDED ? task->guide : NULL;
+}
+
+float photon_start_point(const trace_task *task, uint64_t index,
+                         float u[EMISSION_DIMENSIONS])
+{
+    sampler random = sampler_make(stream_key(task), index);
+    return emission_guide_draw(guide_of(task), &random, u);
+}
+
+static bool emit(photon_path *path)
+{
+    const trace_task *task = path->task;
+    photon_start start;
+    bool emitted =
+        emission_mode(task) == EMISSION_SPECULAR_AREA
+            ? photon_emit_aimed(task->scene, &task->w, &path->random, &start)
+            : photon_emit(task->scene, &task->w, guide_of(task), &path->random, &start);
+    if (!emitted)
+        return false;
+    path->ray = start.ray;
+    path->flux = start.flux / (float)task->n_photons;
+    path->light = start.light;
+    path->lane = ALL_LANES;
+    path->from_delta = scene_light(task->scene, start.light)->kind->is_delta;
+    path->specular_only = true;
+    return true;
+}
+
+static photon_class class_here(const photon_path *path)
+{
+    if (path->n_diffuse > 0)
+        return PHOTON_INDIRECT;
+    return path->n_followed > 0 ? PHOTON_CAUSTIC : PHOTON_DIRECT;
+}
+
+static bool grow(chunk_store *out, bool want_normals)
+{
+    size_t old = out->photons.capacity, capacity = MAX(2 * old, CHUNK / 2);
+    if (!photon_store_reserve(&out->photons, capacity, &out->error))
+        return false;
+    if (want_normals) {
+        uint32_t *normals = big_grow(out->normals, old, out->photons.capacity,
+                                     sizeof *normals, "photon normals", &out->error);
+        if (!normals)
+            return false;
+        out->normals = normals;
+    }
+    return true;
+}
+
+static void store(photon_path *path, const surface_hit *hit, unsigned flags)
+{
+    chunk_store *out = path->out;
+    tell(path, PHOTON_STORED, hit, 0);
+    if (!out)
+        return;
+    if (!spectrum_is_finite(path->flux)) {
+        out->n_not_finite++;
+        return;
+    }
+    if (out->error ||
+        (out->photons.n == out->photons.capacity && !grow(out, path->want_normals)))
+        return;
+    photon p = {
+        .p = hit->p, .wi = -path->ray.direction, .flux = path->flux, .flags = flags};
+    if (path->want_normals)
+        out->normals[out->photons.n] = direction_pack(face_forward(hit->n_geom, p.wi), 0);
+    photon_store_put(&out->photons, &p);
+}
+
+/* Stores the photon if its class is the one traced and the surface has a lobe for it. */
+static void land(photon_path *path, const surface_hit *hit, const bsdf *b)
+{
+    if (class_here(path) != path->task->photon_class)
+        return;
+    bool delta = path->from_delta && path->specular_only && path->n_diffuse == 0;
+    if ((b->lobes & LOBE_DIFFUSE) || (delta && (b->lobes & LOBE_GLOSSY)))
+        store(path, hit, delta ? PHOTON_FROM_DELTA : 0);
+}
+
+/* The lobes that a photon of this class may take on its way: a caustic one has only met
+   specular and glossy ones, a direct one none. */
+static unsigned lobes_to_take(const trace_task *task)
+{
+    switch (task->photon_class) {
+    case PHOTON_DIRECT:
+        return 0;
+    case PHOTON_CAUSTIC:
+        return LOBE_FOLLOWED;
+    default:
+        return LOBE_ALL;
+    }
+}
+
+static float power_of(const settings *how, spectrum flux)
+{
+    return how->roulette == ROULETTE_MAX ? spectrum_max(flux) : spectrum_mean(flux);
+}
+
+/* Scatters at the hit. @return false if the photon's way ends here. */
+static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
+{
+    const trace_task *task = path->task;
+    unsigned lobes = lobes_to_take(task);
+    if (!(b->lobes & lobes & ~(unsigned)LOBE_ANY_SIDE)) {
+        tell(path, PHOTON_ENDED, hit, 0);
+        return false;
+    }
+    float u_lobe = sampler_1d(&path->random);
+    vec2 u = sampler_2d(&path->random);
+    float u_roulette = sampler_1d(&path->random);
+    bsdf_sample next;
+    bool scattered = bsdf_sample_direction(b, -path->ray.direction, u_lobe, u, lobes,
+                                           TRANSPORT_IMPORTANCE, &next);
+    spectrum flux = scattered ? path->flux * next.weight : (spectrum){0};
+    if (path->out && !spectrum_is_finite(flux))
+        path->out->n_not_finite++;
+    float survival =
+        fminf(1.0f, power_of(task->how, flux) / power_of(task->how, path->flux));
+    if (!(u_roulette < survival)) {
+        tell(path, PHOTON_ABSORBED, hit, 0);
+        return false;
+    }
+    path->flux = flux / survival;
+    path->lane = next.lane;
+    path->ray = hit_ray(hit, next.wi);
+    path->specular_only &= (next.lobe & LOBE_SPECULAR) != 0;
+    if (next.lobe & LOBE_DIFFUSE)
+        path->n_diffuse++;
+    else
+        path->n_followed++;
+    tell(path, PHOTON_SCATTERED, hit, next.lobe);
+    return true;
+}
+
+static void follow(photon_path *path)
+{
+    const trace_task *task = path->task;
+    const bsdf_options options = {.deterministic = !task->how->multiple_samples};
+    int64_t limit = task->how->max_forward_bounces;
+    for (int64_t bounces = 0;;) {
+        surface_hit hit;
+        if (path->out)
+            path->out->n_rays++;
+        if (!scene_intersect(task->scene, &path->ray, &hit)) {
+            tell(path, PHOTON_LEFT, NULL, 0);
+            return;
+        }
+        bsdf b;
+        if (!scene_bsdf(task->scene, &hit, &task->w, path->lane, &options, &b)) {
+            path->ray = hit_ray(&hit, path->ray.direction);
+            continue;
+        }
+        land(path, &hit, &b);
+        if (limit >= 0 && bounces++ >= limit) {
+            tell(path, PHOTON_ENDED, &hit, 0);
+            return;
+        }
+        if (!scatter(path, &hit, &b))
+            return;
+    }
+}
+
+static void trace_one(photon_path *path)
+{
+    path->random = sampler_make(stream_key(path->task), path->index);
+    if (!emit(path))
+        return;
+    tell(path, PHOTON_EMITTED, NULL, 0);
+    follow(path);
+}
+
+void photon_tell(const trace_task *task, uint64_t index,
+                 void (*tell_event)(const photon_event *event, void *data), void *data)
+{
+    photon_path path = {
+        .task = task, .index = index, .tell = tell_event, .tell_data = data};
+    trace_one(&path);
+}
+
+typedef struct trace_loop {
+    const trace_task *task;
+    bool want_normals;
+    chunk_store *chunks;
+} trace_loop;
+
+static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    trace_loop *loop = data;
+    chunk_store *out = &loop->chunks[begin / CHUNK];
+    for (size_t i = begin; i < end && !out->error; i++) {
+        photon_path path = {.task = loop->task,
+                            .index = i,
+                            .out = out,
+                            .want_normals = loop->want_normals};
+        trace_one(&path);
+    }
+}
+
+static void append(trace_result *result, const chunk_store *from)
+{
+    photon_store *to = &result->photons;
+    const photon_store *p = &from->photons;
+    if (p->n) {
+        memcpy(to->x + to->n, p->x, p->n * sizeof *p->x);
+        memcpy(to->y + to->n, p->y, p->n * sizeof *p->y);
+        memcpy(to->z + to->n, p->z, p->n * sizeof *p->z);
+        memcpy(to->wi + to->n, p->wi, p->n * sizeof *p->wi);
+        memcpy(to->flux + to->n, p->flux, p->n * sizeof *p->flux);
+        if (from->normals)
+            memcpy(result->normals + to->n, from->normals, p->n * sizeof *from->normals);
+    }
+    to->n += p->n;
+    result->n_rays += from->n_rays;
+    result->n_not_finite += from->n_not_finite;
+}
+
+static void chunk_clear(chunk_store *chunk)
+{
+    photon_store_clear(&chunk->photons);
+    big_free(chunk->normals);
+    chunk->normals = NULL;
+}
+
+/* Puts the chunks behind one another, freeing each once it is copied. */
+static bool join(chunk_store *chunks, size_t n, bool want_normals, trace_result *result,
+                 GError **error)
+{
+    size_t total = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (chunks[i].error) {
+            g_propagate_error(error, g_steal_pointer(&chunks[i].error));
+            return false;
+        }
+        total += chunks[i].photons.n;
+    }
+    if (!photon_store_reserve(&result->photons, total, error))
+        return false;
+    if (want_normals) {
+        result->normals = big_alloc(total, sizeof(uint32_t), "photon normals", error);
+        if (!result->normals)
+            return false;
+    }
+    for (size_t i = 0; i < n; i++) {
+        append(result, &chunks[i]);
+        chunk_clear(&chunks[i]);
+    }
+    return true;
+}
+
+bool photon_trace(const trace_task *task, bool want_normals, trace_result *result,
+                  GError **error)
+{
+    *result = (trace_result){0};
+    size_t n_chunks = ((size_t)task->n_photons + CHUNK - 1) / CHUNK;
+    chunk_store *chunks = big_alloc(n_chunks, sizeof *chunks, "photon chunks", error);
+    if (!chunks)
+        return false;
+    trace_loop loop = {task, want_normals, chunks};
+    bool done = parallel_for((size_t)task->n_photons, CHUNK, (unsigned)task->how->threads,
+                             task->cancel, trace_chunk, &loop);
+    if (!done)
+        error_set(error, ERROR_CANCELLED, "cancelled");
+    bool joined = done && join(chunks, n_chunks, want_normals, result, error);
+    for (size_t i = 0; i < n_chunks; i++) {
+        chunk_clear(&chunks[i]);
+        g_clear_error(&chunks[i].error);
+    }
+    big_free(chunks);
+    if (!joined)
+        trace_result_clear(result);
+    return joined;
+}
+
+void trace_result_clear(trace_result *result)
+{
+    photon_store_clear(&result->photons);
+    big_free(result->normals);
+    *result = (trace_result){0};
+}

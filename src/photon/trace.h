@@ -1,0 +1,83 @@
+/*
+ * The photon pass: emit, follow, store (Jensen 2001, §5).
+ *
+ * Each class of photon is traced apart with its own number of emissions N. What a photon
+ * has done so far decides its class when it lands; it is stored if that is the class
+ * being traced and the surface has a lobe that the map serves:
+ *
+ *   light ──────────────► D          direct
+ *   light ─► (S|G)+ ────► D          caustic
+ *   light ─► ... D ... ─► D          indirect
+ *
+ * (D, G, S: a diffuse, glossy, specular lobe; see scene/bsdf.h). A glossy lobe alone
+ * takes photons only from delta lights by way of S*: all else that it reflects, camera
+ * paths find by following it. So every path of light is counted once.
+ *
+ * Russian roulette keeps photons of near equal power: survive with p = min(1, g(β
+ * Φ)/g(Φ)), Φ ← Φ β / p, where g is the mean or the maximum over wavelengths.
+ */
+#pragma once
+
+#include "base/parallel.h"
+#include "photon/emit.h"
+#include "photon/photon.h"
+
+/** @brief What to trace. A plain value; the pass is a pure function of it. */
+typedef struct trace_task {
+    const scene *scene;
+    const settings *how;
+    wavelengths w;
+    uint32_t pass;
+    photon_class photon_class;
+    const emission_guide *guide; /**< for EMISSION_GUIDED caustics; NULL: uniform */
+    uint64_t n_photons;          /**< to emit */
+    const cancel_flag *cancel;   /**< may be NULL */
+} trace_task;
+
+/** @brief What came of it. */
+typedef struct trace_result {
+    photon_store photons; /**< in the order of emission; flux of each is its share of N */
+    uint64_t n_rays;
+    uint64_t n_not_finite; /**< photons dropped since their flux was not finite */
+    /** Where asked for: for every stored photon its surface's geometric normal on the
+     * side it arrived, packed (direction_pack). NULL otherwise. */
+    uint32_t *normals;
+} trace_result;
+
+/**
+ * @brief Traces in parallel; the result does not depend on the number of threads.
+ * @param want_normals fill result->normals
+ * @return false with ERROR_FAILED (memory) or ERROR_CANCELLED; result is then empty
+ */
+bool photon_trace(const trace_task *task, bool want_normals, trace_result *result,
+                  GError **error);
+void trace_result_clear(trace_result *result);
+
+/** @brief The six numbers that photon `index` of the task starts from, and their density:
+ * what the guide learns from. */
+float photon_start_point(const trace_task *task, uint64_t index,
+                         float u[EMISSION_DIMENSIONS]);
+
+/** @brief What happened to a photon at one place. */
+typedef enum photon_event_kind {
+    PHOTON_EMITTED,
+    PHOTON_STORED,
+    PHOTON_SCATTERED,
+    PHOTON_ABSORBED,
+    PHOTON_ENDED, /**< no lobe left for its class, or the bounce limit */
+    PHOTON_LEFT,  /**< the scene */
+} photon_event_kind;
+
+typedef struct photon_event {
+    photon_event_kind kind;
+    uint64_t index;         /**< of the photon, in order of emission */
+    vec3 p, direction;      /**< where, and whither it goes on */
+    const surface_hit *hit; /**< NULL for EMITTED and LEFT */
+    int light;
+    unsigned lobe; /**< of SCATTERED */
+    spectrum flux; /**< of the photon after the event */
+} photon_event;
+
+/** @brief Traces photon `index` of the task alone and tells each event (000 §4.4). */
+void photon_tell(const trace_task *task, uint64_t index,
+                 void (*tell)(const photon_event *event, void *data), void *data);

@@ -1,0 +1,155 @@
+#include "render/photons.h"
+
+#include "base/memory.h"
+#include "photon/trace.h"
+
+static const char *const class_names[N_PHOTON_CLASSES] = {"direct", "indirect",
+                                                          "caustic"};
+
+static double seconds(void)
+{
+    return (double)g_get_monotonic_time() * 1e-6;
+}
+
+/* All three classes, sharing `photons` where they have no budget of their own. */
+static uint64_t budget(const settings *how, photon_class c)
+{
+    int n_sharing = 0;
+    for (int i = 0; i < N_PHOTON_CLASSES; i++)
+        n_sharing += how->class_photons[i] == 0;
+    int64_t own = how->class_photons[c];
+    return (uint64_t)MAX(own > 0 ? own : how->photons / n_sharing, 1);
+}
+
+static trace_task task_for(const scene *s, const settings *how, photon_class c)
+{
+    return (trace_task){
+        .scene = s,
+        .how = how,
+        .w = wavelengths_for_pass((uint64_t)how->seed, 0),
+        .photon_class = c,
+        .n_photons = budget(how, c),
+    };
+}
+
+static bool trace_class(render_photons *p, const scene *s, const settings *how,
+                        photon_class c, GError **error)
+{
+    double start = seconds();
+    trace_task task = task_for(s, how, c);
+    trace_result result = {0};
+    if (c == PHOTON_CAUSTIC && s->n_caustic_shapes == 0)
+        return true;
+    if (!photon_trace(&task, false, &result, error))
+        return false;
+    render_statistics *st = &p->statistics;
+    st->time_trace += seconds() - start;
+    st->photon_rays += result.n_rays;
+    st->n_not_finite += result.n_not_finite;
+    st->emitted[c] = task.n_photons;
+    st->stored[c] = result.photons.n;
+    p->stores[c] = result.photons;
+    result.photons = (photon_store){0};
+    trace_result_clear(&result);
+    return true;
+}
+
+render_photons *render_trace_photons(const scene *s, const settings *how, GError **error)
+{
+    g_autoptr(render_photons) p = g_aligned_alloc0(1, sizeof *p, 64);
+    p->w = wavelengths_for_pass((uint64_t)how->seed, 0);
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        if (!trace_class(p, s, how, (photon_class)c, error))
+            return NULL;
+    }
+    p->statistics.time_total = p->statistics.time_trace;
+    p->statistics.memory_peak = memory_peak();
+    return g_steal_pointer(&p);
+}
+
+void render_photons_free(render_photons *p)
+{
+    if (!p)
+        return;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        photon_store_clear(&p->stores[c]);
+    g_aligned_free(p);
+}
+
+/* ---- The story ---- */
+
+typedef struct story {
+    const scene *scene;
+    const wavelengths *w;
+    photon_class photon_class;
+    void (*write)(const char *line, void *data);
+    void *data;
+} story;
+
+static char *surface_name(const story *st, const photon_event *event)
+{
+    if (!event->hit)
+        return event->kind == PHOTON_LEFT
+                   ? g_strdup("out of the scene")
+                   : g_strdup_printf("light %d (%s)", event->light,
+                                     scene_light(st->scene, event->light)->kind->name);
+    const shape *on = st->scene->shapes->pdata[event->hit->shape];
+    const material *m = event->hit->material == NO_INDEX
+                            ? NULL
+                            : st->scene->materials->pdata[event->hit->material];
+    return g_strdup_printf("shape %d (%s, %s)", event->hit->shape, on->kind->name,
+                           !m        ? "interface"
+                           : m->name ? m->name
+                                     : m->kind->name);
+}
+
+static char *what_happened(const photon_event *event)
+{
+    static const char *const words[] = {
+        [PHOTON_EMITTED] = "emitted",   [PHOTON_STORED] = "stored",
+        [PHOTON_ABSORBED] = "absorbed", [PHOTON_ENDED] = "ended",
+        [PHOTON_LEFT] = "left",
+    };
+    if (event->kind != PHOTON_SCATTERED)
+        return g_strdup(words[event->kind]);
+    const char *lobe = event->lobe & LOBE_SPECULAR ? "specular"
+                       : event->lobe & LOBE_GLOSSY ? "glossy"
+                                                   : "diffuse";
+    const char *side = event->lobe & LOBE_TRANSMISSION ? "transmitted" : "reflected";
+    return g_strdup_printf("%s %s", lobe, side);
+}
+
+static void tell_event(const photon_event *event, void *data)
+{
+    const story *st = data;
+    g_autofree char *surface = surface_name(st, event);
+    g_autofree char *what = what_happened(event);
+    float xyz[3], rgb[3];
+    spectrum_to_xyz(st->w, event->flux, xyz);
+    color_space_from_xyz(color_space_srgb(), xyz, rgb);
+    g_autofree char *line = g_strdup_printf(
+        "%s %" G_GUINT64_FORMAT
+        ": at (%.5g %.5g %.5g) on %s: %s, flux (%.4g %.4g %.4g) W, "
+        "going (%.4f %.4f %.4f)",
+        class_names[st->photon_class], event->index, (double)event->p[0],
+        (double)event->p[1], (double)event->p[2], surface, what, (double)rgb[0],
+        (double)rgb[1], (double)rgb[2], (double)event->direction[0],
+        (double)event->direction[1], (double)event->direction[2]);
+    st->write(line, st->data);
+}
+
+bool render_photon_story(const scene *s, const settings *how, size_t n,
+                         void (*write)(const char *line, void *data), void *data,
+                         GError **error)
+{
+    (void)error;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        trace_task task = task_for(s, how, (photon_class)c);
+        story st = {s, &task.w, (photon_class)c, write, data};
+        if (c == PHOTON_CAUSTIC && s->n_caustic_shapes == 0)
+            continue;
+        for (size_t i = 0; i < MIN(n, task.n_photons); i++)
+            photon_tell(&task, i, tell_event, &st);
+    }
+    return true;
+}

@@ -1,0 +1,169 @@
+#include "transport/aim.h"
+
+#include "base/memory.h"
+#include "transport/visible.h"
+
+enum {
+    ROUNDS = 4,
+    TRIALS = 1 << 15,     /* photons a round */
+    MAX_TRIALS = 1 << 20, /* in the first round, if hardly any arrives */
+    ENOUGH_ARRIVALS = 1000,
+    VISIBLE_POINTS = 4096,
+    CHUNK = 1024,
+};
+
+/* Trial photons are those of passes that no render reaches. */
+#define TRIAL_PASS 0xfffffff0u
+
+/* A photon that lands out of the camera's sight is worth this share of one in sight: it
+   may still be seen by way of other surfaces. */
+#define UNSEEN_VALUE 0.05f
+
+/* Visible points stand for what lies between them: so many of their mean distances
+ * around. */
+#define SIGHT_REACH 2.0f
+
+/* What the trials of a round share. */
+typedef struct trials {
+    trace_task task;
+    photon_map *visible;      /* visible points; flux[0] is the reach of each */
+    emission_record *records; /* one per trial, value 0 if it did not arrive */
+    size_t first;             /* index of the first trial of the round */
+} trials;
+
+/* ---- Where the camera looks ---- */
+
+static photon_map *visible_map(const transport_plan *plan, GError **error)
+{
+    visible_point *points =
+        big_alloc(VISIBLE_POINTS, sizeof *points, "visible points", error);
+    photon_store store = {0};
+    if (!points || !photon_store_reserve(&store, VISIBLE_POINTS, error)) {
+        big_free(points);
+        return NULL;
+    }
+    size_t n = find_visible_points(plan, VISIBLE_POINTS, points);
+    const film_settings *film = &plan->scene->film;
+    float pixels_each = (float)film->width * (float)film->height / VISIBLE_POINTS;
+    for (size_t i = 0; i < n; i++) {
+        float reach = SIGHT_REACH * points[i].pixel * sqrtf(pixels_each);
+        photon p = {.p = points[i].p, .wi = {0, 0, 1}, .flux = spectrum_fill(reach)};
+        photon_store_put(&store, &p);
+    }
+    big_free(points);
+    return photon_map_build(MAP_KDTREE, &store, 0.0f, 1, error);
+}
+
+static bool in_sight(const photon_map *visible, vec3 p, photon_hits *hits)
+{
+    if (!photon_map_nearest(visible, p, 1, INFINITY, NULL, hits) || hits->n == 0)
+        return false;
+    float reach = photon_map_store(visible)->flux[hits->index[0]][0];
+    return hits->distance2[0] < reach * reach;
+}
+
+/* ---- Trials ---- */
+
+typedef struct trial {
+    const photon_map *visible;
+    photon_hits *hits;
+    float value;
+} trial;
+
+static void note_arrival(const photon_event *event, void *data)
+{
+    trial *t = data;
+    if (event->kind != PHOTON_STORED)
+        return;
+    float worth = in_sight(t->visible, event->p, t->hits) ? 1.0f : UNSEEN_VALUE;
+    float flux = spectrum_mean(event->flux);
+    t->value += isfinite(flux) ? flux * worth : 0.0f;
+}
+
+static void run_trials(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    trials *all = data;
+    photon_hits hits = {0};
+    for (size_t i = begin; i < end; i++) {
+        emission_record *record = &all->records[i];
+        trial t = {all->visible, &hits, 0.0f};
+        photon_start_point(&all->task, all->first + i, record->u);
+        photon_tell(&all->task, all->first + i, note_arrival, &t);
+        record->value = t.value;
+    }
+    photon_hits_clear(&hits);
+}
+
+/* Moves the records that arrived to the front. @return how many. */
+static size_t keep_arrivals(emission_record *records, size_t n)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (records[i].value > 0.0f)
+            records[kept++] = records[i];
+    }
+    return kept;
+}
+
+/* Traces trial photons of one round until enough arrived, and teaches the guide. */
+static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError **error)
+{
+    size_t kept = 0, limit = round == 0 ? MAX_TRIALS : TRIALS;
+    emission_record *records = all->records;
+    all->task.pass = TRIAL_PASS + round;
+    for (all->first = 0; all->first < limit && kept < ENOUGH_ARRIVALS;
+         all->first += TRIALS) {
+        all->records = records + kept;
+        if (!parallel_for(TRIALS, CHUNK, (unsigned)all->task.how->threads,
+                          all->task.cancel, run_trials, all)) {
+            error_set(error, ERROR_CANCELLED, "cancelled");
+            break;
+        }
+        kept += keep_arrivals(all->records, TRIALS);
+    }
+    bool done = !cancelled(all->task.cancel);
+    all->records = records;
+    if (done)
+        emission_guide_learn(guide, records, kept);
+    return done;
+}
+
+static bool learn(trials *all, emission_guide *guide, GError **error)
+{
+    all->records =
+        big_alloc(TRIALS + ENOUGH_ARRIVALS, sizeof *all->records, "trial photons", error);
+    bool ok = all->records != NULL;
+    for (uint32_t round = 0; round < ROUNDS && ok; round++)
+        ok = run_round(all, guide, round, error);
+    big_free(all->records);
+    return ok;
+}
+
+bool aim_caustics(transport_plan *plan, const cancel_flag *cancel, GError **error)
+{
+    if (plan->how.caustic_emission != EMISSION_GUIDED ||
+        plan->n_photons[PHOTON_CAUSTIC] == 0)
+        return true;
+    g_autoptr(photon_map) visible = visible_map(plan, error);
+    if (!visible)
+        return false;
+    g_autoptr(emission_guide) guide = emission_guide_new();
+    trials all = {
+        .visible = visible,
+        .task =
+            {
+                .scene = plan->scene,
+                .how = &plan->how,
+                .w = wavelengths_at(0.5f),
+                .photon_class = PHOTON_CAUSTIC,
+                .guide = guide,
+                .n_photons = TRIALS,
+                .cancel = cancel,
+            },
+    };
+    if (!learn(&all, guide, error))
+        return false;
+    plan->guide = g_steal_pointer(&guide);
+    return true;
+}

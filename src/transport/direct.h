@@ -1,0 +1,41 @@
+/*
+ * Direct light by sampling the lights (next-event estimation), and the weights with which
+ * it shares its work with rays that hit lights by themselves (Veach 1997, §9.2: power
+ * heuristic).
+ */
+#pragma once
+
+#include "math/sampler.h"
+#include "scene/scene.h"
+
+/** @brief What to evaluate at a surface, and how its lobes find light otherwise. */
+typedef struct direct_query {
+    const scene *scene;
+    const wavelengths *w;
+    const surface_hit *hit;
+    const bsdf *bsdf;
+    vec3 wo;
+    bool shadow_rays;  /**< false: light passes through everything */
+    unsigned followed; /**< the mask that the path goes on with: those classes share the
+                          work with light sampling, for the others it is the only way */
+    bool by_side;      /**< the path takes each side apart ... */
+    float p_side[2];   /**< ... with this probability: reflection, transmission */
+} direct_query;
+
+/** @brief Radiance sent to wo, by the class of lobe that sends it. */
+typedef struct direct_radiance {
+    spectrum diffuse, glossy;
+} direct_radiance;
+
+/** @brief Light that comes straight from a lamp, by one light sample.
+ *  @param shadow_rays_traced is increased */
+direct_radiance direct_light(const direct_query *query, sampler *random,
+                             uint64_t *shadow_rays_traced);
+
+/** @brief Weight of a followed direction of density pdf_bsdf that hit a light which light
+ * sampling would have found with density pdf_light. */
+static inline float followed_weight(float pdf_bsdf, float pdf_light)
+{
+    float a = pdf_bsdf * pdf_bsdf, b = pdf_light * pdf_light;
+    return isinf(a) ? 1.0f : a / (a + b);
+}

@@ -1,0 +1,220 @@
+/*
+ * Final gathering (Jensen 1996; Christensen 1999): indirect light at a seen point is the
+ * mean over rays of what the maps say about the surfaces those rays meet, so that the
+ * map's blotches are averaged away.
+ *
+ * A gather ray never counts lamps it meets: light → here is the direct layer's, and light
+ * → specular → here the caustic map's.
+ */
+#include "transport/direct.h"
+#include "transport/photonmap.h"
+
+#include "base/memory.h"
+
+/* ---- Irradiance kept at photon positions ---- */
+
+/* Normals must agree this well (cosine) for a kept irradiance to be used. */
+#define NORMAL_AGREEMENT 0.9f
+enum { NEAREST_KEPT = 4 };
+
+typedef struct irradiance_loop {
+    const photonmap_pass *pass;
+    const photon_store *points;
+    const uint32_t *normals;
+    photon_store *out;
+    size_t offset;
+    bool *failed;
+} irradiance_loop;
+
+static spectrum irradiance_at(const photonmap_pass *pass, vec3 p, vec3 n,
+                              estimate_scratch *scratch)
+{
+    spectrum sum = {0};
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        if (pass->maps[c])
+            sum += photon_irradiance(pass->maps[c], p, n, &pass->estimates[c], scratch,
+                                     NULL);
+    }
+    return sum;
+}
+
+static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    irradiance_loop *loop = data;
+    estimate_scratch scratch = {0};
+    for (size_t i = begin; i < end; i++) {
+        vec3 n = direction_unpack(loop->normals[i]);
+        photon p = photon_store_get(loop->points, i);
+        size_t at = loop->offset + i;
+        loop->out->x[at] = p.p[0];
+        loop->out->y[at] = p.p[1];
+        loop->out->z[at] = p.p[2];
+        loop->out->wi[at] = loop->normals[i];
+        loop->out->flux[at] = irradiance_at(loop->pass, p.p, n, &scratch);
+    }
+    if (scratch.failed)
+        loop->failed[begin / 256] = true;
+    estimate_scratch_clear(&scratch);
+}
+
+static bool add_points(const photonmap_pass *pass, const trace_result *points,
+                       photon_store *out, GError **error)
+{
+    size_t n = points->photons.n, n_chunks = n / 256 + 1;
+    g_autofree bool *failed = g_new0(bool, n_chunks);
+    irradiance_loop loop = {pass, &points->photons, points->normals, out, out->n, failed};
+    parallel_for(n, 256, (unsigned)pass->how->threads, NULL, irradiance_chunk, &loop);
+    out->n += n;
+    for (size_t i = 0; i < n_chunks; i++) {
+        if (failed[i]) {
+            error_set(error, ERROR_FAILED, "out of memory for irradiance estimates");
+            return false;
+        }
+    }
+    return true;
+}
+
+photon_map *irradiance_map_build(const photonmap_pass *pass, const trace_result *points,
+                                 size_t n, GError **error)
+{
+    size_t total = 0;
+    for (size_t i = 0; i < n; i++)
+        total += points[i].photons.n;
+    photon_store store = {0};
+    bool ok = photon_store_reserve(&store, total, error);
+    for (size_t i = 0; i < n && ok; i++)
+        ok = add_points(pass, &points[i], &store, error);
+    if (!ok) {
+        photon_store_clear(&store);
+        return NULL;
+    }
+    return photon_map_build(MAP_KDTREE, &store, 0.0f, (unsigned)pass->how->threads,
+                            error);
+}
+
+/* The nearest kept irradiance of a surface that lies alike, among the few nearest of all.
+ */
+static spectrum kept_irradiance(const photonmap_pass *pass, vec3 p, vec3 n,
+                                estimate_scratch *scratch)
+{
+    const photon_filter filter = {.n = n, .one_sided = true, .flatten = 1.0f};
+    photon_hits *hits = &scratch->hits;
+    const photon_store *store = photon_map_store(pass->irradiance);
+    if (!photon_map_nearest(pass->irradiance, p, NEAREST_KEPT, INFINITY, &filter, hits))
+        scratch->failed = true;
+    float best = INFINITY;
+    spectrum irradiance = {0};
+    for (size_t i = 0; i < hits->n; i++) {
+        vec3 kept_n = direction_unpack(store->wi[hits->index[i]]);
+        float penalty = dot3(kept_n, n) < NORMAL_AGREEMENT ? 1e6f : 1.0f;
+        if (hits->distance2[i] * penalty < best) {
+            best = hits->distance2[i] * penalty;
+            irradiance = store->flux[hits->index[i]];
+        }
+    }
+    return irradiance;
+}
+
+/* ---- Gather rays ---- */
+
+typedef struct gather_path {
+    ray ray;
+    spectrum beta;
+    int lane;
+} gather_path;
+
+/* Outgoing radiance of the diffuse lobes at a point, from all that light does there. */
+static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
+                         sampler *random, transport_scratch *scratch)
+{
+    if (pass->irradiance) {
+        vec3 n = face_forward(at->hit->n_geom, at->wo);
+        spectrum e = kept_irradiance(pass, at->hit->p, n, &scratch->estimate);
+        return e * bsdf_albedo(at->bsdf, at->wo, LOBE_GATHERED) * INV_PI_F;
+    }
+    spectrum radiance = {0};
+    if (pass->how->direct_illumination) {
+        const direct_query query = {
+            .scene = pass->scene,
+            .w = &pass->w,
+            .hit = at->hit,
+            .bsdf = at->bsdf,
+            .wo = at->wo,
+            .shadow_rays = pass->how->shadow_rays,
+        };
+        radiance = direct_light(&query, random, &scratch->shadow_rays).diffuse;
+    }
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        if (c != PHOTON_DIRECT || !pass->how->direct_illumination)
+            radiance += photonmap_gather(pass, (photon_class)c, at, 0, scratch);
+    }
+    return radiance;
+}
+
+/* Goes on by a specular or glossy lobe; roulette ends weak paths. */
+static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b,
+                      sampler *random)
+{
+    float u_lobe = sampler_1d(random);
+    vec2 u = sampler_2d(random);
+    float u_roulette = sampler_1d(random);
+    bsdf_sample next;
+    if (!(b->lobes & (LOBE_SPECULAR | LOBE_GLOSSY)) ||
+        !bsdf_sample_direction(b, -path->ray.direction, u_lobe, u, LOBE_FOLLOWED,
+                               TRANSPORT_RADIANCE, &next))
+        return false;
+    float p = fminf(1.0f, spectrum_mean(next.weight) * next.eta * next.eta);
+    if (!(u_roulette < p))
+        return false;
+    path->beta *= next.weight / p;
+    path->lane = next.lane;
+    path->ray = hit_ray(hit, next.wi);
+    return true;
+}
+
+static spectrum gather_along(const photonmap_pass *pass, gather_path path,
+                             sampler *random, transport_scratch *scratch)
+{
+    spectrum sum = {0};
+    int64_t limit = pass->how->max_backward_bounces;
+    for (int64_t bounces = 0; limit < 0 || bounces <= limit; bounces++) {
+        surface_hit hit;
+        scratch->camera_rays++;
+        if (!scene_intersect(pass->scene, &path.ray, &hit))
+            break;
+        bsdf b;
+        if (!scene_bsdf(pass->scene, &hit, &pass->w, path.lane, &pass->options, &b)) {
+            path.ray = hit_ray(&hit, path.ray.direction);
+            continue;
+        }
+        const shading_point at = {&hit, &b, -path.ray.direction};
+        if (b.lobes & LOBE_DIFFUSE)
+            sum += path.beta * outgoing(pass, &at, random, scratch);
+        if (!gather_on(&path, &hit, &b, random))
+            break;
+    }
+    return sum;
+}
+
+spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
+                      float importance, sampler *random, transport_scratch *scratch)
+{
+    float wanted = ceilf((float)pass->how->gather_rays * clampf(importance, 0.0f, 1.0f));
+    uint32_t n = (uint32_t)fmaxf(1.0f, wanted);
+    sampler own = sampler_split(random, 0x6761u);
+    uint64_t key = hash_mix(own.key, own.index);
+    spectrum sum = {0};
+    for (uint32_t i = 0; i < n; i++) {
+        sampler stream = sampler_make(key, i);
+        float u_lobe = sampler_1d(&stream);
+        vec2 u = sampler_2d(&stream);
+        bsdf_sample first;
+        if (!bsdf_sample_direction(at->bsdf, at->wo, u_lobe, u, LOBE_GATHERED,
+                                   TRANSPORT_RADIANCE, &first))
+            continue;
+        gather_path path = {hit_ray(at->hit, first.wi), first.weight, first.lane};
+        sum += gather_along(pass, path, &stream, scratch);
+    }
+    return sum / (float)n;
+}

@@ -1,0 +1,241 @@
+#include "transport/path.h"
+
+#include "transport/direct.h"
+#include "transport/photonmap.h"
+
+enum { ROULETTE_BOUNCES = 4 };
+
+/* A camera path on its way. */
+typedef struct camera_path {
+    ray ray;
+    spectrum beta;
+    int lane;
+    unsigned bounces;
+    unsigned n_before;  /* followed bounces before the first diffuse one */
+    unsigned n_diffuse; /* diffuse bounces */
+    unsigned n_after;   /* followed bounces since the last diffuse one */
+    float eta2;         /* takes refraction's scale of radiance out of roulette */
+    float pdf; /* pdf_solid_angle of the direction; 0: specular or from the camera */
+    vec3 from;
+} camera_path;
+
+/* What one camera ray's path is traced with. */
+typedef struct path_walk {
+    const path_pass *pass;
+    const scene *scene;
+    const settings *how;
+    sampler *random;
+    transport_scratch *scratch;
+    radiance_sample *out;
+} path_walk;
+
+static radiance_layer layer_of(const camera_path *path)
+{
+    if (path->n_before > 0)
+        return LAYER_SPECULAR;
+    if (path->n_diffuse == 0)
+        return LAYER_EMISSION;
+    if (path->n_diffuse > 1)
+        return LAYER_INDIRECT;
+    return path->n_after > 0 ? LAYER_CAUSTIC : LAYER_DIRECT;
+}
+
+/* Counts one more bounce by a lobe. */
+static void count_bounce(camera_path *path, unsigned lobe)
+{
+    path->bounces++;
+    if (lobe & LOBE_DIFFUSE) {
+        path->n_diffuse++;
+        path->n_after = 0;
+    } else if (path->n_diffuse > 0) {
+        path->n_after++;
+    } else {
+        path->n_before++;
+    }
+}
+
+/* True if light that comes by followed bounces from a lamp to a diffuse surface of this
+   path is the caustic map's. */
+static bool left_to_caustics(const path_walk *walk, const camera_path *path)
+{
+    return walk->pass->caustics && path->n_diffuse > 0 && path->n_after > 0;
+}
+
+static void add(path_walk *walk, const camera_path *path, spectrum radiance)
+{
+    spectrum value = path->beta * radiance;
+    if (spectrum_is_finite(value))
+        walk->out->layers[layer_of(path)] += value;
+    else
+        walk->scratch->n_not_finite++;
+}
+
+static float met_light_weight(const path_walk *walk, const camera_path *path,
+                              const surface_hit *hit)
+{
+    if (!(path->pdf > 0.0f) || !walk->how->direct_illumination)
+        return 1.0f;
+    if (!walk->how->shadow_rays)
+        return 0.0f;
+    float pdf = scene_light_pdf(walk->scene, path->from, path->ray.direction, hit);
+    return followed_weight(path->pdf, pdf);
+}
+
+/* The path ran into a lamp (hit) or the sky (NULL). */
+static void meet_light(path_walk *walk, const camera_path *path, const surface_hit *hit)
+{
+    const wavelengths *w = &walk->pass->w;
+    vec3 d = path->ray.direction;
+    spectrum radiance = hit ? scene_emitted(walk->scene, hit, -d, w)
+                            : scene_environment(walk->scene, d, w);
+    if (!spectrum_is_black(radiance) && !left_to_caustics(walk, path))
+        add(walk, path, radiance * met_light_weight(walk, path, hit));
+}
+
+static void sample_lights(path_walk *walk, const camera_path *path,
+                          const surface_hit *hit, const bsdf *b)
+{
+    if (!walk->how->direct_illumination || !(b->lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)))
+        return;
+    const direct_query query = {
+        .scene = walk->scene,
+        .w = &walk->pass->w,
+        .hit = hit,
+        .bsdf = b,
+        .wo = -path->ray.direction,
+        .shadow_rays = walk->how->shadow_rays,
+        .followed = LOBE_ALL,
+    };
+    direct_radiance found =
+        direct_light(&query, walk->random, &walk->scratch->shadow_rays);
+    camera_path by_diffuse = *path, by_glossy = *path;
+    count_bounce(&by_diffuse, LOBE_DIFFUSE);
+    count_bounce(&by_glossy, LOBE_GLOSSY);
+    add(walk, &by_diffuse, found.diffuse);
+    if (!left_to_caustics(walk, &by_glossy))
+        add(walk, &by_glossy, found.glossy);
+}
+
+/* What the caustic map says of this surface. Light that a lobe of n_diffuse > 0 would
+   take from photons of delta lights on glossy lobes has been counted at the diffuse
+   surface before. */
+static void gather_caustics(path_walk *walk, const camera_path *path,
+                            const surface_hit *hit, const bsdf *b)
+{
+    const photonmap_pass *photons = walk->pass->caustics;
+    unsigned delta = path->n_diffuse == 0 && photons->has_delta_lights ? LOBE_GLOSSY : 0;
+    camera_path seen = *path;
+    if (!(b->lobes & (LOBE_DIFFUSE | delta)))
+        return;
+    count_bounce(&seen, LOBE_DIFFUSE);
+    seen.n_after = 1;
+    const shading_point at = {hit, b, -path->ray.direction};
+    add(walk, &seen,
+        photonmap_gather(photons, PHOTON_CAUSTIC, &at, delta, walk->scratch));
+}
+
+static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
+                   const bsdf *b)
+{
+    float u_lobe = sampler_1d(walk->random);
+    vec2 u = sampler_2d(walk->random);
+    bsdf_sample next;
+    if (!bsdf_sample_direction(b, -path->ray.direction, u_lobe, u, LOBE_ALL,
+                               TRANSPORT_RADIANCE, &next))
+        return false;
+    path->beta *= next.weight;
+    path->lane = next.lane;
+    path->eta2 *= next.eta * next.eta;
+    path->pdf = (next.lobe & LOBE_SPECULAR) ? 0.0f : next.pdf;
+    path->from = hit->p;
+    path->ray = hit_ray(hit, next.wi);
+    count_bounce(path, next.lobe);
+    if (path->bounces < ROULETTE_BOUNCES)
+        return !spectrum_is_black(path->beta);
+    float p = fminf(1.0f, spectrum_mean(path->beta) * path->eta2);
+    path->beta /= p;
+    return sampler_1d(walk->random) < p;
+}
+
+static void note_first_surface(path_walk *walk, const surface_hit *hit, const bsdf *b,
+                               vec3 wo)
+{
+    walk->out->depth = hit->t;
+    walk->out->normal = face_forward(hit->n, wo);
+    walk->out->albedo = bsdf_albedo(b, wo, LOBE_ALL);
+}
+
+void path_radiance(const void *data, const ray *r, sampler *random,
+                   transport_scratch *scratch, radiance_sample *out)
+{
+    const path_pass *pass = data;
+    *out = (radiance_sample){0};
+    path_walk walk = {pass, pass->plan->scene, &pass->plan->how, random, scratch, out};
+    camera_path path = {
+        .ray = *r, .beta = spectrum_fill(1.0f), .lane = ALL_LANES, .eta2 = 1.0f};
+    int64_t limit = walk.how->max_backward_bounces;
+    for (;;) {
+        surface_hit hit;
+        scratch->camera_rays++;
+        if (!scene_intersect(walk.scene, &path.ray, &hit)) {
+            meet_light(&walk, &path, NULL);
+            return;
+        }
+        meet_light(&walk, &path, &hit);
+        bsdf b;
+        if (!scene_bsdf(walk.scene, &hit, &pass->w, path.lane, &pass->options, &b)) {
+            path.ray = hit_ray(&hit, path.ray.direction);
+            continue;
+        }
+        if (path.bounces == 0)
+            note_first_surface(&walk, &hit, &b, -path.ray.direction);
+        if (limit >= 0 && path.bounces >= limit)
+            return;
+        sample_lights(&walk, &path, &hit, &b);
+        if (pass->caustics)
+            gather_caustics(&walk, &path, &hit, &b);
+        if (!bounce(&walk, &path, &hit, &b))
+            return;
+    }
+}
+
+static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
+{
+    (void)plan;
+    (void)cancel;
+    (void)error;
+    return true;
+}
+
+static void *begin_pass(const transport_plan *plan, uint32_t index,
+                        const cancel_flag *cancel, transport_counts *counts,
+                        GError **error)
+{
+    (void)cancel;
+    (void)counts;
+    (void)error;
+    path_pass *pass = g_aligned_alloc0(1, sizeof *pass, 64);
+    pass->plan = plan;
+    pass->w = wavelengths_for_pass((uint64_t)plan->how.seed, index);
+    pass->options.deterministic = !plan->how.multiple_samples;
+    return pass;
+}
+
+static const wavelengths *pass_wavelengths(const void *pass)
+{
+    return &((const path_pass *)pass)->w;
+}
+
+static void end_pass(void *pass)
+{
+    g_aligned_free(pass);
+}
+
+const transport_kind transport_path = {
+    .name = "path",
+    .prepare = prepare,
+    .begin_pass = begin_pass,
+    .radiance = path_radiance,
+    .pass_wavelengths = pass_wavelengths,
+    .end_pass = end_pass,
+};

@@ -1,0 +1,24 @@
+/*
+ * Path tracing with next-event estimation and multiple importance sampling (Veach 1997;
+ * Pharr et al. 2023, chapter 13): no photons, no bias, and so the oracle that photon
+ * mapping is held to, and what it is compared with (002, "Photon Mapping vs Monte Carlo
+ * Ray Tracing").
+ */
+#pragma once
+
+#include "transport/transport.h"
+
+extern const transport_kind transport_path;
+
+/** @brief A pass of path tracing; with a caustic map, what the map holds is left to it.
+ */
+typedef struct path_pass {
+    const transport_plan *plan;
+    wavelengths w;
+    bsdf_options options;
+    struct photonmap_pass *caustics; /**< NULL: paths find all light themselves */
+} path_pass;
+
+/** @brief Traces one camera path through a path_pass (transport_kind.radiance). */
+void path_radiance(const void *pass, const ray *r, sampler *random,
+                   transport_scratch *scratch, radiance_sample *out);

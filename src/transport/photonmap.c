@@ -1,0 +1,249 @@
+#include "transport/photonmap.h"
+
+#include "base/memory.h"
+#include "transport/aim.h"
+
+double photonmap_radius(double radius, double alpha, uint32_t pass)
+{
+    double r2 = radius * radius;
+    for (uint32_t i = 1; i <= pass; i++)
+        r2 *= ((double)i - 1.0 + alpha) / (double)i;
+    return sqrt(r2);
+}
+
+estimate_options photonmap_estimate_options(const settings *how, photon_class c,
+                                            double radius)
+{
+    size_t nearest = (size_t)how->class_nearest[c];
+    bool unbounded = nearest > 0 && !(how->radius > 0.0);
+    return (estimate_options){
+        .kernel = {(kernel_choice)how->class_kernel[c], (float)how->class_cone_k[c]},
+        .nearest = nearest,
+        .radius = unbounded ? INFINITY : (float)radius,
+        .flatten = (float)how->flatten,
+        .lobes = LOBE_GATHERED,
+    };
+}
+
+/* ---- Planning: who gets how many photons ---- */
+
+static bool needs_direct_map(const settings *how)
+{
+    return !how->direct_illumination || (how->final_gather && how->precompute_radiance);
+}
+
+static bool class_needed(const transport_plan *plan, photon_class c)
+{
+    switch (c) {
+    case PHOTON_DIRECT:
+        return needs_direct_map(&plan->how);
+    case PHOTON_CAUSTIC:
+        return plan->scene->n_caustic_shapes > 0;
+    default:
+        return plan->how.max_forward_bounces != 0;
+    }
+}
+
+/* Classes with a budget of their own keep it; the rest share `photons` evenly. */
+static void share_photons(transport_plan *plan)
+{
+    unsigned n_sharing = 0;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        n_sharing +=
+            class_needed(plan, (photon_class)c) && plan->how.class_photons[c] == 0;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        int64_t own = plan->how.class_photons[c];
+        bool needed = class_needed(plan, (photon_class)c);
+        int64_t n = own > 0 ? own : n_sharing > 0 ? plan->how.photons / n_sharing : 0;
+        plan->n_photons[c] = needed ? (uint64_t)MAX(n, 1) : 0;
+    }
+}
+
+static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
+{
+    share_photons(plan);
+    return aim_caustics(plan, cancel, error) &&
+           photonmap_choose_radii(plan, cancel, error);
+}
+
+/* ---- A pass ---- */
+
+static double seconds(void)
+{
+    return (double)g_get_monotonic_time() * 1e-6;
+}
+
+static bool has_delta_lights(const scene *s)
+{
+    for (unsigned i = 0; i < s->lights->len; i++) {
+        if (scene_light(s, (int)i)->kind->is_delta)
+            return true;
+    }
+    return false;
+}
+
+static trace_task trace_task_for(const photonmap_pass *pass, uint32_t index,
+                                 photon_class c, const cancel_flag *cancel)
+{
+    return (trace_task){
+        .scene = pass->scene,
+        .how = pass->how,
+        .w = pass->w,
+        .pass = index,
+        .photon_class = c,
+        .guide = pass->plan->guide,
+        .n_photons = pass->plan->n_photons[c],
+        .cancel = cancel,
+    };
+}
+
+static bool trace_class(photonmap_pass *pass, uint32_t index, photon_class c,
+                        const cancel_flag *cancel, trace_result *result,
+                        transport_counts *counts, GError **error)
+{
+    double start = seconds();
+    trace_task task = trace_task_for(pass, index, c, cancel);
+    bool want_normals = pass->how->final_gather && pass->how->precompute_radiance;
+    if (!photon_trace(&task, want_normals, result, error))
+        return false;
+    counts->time_trace += seconds() - start;
+    counts->photon_rays += result->n_rays;
+    counts->n_not_finite += result->n_not_finite;
+    counts->emitted[c] += task.n_photons;
+    counts->stored[c] += result->photons.n;
+    return true;
+}
+
+static bool build_class(photonmap_pass *pass, photon_class c, trace_result *result,
+                        transport_counts *counts, GError **error)
+{
+    double start = seconds();
+    float radius = pass->estimates[c].radius;
+    photon_store store = result->photons;
+    result->photons = (photon_store){0};
+    pass->maps[c] = photon_map_build((map_choice)pass->how->photon_map, &store,
+                                     isfinite(radius) ? radius : 0.0f,
+                                     (unsigned)pass->how->threads, error);
+    counts->time_build += seconds() - start;
+    if (!pass->maps[c])
+        return false;
+    counts->memory_photons += photon_map_bytes(pass->maps[c]);
+    return true;
+}
+
+/* The positions and normals that irradiance will be computed at: of the direct and
+   indirect photons, kept before the maps reorder them. */
+static bool build_irradiance(photonmap_pass *pass, const trace_result *points,
+                             transport_counts *counts, GError **error)
+{
+    double start = seconds();
+    pass->irradiance = irradiance_map_build(pass, points, N_PHOTON_CLASSES, error);
+    counts->time_build += seconds() - start;
+    return pass->irradiance != NULL;
+}
+
+static bool keep_points(const trace_result *from, trace_result *to, GError **error)
+{
+    size_t n = (from->photons.n + 3) / 4;
+    if (!photon_store_reserve(&to->photons, n, error))
+        return false;
+    to->normals = big_alloc(n, sizeof *to->normals, "irradiance points", error);
+    if (!to->normals)
+        return false;
+    for (size_t i = 0; i < from->photons.n; i += 4) {
+        photon p = photon_store_get(&from->photons, i);
+        to->normals[to->photons.n] = from->normals[i];
+        photon_store_put(&to->photons, &p);
+    }
+    return true;
+}
+
+static bool make_maps(photonmap_pass *pass, uint32_t index, const cancel_flag *cancel,
+                      transport_counts *counts, GError **error)
+{
+    bool precompute = pass->how->final_gather && pass->how->precompute_radiance;
+    trace_result points[N_PHOTON_CLASSES] = {0};
+    bool ok = true;
+    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
+        trace_result result = {0};
+        if (pass->plan->n_photons[c] == 0)
+            continue;
+        ok = trace_class(pass, index, (photon_class)c, cancel, &result, counts, error);
+        if (ok && precompute && c != PHOTON_CAUSTIC)
+            ok = keep_points(&result, &points[c], error);
+        ok = ok && build_class(pass, (photon_class)c, &result, counts, error);
+        trace_result_clear(&result);
+    }
+    if (ok && precompute)
+        ok = build_irradiance(pass, points, counts, error);
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        trace_result_clear(&points[c]);
+    return ok;
+}
+
+static void end_pass(void *data)
+{
+    photonmap_pass *pass = data;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        photon_map_free(pass->maps[c]);
+    photon_map_free(pass->irradiance);
+    g_aligned_free(pass);
+}
+
+static void *begin_pass(const transport_plan *plan, uint32_t index,
+                        const cancel_flag *cancel, transport_counts *counts,
+                        GError **error)
+{
+    photonmap_pass *pass = g_aligned_alloc0(1, sizeof *pass, 64);
+    pass->plan = plan;
+    pass->scene = plan->scene;
+    pass->how = &plan->how;
+    pass->w = wavelengths_for_pass((uint64_t)plan->how.seed, index);
+    pass->options.deterministic = !plan->how.multiple_samples;
+    pass->has_delta_lights = has_delta_lights(plan->scene);
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        double radius = photonmap_radius(plan->radius[c], plan->how.alpha, index);
+        pass->estimates[c] =
+            photonmap_estimate_options(&plan->how, (photon_class)c, radius);
+        counts->radius[c] = radius;
+    }
+    if (!make_maps(pass, index, cancel, counts, error)) {
+        end_pass(pass);
+        return NULL;
+    }
+    return pass;
+}
+
+static const wavelengths *pass_wavelengths(const void *pass)
+{
+    return &((const photonmap_pass *)pass)->w;
+}
+
+/* One gather in so many is timed: the clock costs as much as a small gather. */
+enum { TIMED_SHARE = 16 };
+
+spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
+                          const shading_point *at, unsigned delta_lobes,
+                          transport_scratch *scratch)
+{
+    if (!pass->maps[c])
+        return (spectrum){0};
+    estimate_options options = pass->estimates[c];
+    options.delta_lobes = delta_lobes ? delta_lobes | LOBE_ANY_SIDE : 0;
+    bool timed = scratch->n_gathers++ % TIMED_SHARE == 0;
+    double start = timed ? seconds() : 0.0;
+    spectrum radiance = photon_estimate(pass->maps[c], at->hit->p, at->bsdf, at->wo,
+                                        &options, &scratch->estimate, NULL);
+    if (timed)
+        scratch->time_gather += TIMED_SHARE * (seconds() - start);
+    return radiance;
+}
+
+const transport_kind transport_photonmap = {
+    .name = "photonmap",
+    .prepare = prepare,
+    .begin_pass = begin_pass,
+    .radiance = photonmap_radiance,
+    .pass_wavelengths = pass_wavelengths,
+    .end_pass = end_pass,
+};

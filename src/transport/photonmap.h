@@ -1,0 +1,58 @@
+/*
+ * Photon mapping (Jensen 1996, 2001): photons are traced from the lamps into three maps,
+ * and camera paths gather from them at the first diffuse surface.
+ *
+ * A pass holds the maps; camera.c follows camera paths, final_gather.c makes the indirect
+ * light by one more bounce, radius.c chooses radii.
+ */
+#pragma once
+
+#include "transport/transport.h"
+
+extern const transport_kind transport_photonmap;
+
+/** @brief One pass: photons traced, maps built. Const while the camera looks. */
+typedef struct photonmap_pass {
+    const transport_plan *plan;
+    const scene *scene;
+    const settings *how;
+    wavelengths w;
+    bsdf_options options;
+    photon_map *maps[N_PHOTON_CLASSES]; /**< NULL: the class is not needed */
+    photon_map
+        *irradiance; /**< for final gathering: "photons" whose wi is a surface normal and
+                          whose flux is the irradiance there; NULL if not asked for */
+    estimate_options estimates[N_PHOTON_CLASSES];
+    bool has_delta_lights;
+} photonmap_pass;
+
+/** @brief Radius of pass i from that of pass 0 (Knaus & Zwicker 2011, eq. 20). */
+double photonmap_radius(double radius, double alpha, uint32_t pass);
+
+/** @brief How the given class is to be estimated with radius r. */
+estimate_options photonmap_estimate_options(const settings *how, photon_class c,
+                                            double radius);
+
+/** @brief Radiance toward wo from the photons of one class around the hit. */
+spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
+                          const shading_point *at, unsigned delta_lobes,
+                          transport_scratch *scratch);
+
+/** @brief Follows a camera ray (transport_kind.radiance). */
+void photonmap_radiance(const void *pass, const ray *r, sampler *random,
+                        transport_scratch *scratch, radiance_sample *out);
+
+/** @brief Indirect radiance toward wo by M rays over the diffuse lobes (final gathering).
+ *  @param importance share of the pixel that this is, 0..1: fewer rays where little */
+spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
+                      float importance, sampler *random, transport_scratch *scratch);
+
+/** @brief Irradiance at some of the photons, as a map to look the nearest up in
+ * (Christensen, "Faster Photon Map Global Illumination", 1999).
+ *  @param points photons stored, with normals[i] the surface's; every fourth is used */
+photon_map *irradiance_map_build(const photonmap_pass *pass, const trace_result *points,
+                                 size_t n, GError **error);
+
+/** @brief Chooses plan->radius of each class that is needed. */
+bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,
+                            GError **error);

@@ -1,0 +1,146 @@
+/*
+ * Radii without guessing: a pilot pass of few photons tells how dense they lie where the
+ * camera looks (or, for caustics, where they concentrate), and from that the radius that
+ * holds the wanted number of photons in a full pass follows by area,
+ *
+ *     r = r_k sqrt(wanted / k · N_pilot / N),
+ *
+ * r_k being the median distance to the k-th nearest. Everything scales with the scene:
+ * the same scene in millimetres and in metres gets the same radius in pixels.
+ */
+#include "transport/photonmap.h"
+#include "transport/visible.h"
+
+#include <stdlib.h>
+
+enum {
+    PILOT_PHOTONS = 20000,
+    PILOT_POINTS = 512,
+    PILOT_NEAREST = 16,
+};
+
+/* Photons wanted within the radius, summed over all passes: what they are shared among
+   decides between noise and blur. Caustics are to be sharp, the rest is smooth by nature.
+ */
+static const double photons_wanted[N_PHOTON_CLASSES] = {600.0, 1500.0, 300.0};
+/* ... but in each pass at least so many. */
+static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 24.0, 8.0};
+
+/* Caustics finer than this many pixels cannot be seen. */
+#define LEAST_PIXELS 1.0f
+
+/* A pass number no render reaches: the pilot's photons are not those of pass 0. */
+#define PILOT_PASS 0xffffffffu
+
+typedef struct pilot {
+    transport_plan *plan;
+    wavelengths w;
+    visible_point points[PILOT_POINTS];
+    size_t n_points;
+} pilot;
+
+static int ascending(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static float median(float *values, size_t n)
+{
+    qsort(values, n, sizeof *values, ascending);
+    return values[n / 2];
+}
+
+/* Distance from p to the k-th nearest photon; 0 if there are not so many. */
+static float nearest_distance(const photon_map *map, vec3 p, photon_hits *hits)
+{
+    if (!photon_map_nearest(map, p, PILOT_NEAREST, INFINITY, NULL, hits) ||
+        hits->n < PILOT_NEAREST)
+        return 0.0f;
+    float d2 = 0.0f;
+    for (size_t i = 0; i < hits->n; i++)
+        d2 = fmaxf(d2, hits->distance2[i]);
+    return sqrtf(d2);
+}
+
+/* Where to measure: caustics at their own photons, the rest where the camera looks. */
+static vec3 probe(const pilot *p, photon_class c, const photon_map *map, size_t i)
+{
+    const photon_store *store = photon_map_store(map);
+    if (c != PHOTON_CAUSTIC)
+        return p->points[i].p;
+    return photon_store_get(store, i * store->n / PILOT_POINTS).p;
+}
+
+static double measured_radius(const pilot *p, photon_class c, const photon_map *map)
+{
+    float distances[PILOT_POINTS];
+    size_t n = 0, n_probes = c == PHOTON_CAUSTIC ? PILOT_POINTS : p->n_points;
+    photon_hits hits = {0};
+    if (photon_map_store(map)->n < PILOT_NEAREST)
+        n_probes = 0;
+    for (size_t i = 0; i < n_probes; i++) {
+        float d = nearest_distance(map, probe(p, c, map, i), &hits);
+        if (d > 0.0f)
+            distances[n++] = d;
+    }
+    photon_hits_clear(&hits);
+    return n > 0 ? (double)median(distances, n) : 0.0;
+}
+
+static double least_radius(const pilot *p)
+{
+    float pixels[PILOT_POINTS];
+    for (size_t i = 0; i < p->n_points; i++)
+        pixels[i] = p->points[i].pixel;
+    return p->n_points > 0 ? (double)(LEAST_PIXELS * median(pixels, p->n_points)) : 0.0;
+}
+
+static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
+                          GError **error)
+{
+    transport_plan *plan = p->plan;
+    trace_task task = {
+        .scene = plan->scene,
+        .how = &plan->how,
+        .w = p->w,
+        .pass = PILOT_PASS,
+        .photon_class = c,
+        .guide = plan->guide,
+        .n_photons = MIN(plan->n_photons[c], PILOT_PHOTONS),
+        .cancel = cancel,
+    };
+    trace_result traced;
+    if (!photon_trace(&task, false, &traced, error))
+        return false;
+    photon_store store = traced.photons;
+    traced.photons = (photon_store){0};
+    trace_result_clear(&traced);
+    g_autoptr(photon_map) map =
+        photon_map_build(MAP_KDTREE, &store, 0.0f, (unsigned)plan->how.threads, error);
+    if (!map)
+        return false;
+    double density = (double)plan->n_photons[c] / (double)task.n_photons;
+    double passes = (double)MAX(plan->how.passes, 1);
+    double wanted = fmax(photons_wanted[c] / passes, photons_wanted_least[c]);
+    double r = measured_radius(p, c, map) * sqrt(wanted / PILOT_NEAREST / density);
+    double largest = 0.1 * (double)plan->scene->radius;
+    plan->radius[c] =
+        r > 0.0 ? CLAMP(r, MIN(least_radius(p), largest), largest) : 0.2 * largest;
+    return true;
+}
+
+bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,
+                            GError **error)
+{
+    bool ok = true;
+    pilot p = {.plan = plan, .w = wavelengths_at(0.5f)};
+    if (!(plan->how.radius > 0.0))
+        p.n_points = find_visible_points(plan, PILOT_POINTS, p.points);
+    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
+        plan->radius[c] = plan->how.radius;
+        if (!(plan->how.radius > 0.0) && plan->n_photons[c] > 0)
+            ok = choose_radius(&p, (photon_class)c, cancel, error);
+    }
+    return ok;
+}

@@ -1,0 +1,89 @@
+/*
+ * Light transport: one file per algorithm, each a row of one table.
+ *
+ *   prepare ─► plan (once a render: radii, budgets)
+ *   begin_pass(plan, i) ─► pass (photons, maps) ─► radiance(pass, camera ray) ... ─►
+ * end_pass
+ *
+ * A pass is a pure function of (scene, settings, pass number); threads call `radiance` on
+ * it at once, each with scratch of its own.
+ */
+#pragma once
+
+#include "base/parallel.h"
+#include "math/sampler.h"
+#include "photon/estimate.h"
+#include "photon/trace.h"
+#include "scene/scene.h"
+
+/** @brief The layers of the picture. Their sum is the beauty image. */
+typedef enum radiance_layer {
+    LAYER_DIRECT,   /**< light → surface → eye */
+    LAYER_INDIRECT, /**< by at least one diffuse bounce before the seen surface */
+    LAYER_CAUSTIC,  /**< light → specular or glossy → seen surface → eye */
+    LAYER_SPECULAR, /**< all that is seen by way of a specular or glossy bounce */
+    LAYER_EMISSION, /**< lamps and sky seen directly */
+    N_LAYERS
+} radiance_layer;
+
+/** @brief What one camera ray found. */
+typedef struct radiance_sample {
+    spectrum layers[N_LAYERS]; /**< radiance */
+    spectrum albedo;           /**< of the first surface */
+    vec3 normal;               /**< shading normal of the first surface, toward the eye */
+    float depth;               /**< distance to it, m; 0: none */
+} radiance_sample;
+
+/** @brief A surface point as a camera path meets it. */
+typedef struct shading_point {
+    const surface_hit *hit;
+    const bsdf *bsdf;
+    vec3 wo; /**< to where the path came from */
+} shading_point;
+
+/** @brief What a pass did, summed over its threads. */
+typedef struct transport_counts {
+    double time_trace, time_build, time_gather;
+    uint64_t photon_rays, camera_rays, shadow_rays, n_not_finite;
+    uint64_t emitted[N_PHOTON_CLASSES], stored[N_PHOTON_CLASSES];
+    double radius[N_PHOTON_CLASSES];
+    uint64_t memory_photons; /**< bytes of the maps */
+} transport_counts;
+
+/** @brief Decisions taken once, before the first pass. */
+typedef struct transport_plan {
+    const scene *scene;
+    settings how;
+    uint64_t
+        n_photons[N_PHOTON_CLASSES]; /**< emitted each pass; 0: the class is not needed */
+    double radius[N_PHOTON_CLASSES]; /**< of pass 0, m */
+    emission_guide *guide; /**< owned; NULL: none was learned */
+} transport_plan;
+
+/** @brief Frees what the plan owns. */
+void transport_plan_clear(transport_plan *plan);
+
+/** @brief One thread's scratch, zero-initialised; counts are added up after the pass. */
+typedef struct transport_scratch {
+    estimate_scratch estimate;
+    uint64_t camera_rays, shadow_rays, n_gathers, n_not_finite;
+    double time_gather; /**< s, estimated from a sample of the gathers */
+} transport_scratch;
+
+typedef struct transport_kind {
+    const char *name; /**< as the setting `integrator` says it */
+    /** Fills the plan's budgets and radii. */
+    bool (*prepare)(transport_plan *plan, const cancel_flag *cancel, GError **error);
+    /** Makes pass number `index`; counts are added to. */
+    void *(*begin_pass)(const transport_plan *plan, uint32_t index,
+                        const cancel_flag *cancel, transport_counts *counts,
+                        GError **error);
+    /** Radiance along a camera ray at the pass' wavelengths. Thread-safe. */
+    void (*radiance)(const void *pass, const ray *r, sampler *random,
+                     transport_scratch *scratch, radiance_sample *out);
+    const wavelengths *(*pass_wavelengths)(const void *pass);
+    void (*end_pass)(void *pass);
+} transport_kind;
+
+/** @brief The row for an integrator_choice. */
+const transport_kind *transport_find(int integrator);

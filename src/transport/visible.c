@@ -1,0 +1,56 @@
+#include "transport/visible.h"
+
+enum { MAX_BOUNCES = 16 };
+
+/* What all camera rays share. */
+typedef struct lookout {
+    const scene *scene;
+    wavelengths w;
+    bsdf_options options;
+} lookout;
+
+/* Follows a camera ray to the first surface that gathers. */
+static bool find_one(const lookout *from, ray r, sampler *random, visible_point *out)
+{
+    float way = 0.0f;
+    for (int bounces = 0; bounces < MAX_BOUNCES; bounces++) {
+        surface_hit hit;
+        bsdf b;
+        bsdf_sample next = {.wi = r.direction};
+        if (!scene_intersect(from->scene, &r, &hit))
+            return false;
+        way += hit.t;
+        bool surface =
+            scene_bsdf(from->scene, &hit, &from->w, ALL_LANES, &from->options, &b);
+        if (surface && (b.lobes & LOBE_DIFFUSE)) {
+            float area = camera_pixel_area(&from->scene->camera, way);
+            *out = (visible_point){hit.p, sqrtf(area)};
+            return true;
+        }
+        float u_lobe = sampler_1d(random);
+        vec2 u = sampler_2d(random);
+        if (surface && !bsdf_sample_direction(&b, -r.direction, u_lobe, u, LOBE_FOLLOWED,
+                                              TRANSPORT_RADIANCE, &next))
+            return false;
+        r = hit_ray(&hit, next.wi);
+    }
+    return false;
+}
+
+size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point *out)
+{
+    const camera *c = &plan->scene->camera;
+    lookout from = {.scene = plan->scene, .w = wavelengths_at(0.5f)};
+    from.options.deterministic = !plan->how.multiple_samples;
+    uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x6c6f6f6bu);
+    size_t found = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        sampler random = sampler_make(key, i);
+        vec2 u = sampler_2d(&random);
+        vec2 raster = {u.x * (float)c->width, u.y * (float)c->height};
+        vec2 u_lens = sampler_2d(&random);
+        ray r = camera_ray(c, raster, u_lens, sampler_1d(&random));
+        found += find_one(&from, r, &random, &out[found]);
+    }
+    return found;
+}

@@ -1,0 +1,15 @@
+/*
+ * Where the camera looks: points on surfaces that gather, found by camera rays spread
+ * evenly over the picture and followed through mirrors and glass.
+ */
+#pragma once
+
+#include "transport/transport.h"
+
+typedef struct visible_point {
+    vec3 p;
+    float pixel; /**< width of a pixel's footprint there, m */
+} visible_point;
+
+/** @brief Up to n points into out. @return how many. */
+size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point *out);
