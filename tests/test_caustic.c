@@ -90,7 +90,7 @@ static void check_ridge(const photon_store *photons, plane_curve c, const double
 
 static void test_nephroid(void)
 {
-    g_autoptr(scene) s = scene_from_text(
+    g_autoptr(scene) s = scene_of(
         CAMERA
         "WorldBegin LightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [-2 0 1] "
         "\"point3 to\" [0 0 0]\n" CUP);
@@ -108,7 +108,7 @@ static void test_nephroid(void)
  * centre. */
 static void test_cusp_at_half_the_radius(void)
 {
-    g_autoptr(scene) s = scene_from_text(
+    g_autoptr(scene) s = scene_of(
         CAMERA
         "WorldBegin LightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [-2 0 1] "
         "\"point3 to\" [0 0 0]\n" CUP);
@@ -133,7 +133,7 @@ static void test_cusp_at_half_the_radius(void)
 static void test_cardioid(void)
 {
     g_autoptr(scene) s =
-        scene_from_text(CAMERA "WorldBegin LightSource \"point\" \"rgb I\" [1 1 1] "
+        scene_of(CAMERA "WorldBegin LightSource \"point\" \"rgb I\" [1 1 1] "
                                "\"point3 from\" [-0.999 0 0.9]\n" CUP);
     settings how = settings_default();
     how.max_forward_bounces = 1;
@@ -180,7 +180,7 @@ static double flux_share(double n)
 
 static void test_glass_ball_flux(void)
 {
-    g_autoptr(scene) s = scene_from_text(
+    g_autoptr(scene) s = scene_of(
         CAMERA
         "WorldBegin LightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [0 0 1] "
         "\"point3 to\" [0 0 0]\n" BALL(1.5) WIDE_FLOOR);
@@ -211,7 +211,7 @@ static void check_focus(double n, const char *ball)
         "WorldBegin LightSource \"spot\" \"rgb I\" [1 1 1] \"point3 from\" [0 0 200] "
         "\"point3 to\" [0 0 0] \"float coneangle\" 0.02 \"float conedeltaangle\" 0.001\n",
         ball, WIDE_FLOOR, NULL);
-    g_autoptr(scene) s = scene_from_text(text);
+    g_autoptr(scene) s = scene_of(text);
     settings how = settings_default();
     how.max_forward_bounces = 2;
     how.caustic_emission = EMISSION_UNIFORM;

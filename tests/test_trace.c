@@ -99,7 +99,7 @@ static void test_emitted_flux_is_the_power(void)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(lights); i++) {
         g_autofree char *text = g_strconcat(CAMERA "WorldBegin\n" BOX, lights[i], NULL);
-        g_autoptr(scene) s = scene_from_text(text);
+        g_autoptr(scene) s = scene_of(text);
         wavelengths w = wavelengths_at(0.5f);
         spectrum power = power_of_lights(s, &w), sum = {0};
         enum { N = 1 << 14 };
@@ -120,7 +120,7 @@ static void test_direct_map_holds_all_flux(void)
     settings how = quick_settings();
     for (size_t i = 0; i < 5; i++) {
         g_autofree char *text = g_strconcat(CAMERA "WorldBegin\n" BOX, lights[i], NULL);
-        g_autoptr(scene) s = scene_from_text(text);
+        g_autoptr(scene) s = scene_of(text);
         wavelengths w = wavelengths_at(0.5f);
         flux_mean found = stored_flux(s, &how, PHOTON_DIRECT, 1 << 15);
         double power = (double)spectrum_mean(power_of_lights(s, &w));
@@ -139,7 +139,7 @@ static void test_indirect_flux_is_a_geometric_series(void)
             CAMERA
             "WorldBegin Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n" BOX,
             lights[0], NULL);
-        g_autoptr(scene) s = scene_from_text(text);
+        g_autoptr(scene) s = scene_of(text);
         wavelengths w = wavelengths_at(0.5f);
         flux_mean found = stored_flux(s, &how, PHOTON_INDIRECT, 1 << 15);
         double expected = (double)spectrum_mean(power_of_lights(s, &w)) * 0.7 / 0.3;
@@ -154,7 +154,7 @@ static void test_bounce_limit_counts_scattering(void)
     g_autofree char *text = g_strconcat(
         CAMERA "WorldBegin Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n" BOX,
         lights[0], NULL);
-    g_autoptr(scene) s = scene_from_text(text);
+    g_autoptr(scene) s = scene_of(text);
     wavelengths w = wavelengths_at(0.5f);
     double power = (double)spectrum_mean(power_of_lights(s, &w));
     for (int limit = 0; limit < 4; limit++) {
@@ -184,7 +184,7 @@ static void test_aimed_emission_has_the_same_flux(void)
             i < 5 ? BOX : "Shape \"disk\" \"float height\" -2 \"float radius\" 5\n";
         g_autofree char *text =
             g_strconcat(CAMERA "WorldBegin\n", walls, CASTERS, lights[i], NULL);
-        g_autoptr(scene) s = scene_from_text(text);
+        g_autoptr(scene) s = scene_of(text);
         how.caustic_emission = EMISSION_UNIFORM;
         flux_mean plain = stored_flux(s, &how, PHOTON_CAUSTIC, 1 << 18);
         how.caustic_emission = EMISSION_SPECULAR_AREA;
@@ -204,7 +204,7 @@ static void test_integrating_sphere(void)
 {
     settings how = quick_settings();
     g_autoptr(scene) s =
-        scene_from_text(CAMERA "WorldBegin LightSource \"point\" \"rgb I\" [1 1 1]\n"
+        scene_of(CAMERA "WorldBegin LightSource \"point\" \"rgb I\" [1 1 1]\n"
                                "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
                                "Shape \"sphere\" \"float radius\" 3\n");
     trace_task task = task_for(s, &how, PHOTON_INDIRECT, 200000);
@@ -239,7 +239,7 @@ static void test_trace_is_the_same_on_any_number_of_threads(void)
 {
     g_autofree char *text =
         g_strconcat(CAMERA "WorldBegin\n" BOX CASTERS, lights[2], NULL);
-    g_autoptr(scene) s = scene_from_text(text);
+    g_autoptr(scene) s = scene_of(text);
     settings one = quick_settings(), two = quick_settings();
     one.threads = 1;
     two.threads = 3;
@@ -262,7 +262,7 @@ static void test_trace_is_the_same_on_any_number_of_threads(void)
 static void test_refused_memory_is_an_error(void)
 {
     g_autofree char *text = g_strconcat(CAMERA "WorldBegin\n" BOX, lights[0], NULL);
-    g_autoptr(scene) s = scene_from_text(text);
+    g_autoptr(scene) s = scene_of(text);
     settings how = quick_settings();
     how.threads = 1;
     bool failed = true;

@@ -71,7 +71,7 @@ static double mean_of(const image *img, const char *layer)
 
 static void check_furnace(const char *words)
 {
-    g_autoptr(scene) s = scene_from_text(FURNACE);
+    g_autoptr(scene) s = scene_of(FURNACE);
     g_autoptr(image) img = render_with(s, words);
     double found = mean_of(img, "");
     g_test_message("%s: radiance %g", words, found);
@@ -164,7 +164,7 @@ static void test_photon_mapping_agrees_with_path_tracing(gconstpointer data)
 {
     const furnishing *f = data;
     g_autofree char *text = g_strconcat(ROOM, f->text, NULL);
-    g_autoptr(scene) s = scene_from_text(text);
+    g_autoptr(scene) s = scene_of(text);
     g_autoptr(image) path =
         render_with(s, "integrator=path passes=16 spp=32 max_backward_bounces=-1 seed=1");
     const char *const ways[] = {
@@ -187,7 +187,7 @@ static void test_photon_mapping_agrees_with_path_tracing(gconstpointer data)
 static void test_layers_agree_with_path_tracing(void)
 {
     g_autofree char *text = g_strconcat(ROOM, furnishings[2].text, NULL);
-    g_autoptr(scene) s = scene_from_text(text);
+    g_autoptr(scene) s = scene_of(text);
     g_autoptr(image) path =
         render_with(s, "integrator=path passes=16 spp=64 max_backward_bounces=-1");
     g_autoptr(image) photons = render_with(s, "passes=12 spp=16 photons=200000");
@@ -210,7 +210,7 @@ static void test_same_bits_on_any_number_of_threads(void)
         "passes=1 spp=1 photons=20000 indirect_nearest=50",
         "integrator=path passes=2 spp=4"};
     g_autofree char *text = g_strconcat(ROOM, furnishings[2].text, NULL);
-    g_autoptr(scene) s = scene_from_text(text);
+    g_autoptr(scene) s = scene_of(text);
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
         g_autofree char *one = g_strconcat(ways[i], " threads=1", NULL);
         g_autofree char *two = g_strconcat(ways[i], " threads=2", NULL);
@@ -224,7 +224,7 @@ static void test_same_bits_on_any_number_of_threads(void)
 static void test_maps_render_the_same(void)
 {
     g_autofree char *text = g_strconcat(ROOM, furnishings[1].text, NULL);
-    g_autoptr(scene) s = scene_from_text(text);
+    g_autoptr(scene) s = scene_of(text);
     const char *const ways[] = {"passes=1 spp=1 photons=5000",
                                 "passes=1 spp=1 photons=5000 indirect_nearest=30 "
                                 "caustic_nearest=20"};
@@ -246,13 +246,13 @@ static void test_maps_render_the_same(void)
 static void test_scale_changes_nothing(void)
 {
     g_autofree char *metres = g_strconcat(ROOM, furnishings[2].text, NULL);
-    g_autoptr(scene) s = scene_from_text(metres);
+    g_autoptr(scene) s = scene_of(metres);
     GString *scaled = g_string_new(ROOM);
     g_string_replace(scaled, "LookAt 0 -3.4 1.2  0 0 0.9", "LookAt 0 -3400 1200  0 0 900",
                      1);
     g_string_replace(scaled, "WorldBegin\n", "WorldBegin\nScale 1000 1000 1000\n", 1);
     g_string_append(scaled, furnishings[2].text);
-    g_autoptr(scene) big = scene_from_text(scaled->str);
+    g_autoptr(scene) big = scene_of(scaled->str);
     g_string_free(scaled, TRUE);
     const char *how = "passes=2 spp=4 photons=50000";
     g_autoptr(image) a = render_with(s, how);
@@ -276,7 +276,7 @@ static void test_shadow_rays_off_lights_through(void)
                "0 3]\n"
                "Shape \"disk\" \"float radius\" 5\n"
                "Translate 0 0 2.9 Shape \"disk\" \"float radius\" 0.5\n";
-    g_autoptr(scene) s = scene_from_text(text);
+    g_autoptr(scene) s = scene_of(text);
     g_autoptr(image) dark =
         render_with(s, "passes=1 spp=1 photons=100 max_forward_bounces=0");
     g_autoptr(image) lit = render_with(
@@ -286,7 +286,7 @@ static void test_shadow_rays_off_lights_through(void)
 
 static void test_cancel_keeps_what_there_is(void)
 {
-    g_autoptr(scene) s = scene_from_text(ROOM);
+    g_autoptr(scene) s = scene_of(ROOM);
     settings how = settings_with(s, "passes=4 spp=1 photons=1000");
     g_autoptr(GError) error = NULL;
     g_autoptr(render) r = render_new(s, &how, &error);

@@ -13,6 +13,7 @@
 #include "photon/estimate.h"
 
 #include "photon/map_kind.h"
+#include "photon/neighbourhood.h"
 
 /* Photons arrive in proportion to |wi·n_geom|, so without a limit on |wi·n| / |wi·n_geom|
  * the variance would not be finite; the light cut off is below 1/2000. */
@@ -33,7 +34,8 @@ struct gather {
     size_t index[BLOCK + LANES];
     float weight[BLOCK + LANES]; /* κ */
     spectrum sum;
-    size_t n; /* weighed */
+    size_t n;                  /* weighed */
+    const neighbourhood *hood; /* if set, photons out of its sight are left out */
 };
 
 /* ---- Weighing a block ---- */
@@ -85,8 +87,25 @@ static void weigh_bsdf(gather *g)
     }
 }
 
+/* Takes photons out of the block that the centre does not see. */
+static void leave_out_unseen(gather *g)
+{
+    const photon_store *s = g->probe.store;
+    size_t kept = 0;
+    for (size_t i = 0; i < g->n_block; i++) {
+        size_t k = g->index[i];
+        if (!neighbourhood_sees(g->hood, vec3_make(s->x[k], s->y[k], s->z[k])))
+            continue;
+        g->index[kept] = k;
+        g->weight[kept++] = g->weight[i];
+    }
+    g->n_block = kept;
+}
+
 static void flush(gather *g)
 {
+    if (g->hood)
+        leave_out_unseen(g);
     g->weigh(g);
     g->n += g->n_block;
     g->n_block = 0;
@@ -195,18 +214,46 @@ static bool gather_nearest(gather *g, const photon_map *map, estimate_scratch *s
 
 /* ---- The estimate ---- */
 
+static bool gather_once(gather *g, const photon_map *map, estimate_scratch *scratch)
+{
+    bool done = g->options->nearest ? gather_nearest(g, map, scratch)
+                                    : gather_within(g, map, scratch);
+    flush(g);
+    return done;
+}
+
+/* The photons again, of the part of the disc that is surface in sight, and its area. */
+static bool gather_part(gather *g, const photon_map *map, const neighbourhood *hood,
+                        estimate_scratch *scratch, float *area)
+{
+    estimate_options within = *g->options;
+    within.nearest = 0;
+    within.radius = hood->radius;
+    g->options = &within;
+    g->hood = hood;
+    g->probe.flat = true;
+    g->probe.inv_flatten = 1.0f / NEIGHBOURHOOD_FLATTEN;
+    g->n = 0;
+    g->sum = (spectrum){0};
+    bool done = gather_once(g, map, scratch);
+    *area *= neighbourhood_coverage(hood, &within.kernel);
+    return done;
+}
+
 /* Σ over the photons around the point; zero when there are none or memory is refused. */
 static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scratch,
                          estimate_info *info)
 {
     const estimate_options *options = g->options;
-    bool done = options->nearest ? gather_nearest(g, map, scratch)
-                                 : gather_within(g, map, scratch);
-    flush(g);
+    bool done = gather_once(g, map, scratch);
+    float area = kernel_area(&options->kernel, g->r2);
+    neighbourhood hood = {options->scene, g->probe.p, g->probe.n, sqrtf(g->r2)};
+    if (options->scene && g->n > 0 && isfinite(hood.radius) &&
+        !neighbourhood_is_whole(&hood))
+        done = gather_part(g, map, &hood, scratch, &area) && done;
     scratch->failed |= !done;
     if (info)
-        *info = (estimate_info){.n_photons = g->n, .radius = sqrtf(g->r2)};
-    float area = kernel_area(&options->kernel, g->r2);
+        *info = (estimate_info){.n_photons = g->n, .radius = hood.radius};
     bool usable = done && g->n > 0 && area > 0.0f;
     return usable ? g->sum / area : (spectrum){0};
 }
@@ -242,6 +289,7 @@ spectrum photon_estimate(const photon_map *map, vec3 p, const bsdf *b, vec3 wo,
     g.wo = wo;
     g.weigh = lambertian ? bent ? weigh_bent : weigh_plain : weigh_bsdf;
     g.n_block = g.n = 0;
+    g.hood = NULL;
     g.sum = (spectrum){0};
     if (lambertian && !(dot3(wo, b->shading.n) * dot3(wo, b->n_geom) > 0.0f)) {
         if (info)
@@ -262,6 +310,7 @@ spectrum photon_irradiance(const photon_map *map, vec3 p, vec3 n_geom,
     g.options = options;
     g.weigh = weigh_plain;
     g.n_block = g.n = 0;
+    g.hood = NULL;
     g.sum = (spectrum){0};
     return estimate(&g, map, scratch, info);
 }

@@ -13,7 +13,7 @@
 
 #include "photon/kernel.h"
 #include "photon/map.h"
-#include "scene/bsdf.h"
+#include "scene/scene.h"
 
 /** @brief How to estimate. */
 typedef struct estimate_options {
@@ -25,6 +25,8 @@ typedef struct estimate_options {
                        out, without shrinking r (see photon_filter); 1: a ball */
     bool unbiased_nearest; /**< k nearest: r reaches to the k-th, which itself is not
                               counted */
+    const scene *scene;    /**< to probe edges, corners and thin walls with (see
+                              neighbourhood.h); NULL: the disc is taken as whole */
     unsigned lobes;        /**< used for all photons, e.g. LOBE_GATHERED */
     unsigned
         delta_lobes; /**< added for photons flagged PHOTON_FROM_DELTA, e.g. LOBE_GLOSSY */

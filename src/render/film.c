@@ -13,7 +13,7 @@ bool film_open(film *f, const scene *s, GError **error)
     *f = (film){
         .x0 = (int)ceilf(how->crop[0] * (float)how->width),
         .y0 = (int)ceilf(how->crop[2] * (float)how->height),
-        .scale = how->iso / 100.0f,
+        .scale = scene_imaging_ratio(s),
         .space = how->space ? how->space : color_space_srgb(),
     };
     f->width = x1 - f->x0;

@@ -26,7 +26,7 @@ typedef struct film_pixel {
 typedef struct film {
     int x0, y0, width, height; /**< the part of the picture that is rendered, pixels */
     film_pixel *pixels;
-    float scale; /**< sensor: iso / 100 */
+    float scale; /**< the sensor's: scene_imaging_ratio */
     const color_space *space;
 } film;
 

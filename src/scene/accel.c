@@ -19,7 +19,7 @@
 struct accel {
     RTCDevice device;
     RTCScene scene;
-    shape **shapes; /* a copy of the array; the shapes are borrowed */
+    shape **shapes;    /* a copy of the array; the shapes are borrowed */
     char message[256]; /* the last thing the device complained of, while building */
     enum RTCError code;
 };
@@ -89,12 +89,18 @@ static void user_occluded(const struct RTCOccludedFunctionNArguments *args)
 {
     const shape *s = args->geometryUserPtr;
     struct RTCRay *query = (struct RTCRay *)args->ray;
-    if (!args->valid[0])
+    if (!args->valid[0] || s->material == NO_INDEX)
         return;
     ray r = from_embree(query);
     float t, u, v;
     if (s->kind->intersect(s->self, &r, &t, &u, &v))
         query->tfar = -INFINITY;
+}
+
+/* Interfaces without a material hide nothing. */
+static void let_through(const struct RTCFilterFunctionNArguments *args)
+{
+    args->valid[0] = 0;
 }
 
 /* ---- Building ---- */
@@ -116,6 +122,8 @@ static RTCGeometry make_geometry(accel *a, shape *s)
                                    m->positions, 0, 3 * sizeof(float), m->n_vertices);
         rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                    m->indices, 0, 3 * sizeof(uint32_t), m->n_triangles);
+        if (s->material == NO_INDEX)
+            rtcSetGeometryOccludedFilterFunction(g, let_through);
     } else {
         rtcSetGeometryUserPrimitiveCount(g, 1);
         rtcSetGeometryUserData(g, s);

@@ -14,5 +14,6 @@ void accel_free(accel *a);
 /** @brief Nearest hit in (0, r->t_max): geometry only, hit->shape tells the rest.
  * Thread-safe. */
 bool accel_intersect(const accel *a, const ray *r, surface_hit *hit);
-/** @brief True if anything lies in (0, r->t_max). Thread-safe. */
+/** @brief True if anything but interfaces (shapes without a material) lies in (0, r->t_max).
+ *  Thread-safe. */
 bool accel_occluded(const accel *a, const ray *r);

@@ -107,6 +107,9 @@ static const setting_row table[] = {
     {"flatten", SETTING_REAL, AT(flatten), "", 0.001, 1, 1, NULL, "", "photonmap",
      "Height of the neighbourhood along the normal over its radius; below 1 it leaks "
      "less light through corners."},
+    {"edges", SETTING_BOOL, AT(edges), "", 0, 1, 1, NULL, "", "photonmap auto",
+     "Probes the surroundings of an estimate, so that edges and corners are not dark and "
+     "no light leaks through thin walls."},
     {"roulette", SETTING_CHOICE, AT(roulette), "", 0, 1, ROULETTE_MEAN, roulette_words,
      "", "photonmap",
      "What of a photon's flux decides its survival: the mean or the largest over "

@@ -51,6 +51,7 @@ typedef struct settings {
     double class_cone_k[N_CLASSES];
     int photon_map; /**< map_choice */
     double flatten; /**< height of the neighbourhood over its radius, 0..1; 1: a ball */
+    bool edges;     /**< estimates are corrected at edges, corners and thin walls */
     int roulette;   /**< roulette_choice */
     int caustic_emission; /**< emission_choice */
     bool multiple_samples;

@@ -31,9 +31,10 @@ static spectrum irradiance_at(const photonmap_pass *pass, vec3 p, vec3 n,
 {
     spectrum sum = {0};
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        estimate_options options = pass->estimates[c];
+        options.scene = pass->how->edges ? pass->scene : NULL;
         if (pass->maps[c])
-            sum += photon_irradiance(pass->maps[c], p, n, &pass->estimates[c], scratch,
-                                     NULL);
+            sum += photon_irradiance(pass->maps[c], p, n, &options, scratch, NULL);
     }
     return sum;
 }

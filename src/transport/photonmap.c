@@ -229,6 +229,7 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
     if (!pass->maps[c])
         return (spectrum){0};
     estimate_options options = pass->estimates[c];
+    options.scene = pass->how->edges ? pass->scene : NULL;
     options.delta_lobes = delta_lobes ? delta_lobes | LOBE_ANY_SIDE : 0;
     bool timed = scratch->n_gathers++ % TIMED_SHARE == 0;
     double start = timed ? seconds() : 0.0;

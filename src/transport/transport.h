@@ -57,7 +57,7 @@ typedef struct transport_plan {
     uint64_t
         n_photons[N_PHOTON_CLASSES]; /**< emitted each pass; 0: the class is not needed */
     double radius[N_PHOTON_CLASSES]; /**< of pass 0, m */
-    emission_guide *guide; /**< owned; NULL: none was learned */
+    emission_guide *guide;           /**< owned; NULL: none was learned */
 } transport_plan;
 
 /** @brief Frees what the plan owns. */
