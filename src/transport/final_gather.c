@@ -129,10 +129,10 @@ typedef struct gather_path {
 static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
                          sampler *random, transport_scratch *scratch)
 {
-    if (pass->irradiance) {
+    if (pass->irradiance && at->bsdf->lambertian) {
         vec3 n = face_forward(at->hit->n_geom, at->wo);
         spectrum e = kept_irradiance(pass, at->hit->p, n, &scratch->estimate);
-        return e * bsdf_albedo(at->bsdf, at->wo, LOBE_GATHERED) * INV_PI_F;
+        return e * at->bsdf->rho * INV_PI_F;
     }
     spectrum radiance = {0};
     if (pass->how->direct_illumination) {
