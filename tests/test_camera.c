@@ -342,6 +342,20 @@ static void test_positive_filters_have_unit_weight(void)
     }
 }
 
+/* The triangle's distribution function inverts by a square root. */
+static void test_triangle_is_inverted(void)
+{
+    pixel_filter f = make_filter("triangle");
+    for (int i = 0; i < 5000; i++) {
+        float u = ((float)i + 0.5f) / 5000.0f, w;
+        double s = (double)fminf(u, 1 - u), x = 2 * (1 - sqrt(2 * s));
+        vec2 p = filter_sample(&f, (vec2){u, 1 - u}, &w);
+        g_assert_cmpfloat_with_epsilon((double)p.x, u < 0.5f ? -x : x, 1e-4);
+        g_assert_cmpfloat_with_epsilon((double)p.y, u < 0.5f ? x : -x, 1e-4);
+    }
+    filter_clear(&f);
+}
+
 /* Mean |f| over one of 16 x 16 cells, by 32 x 32 points. */
 static double cell_mass(const pixel_filter *f, int cx, int cy)
 {
@@ -439,6 +453,7 @@ int main(int argc, char **argv)
     g_test_add_func("/filter/values", test_filter_values);
     g_test_add_func("/filter/weights", test_weights_integrate);
     g_test_add_func("/filter/unit-weight", test_positive_filters_have_unit_weight);
+    g_test_add_func("/filter/triangle", test_triangle_is_inverted);
     g_test_add_func("/filter/chi2", test_samples_follow_filter);
     g_test_add_func("/filter/parameters", test_filter_parameters);
     return g_test_run();

@@ -376,13 +376,15 @@ static void test_png_kinds(void)
 static void test_hdr_by_hand(void)
 {
     /* Two pixels flat; the second line repeats a pixel by the old run; +Y counts up. */
-    const char file[] = "#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n+Y 2 +X 3\n"
-                        "\x80\x40\x20\x81\x80\x80\x80\x80\x00\x00\x00\x00"
-                        "\x08\x10\x20\x88\x01\x01\x01\x02";
+    const char file[] =
+        "#?RADIANCE\n#a=b\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n+Y 2 +X 3\n"
+        "\x80\x40\x20\x81\x80\x80\x80\x80\x00\x00\x00\x00"
+        "\x08\x10\x20\x88\x01\x01\x01\x02";
     g_autoptr(image) img = read_bytes(file, sizeof file - 1, NULL);
     g_assert_nonnull(img);
     g_assert_cmpint(img->width, ==, 3);
     g_assert_cmpstr(image_header_get(img, "EXPOSURE"), ==, "2");
+    g_assert_cmpuint(g_hash_table_size(img->header), ==, 1);
     const float expected[2][9] = {{8, 16, 32, 8, 16, 32, 8, 16, 32},
                                   {1, 0.5f, 0.25f, 0.5f, 0.5f, 0.5f, 0, 0, 0}};
     g_assert_cmpmem(img->pixels, sizeof expected, expected, sizeof expected);

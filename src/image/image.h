@@ -23,9 +23,10 @@ typedef struct image {
         chromaticities[8]; /**< xy of R, G, B, white; all zero: not stated (then sRGB) */
 } image;
 
-/** @brief How the stored numbers of an 8-bit file become linear ones. */
+/** @brief How the codes of an integer file (PNG, JPEG) become linear numbers. Float files
+ * are linear whatever is asked, as they are in pbrt; so is alpha. */
 typedef enum image_encoding {
-    ENCODING_AUTO, /**< sRGB for 8-bit files, linear for float files */
+    ENCODING_AUTO, /**< sRGB for integer files, linear for float files */
     ENCODING_SRGB,
     ENCODING_LINEAR,
     ENCODING_GAMMA, /**< a power, given apart */
@@ -53,15 +54,19 @@ int image_channel(const image *img, const char *name);
 const char *image_header_get(const image *img, const char *key);
 void image_header_set(image *img, const char *key, const char *value);
 
-/** @brief Reads EXR, PNG (8/16 bit), JPEG, HDR (RGBE) or PFM, by content not by name.
- *  @param options NULL = automatic. @return NULL with ERROR_INPUT naming the file. */
+/** @brief Reads EXR, PNG (8/16 bit), JPEG, HDR (RGBE) or PFM, by content not by name. EXR
+ * keeps its channels' names (sorted) and its data window only; every other format gives
+ * R, G, B, grey repeated, and a PNG with transparency A.
+ *  @param options NULL = automatic. @return NULL with ERROR_INPUT naming the file when it
+ *  cannot be read, is damaged or claims a size it cannot hold. */
 image *image_read(const char *path, const image_read_options *options, GError **error);
 
 /** @brief Writes by the name's extension (.exr, .png, .jpg, .hdr, .pfm): to a temporary
  * name beside it, synced and renamed, so that no partial file is ever seen under the
- * name. Formats other than EXR write channels R, G, B (and A for PNG) only.
+ * name. Formats other than EXR write channels R, G, B (and A for PNG, as it stands) only;
+ * EXR writes all, as 32-bit float, and the header as string attributes.
  *  @param options NULL = exposure 0. @return false with ERROR_INPUT (unknown extension,
- *  unwritable) or ERROR_FAILED (disk). */
+ *  unwritable, no R, G, B) or ERROR_FAILED (disk). */
 bool image_write(const image *img, const char *path, const image_write_options *options,
                  GError **error);
 
