@@ -13,5 +13,8 @@ typedef struct command {
     int (*run)(int argc, char **argv);
 } command;
 
+int command_render(int argc, char **argv);
+int command_photons(int argc, char **argv);
+int command_info(int argc, char **argv);
 int command_compare(int argc, char **argv);
 int command_settings(int argc, char **argv);

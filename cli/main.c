@@ -10,6 +10,10 @@
 #include <string.h>
 
 static const command commands[] = {
+    {"render", "render a scene to an image", command_render},
+    {"photons", "trace photons only: count them, save them, tell their story",
+     command_photons},
+    {"info", "say what is in a scene", command_info},
     {"compare", "measure how far an image is from a reference", command_compare},
     {"settings", "list all settings", command_settings},
 };

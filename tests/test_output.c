@@ -54,14 +54,14 @@ static void test_json_is_json(void)
     json_object_end(&j);
     json_number(&j, NULL, 0.1);
     json_array_end(&j);
-    json_numbers(&j, "row", (const double[]){1, 0.5, (double)NAN}, 3);
+    json_floats(&j, "row", (const float[]){100.0f, 0.1f, NAN}, 3);
     json_object_end(&j);
     g_autofree char *text = json_finish(&j);
     g_test_message("%s", text);
     g_assert_true(json_is_valid(text));
     g_assert_nonnull(strstr(text, "\"nan\": null"));
     g_assert_nonnull(strstr(text, "\"most\": 18446744073709551615"));
-    g_assert_nonnull(strstr(text, "\"row\": [1, 0.5, null]"));
+    g_assert_nonnull(strstr(text, "\"row\": [100, 0.1, null]"));
 }
 
 static void test_numbers_come_back(void)
@@ -83,7 +83,14 @@ static void test_numbers_come_back(void)
         g_assert_null(strchr(buffer, ','));
     }
     char buffer[G_ASCII_DTOSTR_BUF_SIZE];
-    g_assert_cmpstr(number_text(0.1, buffer), ==, "0.1");
+    static const struct {
+        double value;
+        const char *text;
+    } cases[] = {{0.1, "0.1"},           {100.0, "100"},       {-300.0, "-300"},
+                 {123456.7, "123456.7"}, {999999.0, "999999"}, {1e6, "1000000"},
+                 {1e15, "1e+15"},        {0.0, "0"},           {1e-5, "1e-05"}};
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++)
+        g_assert_cmpstr(number_text(cases[i].value, buffer), ==, cases[i].text);
     g_rand_free(random);
     setlocale(LC_NUMERIC, "C");
 }

@@ -3,17 +3,35 @@
 #include <math.h>
 #include <string.h>
 
-const char *number_text(double value, char buffer[G_ASCII_DTOSTR_BUF_SIZE])
+enum { FLOAT_DIGITS = 9, DOUBLE_DIGITS = 17 };
+
+static bool reads_back(const char *text, double value, int digits)
 {
-    for (int digits = 1; digits <= 17; digits++) {
+    const double back = g_ascii_strtod(text, NULL);
+    if (digits == DOUBLE_DIGITS)
+        return memcmp(&back, &value, sizeof back) == 0;
+    const float near = (float)back, wanted = (float)value;
+    return memcmp(&near, &wanted, sizeof near) == 0;
+}
+
+/* Few digits, but 100 rather than 1e+02. */
+static const char *shortest(double value, int most_digits, char *buffer)
+{
+    const bool plain = fabs(value) >= 1.0 && fabs(value) < 1e15;
+    const int least = plain ? 1 + (int)floor(log10(fabs(value)) + 1e-9) : 1;
+    for (int digits = least; digits <= MAX(least, most_digits); digits++) {
         char format[8];
         g_snprintf(format, sizeof format, "%%.%dg", digits);
         g_ascii_formatd(buffer, G_ASCII_DTOSTR_BUF_SIZE, format, value);
-        double back = g_ascii_strtod(buffer, NULL);
-        if (memcmp(&back, &value, sizeof back) == 0)
+        if (reads_back(buffer, value, most_digits))
             break;
     }
     return buffer;
+}
+
+const char *number_text(double value, char buffer[G_ASCII_DTOSTR_BUF_SIZE])
+{
+    return shortest(value, DOUBLE_DIGITS, buffer);
 }
 
 static void put_quoted(GString *out, const char *text)
@@ -102,16 +120,22 @@ void json_string(json *j, const char *key, const char *value)
         g_string_append(j->text, "null");
 }
 
-static void put_number(GString *out, double value)
+static void put_number(GString *out, double value, int most_digits)
 {
     char buffer[G_ASCII_DTOSTR_BUF_SIZE];
-    g_string_append(out, isfinite(value) ? number_text(value, buffer) : "null");
+    g_string_append(out, isfinite(value) ? shortest(value, most_digits, buffer) : "null");
 }
 
 void json_number(json *j, const char *key, double value)
 {
     begin_member(j, key);
-    put_number(j->text, value);
+    put_number(j->text, value, DOUBLE_DIGITS);
+}
+
+void json_float(json *j, const char *key, float value)
+{
+    begin_member(j, key);
+    put_number(j->text, (double)value, FLOAT_DIGITS);
 }
 
 void json_integer(json *j, const char *key, int64_t value)
@@ -132,14 +156,14 @@ void json_bool(json *j, const char *key, bool value)
     g_string_append(j->text, value ? "true" : "false");
 }
 
-void json_numbers(json *j, const char *key, const double *values, size_t n)
+void json_floats(json *j, const char *key, const float *values, size_t n)
 {
     begin_member(j, key);
     g_string_append_c(j->text, '[');
     for (size_t i = 0; i < n; i++) {
         if (i)
             g_string_append(j->text, ", ");
-        put_number(j->text, values[i]);
+        put_number(j->text, (double)values[i], FLOAT_DIGITS);
     }
     g_string_append_c(j->text, ']');
 }

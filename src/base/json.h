@@ -27,12 +27,14 @@ void json_number(json *j, const char *key, double value);
 void json_integer(json *j, const char *key, int64_t value);
 void json_count(json *j, const char *key, uint64_t value);
 void json_bool(json *j, const char *key, bool value);
-/** @brief An array of n numbers on one line. */
-void json_numbers(json *j, const char *key, const double *values, size_t n);
+/** @brief The shortest text that reads back to the same float. */
+void json_float(json *j, const char *key, float value);
+/** @brief An array of n such numbers on one line. */
+void json_floats(json *j, const char *key, const float *values, size_t n);
 
 /** @brief The text, ending with a newline; owned by the caller. j is zero again. */
 char *json_finish(json *j);
 
-/** @brief The shortest decimal text that reads back to value; in buffer, which is
- * returned. */
+/** @brief The shortest text that reads back to value, without exponent from 1 to 1e15; in
+ * buffer, which is returned. */
 const char *number_text(double value, char buffer[G_ASCII_DTOSTR_BUF_SIZE]);

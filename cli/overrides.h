@@ -1,0 +1,21 @@
+/*
+ * Settings from the command line, over those of the scene.
+ *
+ *   scene file < --settings FILE < --set name=value in their order < --spp and the like
+ */
+#pragma once
+
+#include <nephroid/nephroid.h>
+
+/** @brief The options as given; zero: none. */
+typedef struct overrides {
+    char *file;                                       /**< --settings */
+    char **set;                                       /**< --set, "name=value" */
+    char *integrator, *passes, *spp, *threads, *seed; /**< NULL: not given */
+} overrides;
+
+/** @brief Puts them over the settings. Errors name the option. */
+bool overrides_apply(const overrides *o, NephSettings *settings, GError **error);
+/** @brief Threads to load a scene with, before its own settings are known: 0 = all.
+ *  Refuses what overrides_apply would refuse, so that no scene is loaded in vain. */
+bool overrides_check(const overrides *o, unsigned *threads, GError **error);

@@ -1,0 +1,22 @@
+/*
+ * How far a render is: a bar with the time left on a terminal, else a line every tenth or
+ * every ten seconds. All on stderr.
+ */
+#pragma once
+
+#include <nephroid/nephroid.h>
+
+typedef struct progress {
+    bool quiet;       /**< says nothing */
+    bool on_terminal; /**< stderr is one */
+    int64_t n_passes; /**< to come */
+    int64_t start;    /**< monotonic µs */
+    int64_t shown_at; /**< monotonic µs of the last word, 0: none yet */
+    int shown_tenths; /**< of the last line */
+} progress;
+
+progress progress_begin(bool quiet, int64_t n_passes);
+/** @brief A NephProgressFunc; data: progress. Never stops the render. */
+bool progress_show(double fraction, const NephStatistics *statistics, void *data);
+/** @brief Removes the bar. */
+void progress_end(progress *p);

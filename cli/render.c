@@ -1,0 +1,217 @@
+/*
+ * nephroid render: what can be refused is refused before the scene is loaded, what can be
+ * checked before the render is checked before it, and what has been rendered is written.
+ */
+#include "arguments.h"
+#include "command.h"
+#include "message.h"
+#include "overrides.h"
+#include "progress.h"
+#include "stop.h"
+
+#include <string.h>
+
+static struct {
+    char **outputs;
+    char *size, *exposure, *stats;
+    gboolean quiet;
+    overrides settings;
+} given;
+
+static const GOptionEntry entries[] = {
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME_ARRAY, &given.outputs,
+     "Write the image there: .exr, .png, .jpg, .hdr or .pfm; may be given again", "FILE"},
+    {"set", 's', 0, G_OPTION_ARG_STRING_ARRAY, &given.settings.set,
+     "Change a setting; may be given again", "NAME=VALUE"},
+    {"settings", 0, 0, G_OPTION_ARG_FILENAME, &given.settings.file,
+     "Read settings from lines of name = value", "FILE"},
+    {"size", 0, 0, G_OPTION_ARG_STRING, &given.size, "Size of the image, pixels", "WxH"},
+    {"spp", 0, 0, G_OPTION_ARG_STRING, &given.settings.spp,
+     "Camera samples a pixel in each pass", "N"},
+    {"passes", 0, 0, G_OPTION_ARG_STRING, &given.settings.passes, "Number of passes",
+     "N"},
+    {"integrator", 0, 0, G_OPTION_ARG_STRING, &given.settings.integrator,
+     "photonmap or path", "NAME"},
+    {"threads", 'j', 0, G_OPTION_ARG_STRING, &given.settings.threads,
+     "Threads; 0: one per processor", "N"},
+    {"seed", 0, 0, G_OPTION_ARG_STRING, &given.settings.seed, "Seed of random numbers",
+     "N"},
+    {"exposure", 0, 0, G_OPTION_ARG_STRING, &given.exposure,
+     "Brighten 8-bit images by so many stops", "STOPS"},
+    {"stats", 0, 0, G_OPTION_ARG_FILENAME, &given.stats, "Write statistics as JSON",
+     "FILE"},
+    {"quiet", 'q', 0, G_OPTION_ARG_NONE, &given.quiet,
+     "Only warnings and errors; no progress, no table", NULL},
+    G_OPTION_ENTRY_NULL};
+
+static const usage how = {
+    .name = "render",
+    .operands = "SCENE",
+    .n_operands = 1,
+    .summary = "Renders a pbrt-v4 scene by photon mapping.",
+    .description =
+        "Without -o the image goes where the scene's Film says, else to the scene's "
+        "name with\n.exr in the current folder.\n\n"
+        "Settings: the scene's are overridden by --settings, these by --set in the "
+        "order given,\nthese by --spp, --passes, --integrator, --threads and --seed. "
+        "'nephroid settings' lists\nthem all.\n\n"
+        "Ctrl-C writes what there is and exits with 3; a second one ends at once.\n",
+    .entries = entries};
+
+/* What the options mean, checked. */
+typedef struct job {
+    const char *scene_file;
+    char **outputs;    /* NULL-terminated */
+    int width, height; /* 0: the scene's */
+    float exposure;
+    unsigned threads;
+} job;
+
+static bool check_outputs(char **outputs, GError **error)
+{
+    for (char **path = outputs; path && *path; path++)
+        if (!neph_image_can_write(*path, error))
+            return false;
+    return true;
+}
+
+static bool job_init(job *j, const char *scene_file, GError **error)
+{
+    double exposure = 0.0;
+    *j = (job){.scene_file = scene_file, .outputs = g_strdupv(given.outputs)};
+    bool good = (!given.size ||
+                 argument_size("--size", given.size, &j->width, &j->height, error)) &&
+                (!given.exposure ||
+                 argument_real("--exposure", given.exposure, &exposure, error)) &&
+                overrides_check(&given.settings, &j->threads, error) &&
+                check_outputs(j->outputs, error) &&
+                (!given.stats || neph_file_can_write(given.stats, error));
+    j->exposure = (float)exposure;
+    return good;
+}
+
+/* "dir/box.pbrt.gz" gives "box.exr". */
+static char *default_output(const char *scene_file)
+{
+    g_autofree char *name = g_path_get_basename(scene_file);
+    if (g_str_has_suffix(name, ".gz"))
+        name[strlen(name) - 3] = '\0';
+    char *dot = strrchr(name, '.');
+    if (dot && dot != name)
+        *dot = '\0';
+    return g_strconcat(name, ".exr", NULL);
+}
+
+static bool choose_outputs(job *j, const NephScene *scene, GError **error)
+{
+    if (j->outputs)
+        return true;
+    const char *named = neph_scene_output(scene);
+    j->outputs = g_new0(char *, 2);
+    j->outputs[0] = named ? g_strdup(named) : default_output(j->scene_file);
+    if (check_outputs(j->outputs, error))
+        return true;
+    g_prefix_error(error, "the scene's output, which -o would replace: ");
+    return false;
+}
+
+static NephRender *prepare(job *j, NephScene *scene, int64_t *n_passes, GError **error)
+{
+    g_autoptr(NephSettings) settings = neph_scene_settings(scene);
+    NephRender *render = NULL;
+    if (overrides_apply(&given.settings, settings, error) &&
+        (!j->width || neph_scene_resize(scene, j->width, j->height, error)) &&
+        choose_outputs(j, scene, error))
+        render = neph_render_new(scene, settings, error);
+    g_autofree char *passes = neph_settings_get(settings, "passes");
+    *n_passes = g_ascii_strtoll(passes, NULL, 10);
+    return render;
+}
+
+static int write_images(const job *j, const NephRender *render)
+{
+    g_autoptr(GError) error = NULL;
+    g_autoptr(NephImage) image = neph_render_image(render, &error);
+    if (!image)
+        return report_error(error);
+    int result = EXIT_DONE;
+    for (char **path = j->outputs; *path; path++) {
+        g_autoptr(GError) refused = NULL;
+        if (!neph_image_write(image, *path, j->exposure, &refused))
+            result = report_error(refused);
+        else if (!given.quiet)
+            print_result("wrote %s\n", *path);
+    }
+    return result;
+}
+
+static int write_statistics(const NephRender *render)
+{
+    NephStatistics statistics;
+    neph_render_statistics(render, &statistics);
+    g_autofree char *table = neph_statistics_text(&statistics, false);
+    g_autofree char *json = neph_statistics_text(&statistics, true);
+    g_autoptr(GError) error = NULL;
+    int result = given.quiet ? EXIT_DONE : print_result("%s", table);
+    if (given.stats && !neph_file_write(given.stats, json, &error))
+        return report_error(error);
+    return result;
+}
+
+/* Tells why the render ended early. @return whether there is something to write. */
+static bool report_end(const NephRender *render, int64_t n_passes, const GError *error,
+                       int *exit_code)
+{
+    NephStatistics statistics;
+    neph_render_statistics(render, &statistics);
+    if (!g_error_matches(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED)) {
+        *exit_code = report_error(error);
+        return statistics.passes > 0;
+    }
+    *exit_code = EXIT_FAILED;
+    say("stopped by %s after %" G_GINT64_FORMAT " of %" G_GINT64_FORMAT
+        " passes; writing what there is",
+        stop_reason() ? stop_reason() : "request", statistics.passes, n_passes);
+    return true;
+}
+
+static int run(const job *j, NephRender *render, int64_t n_passes)
+{
+    g_autoptr(GError) error = NULL;
+    int ended = EXIT_DONE;
+    progress shown = progress_begin(given.quiet, n_passes);
+    stop_watch(render);
+    bool done = neph_render_run(render, progress_show, &shown, &error);
+    stop_unwatch();
+    progress_end(&shown);
+    if (!done && !report_end(render, n_passes, error, &ended))
+        return ended;
+    int images = write_images(j, render);
+    int statistics = write_statistics(render);
+    return ended ? ended : images ? images : statistics;
+}
+
+static int render_scene(job *j)
+{
+    g_autoptr(GError) error = NULL;
+    bool quiet = given.quiet;
+    g_autoptr(NephScene) scene =
+        neph_scene_load(j->scene_file, j->threads, log_to_stderr, &quiet, &error);
+    if (!scene)
+        return report_error(error);
+    int64_t n_passes;
+    g_autoptr(NephRender) render = prepare(j, scene, &n_passes, &error);
+    return render ? run(j, render, n_passes) : report_error(error);
+}
+
+int command_render(int argc, char **argv)
+{
+    int exit_code;
+    if (!arguments_parse(&how, &argc, &argv, &exit_code))
+        return exit_code;
+    g_autoptr(GError) error = NULL;
+    job j;
+    int result = job_init(&j, argv[1], &error) ? render_scene(&j) : report_error(error);
+    g_strfreev(j.outputs);
+    return result;
+}

@@ -1,0 +1,118 @@
+#include "api/describe.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+static tally *tally_of(GArray *list, const char *kind)
+{
+    for (guint i = 0; i < list->len; i++) {
+        tally *t = &g_array_index(list, tally, i);
+        if (strcmp(t->kind, kind) == 0)
+            return t;
+    }
+    g_array_append_val(list, ((tally){.kind = kind}));
+    return &g_array_index(list, tally, list->len - 1);
+}
+
+static size_t mesh_bytes(const mesh *m)
+{
+    size_t per_vertex = 3 * sizeof(float) + (m->normals ? 3 * sizeof(float) : 0) +
+                        (m->tangents ? 3 * sizeof(float) : 0) +
+                        (m->uvs ? sizeof(vec2) : 0);
+    return m->n_vertices * per_vertex + m->n_triangles * 3 * sizeof(uint32_t);
+}
+
+static void count_shapes(const scene *s, summary *all)
+{
+    for (guint i = 0; i < s->shapes->len; i++) {
+        const shape *one = s->shapes->pdata[i];
+        tally *t = tally_of(all->shapes, one->kind->name);
+        t->n++;
+        t->n_shining += one->light != NO_INDEX;
+        t->area += (double)one->area;
+        const mesh *m = one->kind->triangles ? one->kind->triangles(one->self) : NULL;
+        if (m) {
+            t->n_triangles += m->n_triangles;
+            all->geometry_bytes += mesh_bytes(m);
+        }
+    }
+}
+
+static void count_lights(const scene *s, summary *all)
+{
+    const wavelengths w = wavelengths_at(0.5f);
+    for (guint i = 0; i < s->lights->len; i++) {
+        const light *one = s->lights->pdata[i];
+        tally *t = tally_of(all->lights, one->kind->name);
+        t->n++;
+        t->is_environment = one->kind->is_environment;
+        t->power += (double)(spectrum_mean(one->kind->power(one->self, &w)) *
+                             (LAMBDA_MAX - LAMBDA_MIN));
+    }
+}
+
+static void count_materials(const scene *s, summary *all)
+{
+    for (guint i = 0; i < s->materials->len; i++) {
+        const material *one = s->materials->pdata[i];
+        tally *t = tally_of(all->materials, one->kind->name);
+        t->n++;
+        t->n_caustic += material_casts_caustics(one);
+    }
+}
+
+static void measure_view(const scene *s, summary *all)
+{
+    for (int axis = 0; axis < 2; axis++) {
+        double low = (double)s->camera.screen[2 * axis];
+        double high = (double)s->camera.screen[2 * axis + 1];
+        all->view_angle[axis] =
+            (float)((atan(fabs(high)) + atan(fabs(low))) * (180.0 / G_PI));
+    }
+}
+
+static void summary_init(summary *all, const scene *s)
+{
+    *all = (summary){.shapes = g_array_new(FALSE, TRUE, sizeof(tally)),
+                     .lights = g_array_new(FALSE, TRUE, sizeof(tally)),
+                     .materials = g_array_new(FALSE, TRUE, sizeof(tally))};
+    count_shapes(s, all);
+    count_lights(s, all);
+    count_materials(s, all);
+    measure_view(s, all);
+    all->n_float_textures = g_hash_table_size(s->float_textures);
+    all->n_spectrum_textures = g_hash_table_size(s->spectrum_textures);
+    all->process_bytes = memory_peak();
+}
+
+static void summary_clear(summary *all)
+{
+    g_array_unref(all->shapes);
+    g_array_unref(all->lights);
+    g_array_unref(all->materials);
+}
+
+void visit_changed_settings(const settings *s, setting_visitor visit, void *data)
+{
+    size_t n;
+    const setting_row *rows = settings_table(&n);
+    const settings defaults = settings_default();
+    for (size_t i = 0; i < n; i++) {
+        g_autofree char *value = settings_get(s, &rows[i]);
+        g_autofree char *initial = settings_get(&defaults, &rows[i]);
+        if (strcmp(value, initial) != 0)
+            visit(&rows[i], value, data);
+    }
+}
+
+char *neph_scene_describe(const NephScene *s, bool as_json)
+{
+    summary all;
+    summary_init(&all, s->scene);
+    char *text =
+        as_json ? describe_as_json(s->scene, &all) : describe_as_text(s->scene, &all);
+    summary_clear(&all);
+    return text;
+}

@@ -1,0 +1,118 @@
+#include "api/describe.h"
+
+static void put_vec3(GString *out, const char *label, vec3 v)
+{
+    g_string_append_printf(out, "  %-14s %g %g %g\n", label, (double)v[0], (double)v[1],
+                           (double)v[2]);
+}
+
+static void put_shapes(GString *out, const scene *s, const summary *all)
+{
+    g_string_append_printf(out, "shapes           %u\n", s->shapes->len);
+    for (guint i = 0; i < all->shapes->len; i++) {
+        const tally *t = &g_array_index(all->shapes, tally, i);
+        g_string_append_printf(out, "  %-14s %zu", t->kind, t->n);
+        if (t->n_triangles)
+            g_string_append_printf(out, ", %zu triangles", t->n_triangles);
+        g_string_append_printf(out, ", %g m²", t->area);
+        if (t->n_shining)
+            g_string_append_printf(out, ", %zu shining", t->n_shining);
+        g_string_append_c(out, '\n');
+    }
+    if (box3_is_empty(s->bounds))
+        return;
+    put_vec3(out, "from", s->bounds.low);
+    put_vec3(out, "to", s->bounds.high);
+}
+
+static void put_lights(GString *out, const scene *s, const summary *all)
+{
+    g_string_append_printf(out, "lights           %u\n", s->lights->len);
+    for (guint i = 0; i < all->lights->len; i++) {
+        const tally *t = &g_array_index(all->lights, tally, i);
+        g_string_append_printf(out, "  %-14s %zu, %g W%s\n", t->kind, t->n, t->power,
+                               t->is_environment ? " onto the scene" : "");
+    }
+}
+
+static void put_materials(GString *out, const scene *s, const summary *all)
+{
+    g_string_append_printf(out, "materials        %u\n", s->materials->len);
+    for (guint i = 0; i < all->materials->len; i++) {
+        const tally *t = &g_array_index(all->materials, tally, i);
+        g_string_append_printf(out, "  %-14s %zu", t->kind, t->n);
+        if (t->n_caustic)
+            g_string_append_printf(out, ", %zu casting caustics", t->n_caustic);
+        g_string_append_c(out, '\n');
+    }
+    g_string_append_printf(out, "textures         %zu float, %zu spectrum\n",
+                           all->n_float_textures, all->n_spectrum_textures);
+}
+
+static void put_camera(GString *out, const scene *s, const summary *all)
+{
+    const transform *to_world = &s->camera.to_world;
+    vec3 forward = transform_vector(to_world, vec3_make(0.0f, 0.0f, 1.0f));
+    g_string_append(out, "camera\n");
+    put_vec3(out, "at", transform_point(to_world, vec3_make(0.0f, 0.0f, 0.0f)));
+    put_vec3(out, "toward", normalize3(forward));
+    g_string_append_printf(out, "  %-14s %.4g x %.4g degrees\n", "sees",
+                           (double)all->view_angle[0], (double)all->view_angle[1]);
+    if (s->camera.lens_radius > 0.0f)
+        g_string_append_printf(out, "  %-14s radius %g m, in focus at %g m\n", "lens",
+                               (double)s->camera.lens_radius,
+                               (double)s->camera.focal_distance);
+    else
+        g_string_append_printf(out, "  %-14s pinhole\n", "lens");
+}
+
+static void put_film(GString *out, const scene *s)
+{
+    const film_settings *film = &s->film;
+    g_string_append_printf(out, "film             %d x %d pixels, %s, ISO %g\n",
+                           film->width, film->height, color_space_name(film->space),
+                           (double)film->iso);
+    const float *crop = film->crop;
+    if (crop[0] > 0.0f || crop[1] < 1.0f || crop[2] > 0.0f || crop[3] < 1.0f)
+        g_string_append_printf(out, "  %-14s %g .. %g across, %g .. %g down\n", "crop",
+                               (double)crop[0], (double)crop[1], (double)crop[2],
+                               (double)crop[3]);
+    g_string_append_printf(out, "  %-14s %s\n", "file",
+                           film->filename ? film->filename : "not named");
+    g_string_append_printf(out, "  %-14s %s, %g x %g pixels\n", "filter", s->filter.name,
+                           2.0 * (double)s->filter.x_radius,
+                           2.0 * (double)s->filter.y_radius);
+}
+
+static void put_setting(const setting_row *row, const char *value, void *data)
+{
+    GString *out = data;
+    g_string_append_printf(out, "  %-14s %s%s%s\n", row->name, value,
+                           *row->unit ? " " : "", row->unit);
+}
+
+static void put_memory(GString *out, const summary *all)
+{
+    const GFormatSizeFlags units = G_FORMAT_SIZE_IEC_UNITS;
+    g_autofree char *geometry = g_format_size_full(all->geometry_bytes, units);
+    g_autofree char *peak = g_format_size_full(all->process_bytes, units);
+    g_string_append_printf(out, "memory           %s of meshes, %s at its peak\n",
+                           geometry, peak);
+}
+
+char *describe_as_text(const scene *s, const summary *all)
+{
+    GString *out = g_string_new(NULL);
+    put_shapes(out, s, all);
+    put_lights(out, s, all);
+    put_materials(out, s, all);
+    put_camera(out, s, all);
+    put_film(out, s);
+    g_string_append(out, "settings that differ from the defaults\n");
+    gsize before = out->len;
+    visit_changed_settings(&s->settings, put_setting, out);
+    if (out->len == before)
+        g_string_append(out, "  none\n");
+    put_memory(out, all);
+    return g_string_free(out, FALSE);
+}

@@ -1,0 +1,110 @@
+/*
+ * Photons on their way out: counted through over the three stores, directions unpacked,
+ * and the flux at the pass' eight wavelengths turned into linear sRGB.
+ */
+#include "api/objects.h"
+
+#include "api/statistics.h"
+#include "base/output.h"
+#include "render/photons.h"
+
+struct NephPhotons {
+    render_photons *traced;
+};
+
+NephPhotons *neph_photons_trace(const NephScene *s, const NephSettings *how,
+                                GError **error)
+{
+    render_photons *traced = render_trace_photons(s->scene, &how->values, error);
+    if (!traced)
+        return NULL;
+    NephPhotons *photons = g_new(NephPhotons, 1);
+    photons->traced = traced;
+    return photons;
+}
+
+void neph_photons_free(NephPhotons *photons)
+{
+    if (!photons)
+        return;
+    render_photons_free(photons->traced);
+    g_free(photons);
+}
+
+size_t neph_photons_count(const NephPhotons *photons)
+{
+    size_t n = 0;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        n += photons->traced->stores[c].n;
+    return n;
+}
+
+void neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out)
+{
+    const render_photons *traced = photons->traced;
+    int c = 0;
+    while (c < N_PHOTON_CLASSES - 1 && i >= traced->stores[c].n)
+        i -= traced->stores[c++].n;
+    const photon found = photon_store_get(&traced->stores[c], i);
+    float xyz[3];
+    spectrum_to_xyz(&traced->w, found.flux, xyz);
+    color_space_from_xyz(color_space_srgb(), xyz, out->rgb);
+    for (int axis = 0; axis < 3; axis++) {
+        out->position[axis] = found.p[axis];
+        out->direction[axis] = found.wi[axis];
+    }
+    out->photon_class = (NephPhotonClass)c;
+}
+
+void neph_photons_statistics(const NephPhotons *photons, NephStatistics *out)
+{
+    *out = statistics_export(&photons->traced->statistics);
+}
+
+static void write_header(FILE *file, size_t n)
+{
+    fprintf(file,
+            "ply\n"
+            "format binary_%s_endian 1.0\n"
+            "comment photons by Nephroid %s\n"
+            "comment nx ny nz: to where the photon came from; class: 0 direct, "
+            "1 indirect, 2 caustic\n"
+            "element vertex %zu\n"
+            "property float x\nproperty float y\nproperty float z\n"
+            "property float nx\nproperty float ny\nproperty float nz\n"
+            "property float red\nproperty float green\nproperty float blue\n"
+            "property uchar class\n"
+            "end_header\n",
+            G_BYTE_ORDER == G_LITTLE_ENDIAN ? "little" : "big", neph_version(), n);
+}
+
+static void write_photon(FILE *file, const NephPhoton *p)
+{
+    const unsigned char which = (unsigned char)p->photon_class;
+    fwrite(p->position, sizeof *p->position, 3, file);
+    fwrite(p->direction, sizeof *p->direction, 3, file);
+    fwrite(p->rgb, sizeof *p->rgb, 3, file);
+    fwrite(&which, 1, 1, file);
+}
+
+bool neph_photons_write_ply(const NephPhotons *photons, const char *path, GError **error)
+{
+    output *out = output_open(path, error);
+    if (!out)
+        return false;
+    const size_t n = neph_photons_count(photons);
+    write_header(output_stream(out), n);
+    for (size_t i = 0; i < n; i++) {
+        NephPhoton p;
+        neph_photons_get(photons, i, &p);
+        write_photon(output_stream(out), &p);
+    }
+    return output_commit(out, error);
+}
+
+bool neph_photons_story(const NephScene *s, const NephSettings *how, size_t n,
+                        void (*write)(const char *line, void *data), void *data,
+                        GError **error)
+{
+    return render_photon_story(s->scene, &how->values, n, write, data, error);
+}

@@ -1,0 +1,80 @@
+#include "api/objects.h"
+
+#include "api/statistics.h"
+
+struct NephRender {
+    render *render;
+    NephProgressFunc progress; /* of the run under way */
+    void *progress_data;
+};
+
+NephStatistics statistics_export(const render_statistics *from)
+{
+    NephStatistics out = {.passes = from->passes,
+                          .time_total = from->time_total,
+                          .time_prepare = from->time_prepare,
+                          .time_trace = from->time_trace,
+                          .time_build = from->time_build,
+                          .time_gather = from->time_gather,
+                          .time_camera = from->time_camera,
+                          .photon_rays = from->photon_rays,
+                          .camera_rays = from->camera_rays,
+                          .shadow_rays = from->shadow_rays,
+                          .memory_peak = from->memory_peak,
+                          .memory_photons = from->memory_photons,
+                          .n_not_finite = from->n_not_finite};
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
+        out.emitted[c] = from->emitted[c];
+        out.stored[c] = from->stored[c];
+        out.radius[c] = from->radius[c];
+    }
+    return out;
+}
+
+NephRender *neph_render_new(const NephScene *s, const NephSettings *how, GError **error)
+{
+    render *made = render_new(s->scene, &how->values, error);
+    if (!made)
+        return NULL;
+    NephRender *r = g_new0(NephRender, 1);
+    r->render = made;
+    return r;
+}
+
+void neph_render_free(NephRender *r)
+{
+    if (!r)
+        return;
+    render_free(r->render);
+    g_free(r);
+}
+
+static bool forward_progress(double fraction, const render_statistics *so_far, void *data)
+{
+    const NephRender *r = data;
+    const NephStatistics statistics = statistics_export(so_far);
+    return r->progress(fraction, &statistics, r->progress_data);
+}
+
+bool neph_render_run(NephRender *r, NephProgressFunc progress, void *data, GError **error)
+{
+    r->progress = progress;
+    r->progress_data = data;
+    return render_run(r->render, progress ? forward_progress : NULL, r, error);
+}
+
+void neph_render_cancel(NephRender *r)
+{
+    render_cancel(r->render);
+}
+
+NephImage *neph_render_image(const NephRender *r, GError **error)
+{
+    return neph_image_wrap(render_image(r->render, error));
+}
+
+void neph_render_statistics(const NephRender *r, NephStatistics *out)
+{
+    const render_statistics now = render_get_statistics(r->render);
+    *out = statistics_export(&now);
+}

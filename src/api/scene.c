@@ -1,0 +1,63 @@
+#include "api/objects.h"
+
+#include "format/format.h"
+
+/* Beyond it the film alone would not fit into any machine. */
+enum { LARGEST_SIDE = 65536 };
+
+static void forward_log(log_level level, const char *text, void *data)
+{
+    const NephScene *s = data;
+    if (s->log)
+        s->log(level == LOG_WARNING ? NEPH_LOG_WARNING : NEPH_LOG_NOTE, text,
+               s->log_data);
+}
+
+NephScene *neph_scene_load(const char *path, unsigned threads, NephLogFunc log,
+                           void *log_data, GError **error)
+{
+    NephScene *s = g_new(NephScene, 1);
+    *s = (NephScene){.log = log, .log_data = log_data};
+    const log_sink sink = {forward_log, s};
+    s->scene = format_load(path, threads, &sink, error);
+    if (!s->scene)
+        g_clear_pointer(&s, neph_scene_free);
+    return s;
+}
+
+void neph_scene_free(NephScene *s)
+{
+    if (!s)
+        return;
+    g_clear_pointer(&s->scene, scene_free);
+    g_free(s);
+}
+
+NephSettings *neph_scene_settings(const NephScene *s)
+{
+    NephSettings *copy = g_new(NephSettings, 1);
+    copy->values = s->scene->settings;
+    return copy;
+}
+
+void neph_scene_size(const NephScene *s, int *width, int *height)
+{
+    *width = s->scene->film.width;
+    *height = s->scene->film.height;
+}
+
+bool neph_scene_resize(NephScene *s, int width, int height, GError **error)
+{
+    if (width < 1 || height < 1 || width > LARGEST_SIDE || height > LARGEST_SIDE) {
+        error_set(error, ERROR_USAGE, "size %dx%d: expected 1 to %d pixels a side", width,
+                  height, LARGEST_SIDE);
+        return false;
+    }
+    scene_resize(s->scene, width, height);
+    return true;
+}
+
+const char *neph_scene_output(const NephScene *s)
+{
+    return s->scene->film.filename;
+}

@@ -1,0 +1,218 @@
+/*
+ * The command line at work: images and statistics written, settings in their order of
+ * precedence, photons saved and told, and Ctrl-C that loses nothing.
+ */
+#define _GNU_SOURCE /* pseudo-terminals */
+#include "cli_run.h"
+#include "json_check.h"
+
+#include <fcntl.h>
+#include <glib/gstdio.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* ---- Rendering ---- */
+
+static void test_render_writes_all(folder *f, gconstpointer data)
+{
+    (void)data;
+    g_auto(result) r =
+        run(f, "render box.pbrt -o a.exr -o a.png --stats a.json --exposure -1");
+    g_assert_cmpint(r.code, ==, 0);
+    contains(r.out, "wrote a.exr");
+    contains(r.out, "wrote a.png");
+    contains(r.out, "passes");
+    contains(r.err, "100 %");
+    g_assert_null(strchr(r.err, '\r'));
+    g_autofree char *exr = folder_read(f, "a.exr");
+    g_autofree char *json = folder_read(f, "a.json");
+    g_assert_cmpmem(exr, 4, "\x76\x2f\x31\x01", 4);
+    g_assert_true(json_is_valid(json));
+    g_assert_cmpfloat(json_find_number(json, "passes"), ==, 2.0);
+    g_assert_cmpfloat(json_find_number(json, "total"), >, 0.0);
+    g_assert_cmpfloat(json_find_number(strstr(json, "\"caustic\""), "emitted"), >, 0.0);
+    g_assert_cmpfloat(json_find_number(json, "not_finite"), ==, 0.0);
+    g_assert_cmpuint(folder_count(f), ==, 4);
+}
+
+static void test_quiet_is_quiet(folder *f, gconstpointer data)
+{
+    (void)data;
+    g_auto(result) r = run(f, "render box.pbrt -q");
+    g_assert_cmpint(r.code, ==, 0);
+    g_assert_cmpstr(r.out, ==, "");
+    g_assert_cmpstr(r.err, ==, "");
+    g_assert_true(folder_has(f, "box.exr"));
+    g_assert_cmpuint(folder_count(f), ==, 2);
+}
+
+static void test_scene_names_the_output(folder *f, gconstpointer data)
+{
+    (void)data;
+    g_autofree char *scene =
+        g_strconcat(scene_head, "    \"string filename\" \"named.pfm\"\n",
+                    scene_integrator, scene_body, NULL);
+    folder_write(f, "box.pbrt", scene);
+    run_well(f, "render box.pbrt -q");
+    g_assert_true(folder_has(f, "named.pfm"));
+    g_assert_cmpuint(folder_count(f), ==, 2);
+}
+
+static void test_order_of_settings(folder *f, gconstpointer data)
+{
+    (void)data;
+    static const struct {
+        const char *arguments;
+        double passes;
+    } cases[] = {
+        {"", 2.0},
+        {"--settings three.ini", 3.0},
+        {"--set passes=5 --settings three.ini --set passes=4", 4.0},
+        {"--passes 1 --set passes=4 --settings three.ini", 1.0},
+    };
+    folder_write(f, "three.ini", "# comment\npasses = 3\n");
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autofree char *line = g_strdup_printf(
+            "render box.pbrt -q --size 4x4 --stats s.json %s", cases[i].arguments);
+        run_well(f, line);
+        g_autofree char *json = folder_read(f, "s.json");
+        g_assert_cmpfloat(json_find_number(json, "passes"), ==, cases[i].passes);
+    }
+}
+
+/* ---- Ctrl-C ---- */
+
+static int open_terminal(char **name)
+{
+    int terminal = posix_openpt(O_RDWR | O_NOCTTY);
+    if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0)
+        return -1;
+    *name = g_strdup(ptsname(terminal));
+    return terminal;
+}
+
+/* In the child: its errors go to the terminal. */
+static void enter_terminal(gpointer name)
+{
+    int fd = open(name, O_WRONLY | O_NOCTTY);
+    if (fd >= 0)
+        dup2(fd, STDERR_FILENO);
+}
+
+/* Reads until the text appears; false after half a minute. */
+static bool wait_for(int terminal, const char *part, GString *seen)
+{
+    for (int tries = 0; tries < 300 && !strstr(seen->str, part); tries++) {
+        struct pollfd ready = {.fd = terminal, .events = POLLIN};
+        char buffer[256];
+        if (poll(&ready, 1, 100) <= 0)
+            continue;
+        ssize_t n = read(terminal, buffer, sizeof buffer);
+        if (n > 0)
+            g_string_append_len(seen, buffer, n);
+    }
+    return strstr(seen->str, part) != NULL;
+}
+
+static void stop_by(const folder *f, int signal_number)
+{
+    g_autofree char *name = NULL;
+    int terminal = open_terminal(&name);
+    if (terminal < 0) {
+        g_test_skip("no pseudo-terminals here");
+        return;
+    }
+    const char *argv[] = {run_program(), "render",  "box.pbrt", "--passes", "1000000",
+                          "-o",          "cut.exr", "--stats",  "cut.json", NULL};
+    GPid child;
+    g_autoptr(GError) error = NULL;
+    g_autoptr(GString) seen = g_string_new(NULL);
+    g_spawn_async(f->path, (char **)argv, NULL,
+                  G_SPAWN_DO_NOT_REAP_CHILD | G_SPAWN_STDOUT_TO_DEV_NULL, enter_terminal,
+                  name, &child, &error);
+    g_assert_no_error(error);
+    g_assert_true(wait_for(terminal, "pass 2", seen));
+    kill(child, signal_number);
+    g_assert_true(wait_for(terminal, "writing what there is", seen));
+    int status = 0;
+    g_assert_cmpint(waitpid(child, &status, 0), ==, child);
+    close(terminal);
+    g_test_message("%s", seen->str);
+    g_assert_true(WIFEXITED(status));
+    g_assert_cmpint(WEXITSTATUS(status), ==, 3);
+    contains(seen->str, "\r[");
+}
+
+static void test_ctrl_c_writes(folder *f, gconstpointer data)
+{
+    stop_by(f, GPOINTER_TO_INT(data));
+    g_autofree char *json = folder_read(f, "cut.json");
+    if (g_test_failed() || !json)
+        return;
+    g_assert_true(json_is_valid(json));
+    g_assert_cmpfloat(json_find_number(json, "passes"), >=, 1.0);
+    g_auto(result) same = run(f, "compare cut.exr cut.exr");
+    g_assert_cmpint(same.code, ==, 0);
+}
+
+/* ---- The other commands ---- */
+
+static void test_compare(folder *f, gconstpointer data)
+{
+    (void)data;
+    run_well(f, "render box.pbrt -q -o a.exr");
+    run_well(f, "render box.pbrt -q -o b.exr --seed 9");
+    run_well(f, "render box.pbrt -q -o c.exr --size 8x8");
+    g_auto(result) same = run(f, "compare a.exr a.exr --metric rmse");
+    g_assert_cmpstr(same.out, ==, "0\n");
+    g_auto(result) other = run(f, "compare a.exr b.exr --json");
+    g_assert_true(json_is_valid(other.out));
+    g_assert_cmpfloat(json_find_number(other.out, "rmse"), >, 0.0);
+    g_auto(result) one = run(f, "compare a.exr a.exr --json --metric psnr");
+    g_assert_true(json_is_valid(one.out));
+    contains(one.out, "null");
+    g_auto(result) size = run(f, "compare a.exr c.exr");
+    g_assert_cmpint(size.code, ==, 1);
+}
+
+static void test_photons(folder *f, gconstpointer data)
+{
+    (void)data;
+    g_auto(result) r = run(f, "photons box.pbrt -o p.ply");
+    g_assert_cmpint(r.code, ==, 0);
+    contains(r.out, "trace time");
+    contains(r.out, "photon rays");
+    contains(r.out, "caustic");
+    g_autofree char *ply = folder_read(f, "p.ply");
+    g_assert_true(g_str_has_prefix(ply, "ply\nformat binary_"));
+    size_t n = (size_t)g_ascii_strtoull(strstr(ply, "element vertex ") + 15, NULL, 10);
+    g_assert_cmpuint(n, >, 0);
+    g_autofree char *path = g_build_filename(f->path, "p.ply", NULL);
+    GStatBuf info;
+    g_stat(path, &info);
+    size_t header = (size_t)(strstr(ply, "end_header\n") - ply) + 11;
+    g_assert_cmpuint((size_t)info.st_size, ==, header + 37 * n);
+    g_auto(result) story = run(f, "photons box.pbrt --trace 2");
+    g_assert_cmpint(story.code, ==, 0);
+    g_assert_cmpuint(count_parts(story.out, "\n"), >=, 4);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    folder_add_test("/cli/render", test_render_writes_all);
+    folder_add_test("/cli/quiet", test_quiet_is_quiet);
+    folder_add_test("/cli/named", test_scene_names_the_output);
+    folder_add_test("/cli/order", test_order_of_settings);
+    g_test_add("/cli/interrupt", folder, GINT_TO_POINTER(SIGINT), folder_set_up,
+               test_ctrl_c_writes, folder_tear_down);
+    g_test_add("/cli/terminate", folder, GINT_TO_POINTER(SIGTERM), folder_set_up,
+               test_ctrl_c_writes, folder_tear_down);
+    folder_add_test("/cli/compare", test_compare);
+    folder_add_test("/cli/photons", test_photons);
+    return g_test_run();
+}
