@@ -43,7 +43,7 @@ static inline shape_place place_at(int i)
     if (i == 5)
         t = transform_multiply(&steps[4], &t);
     return (shape_place){
-        .to_world = t, .reverse_orientation = i % 2 == 1, .material = NO_INDEX};
+        .to_world = t, .reverse_orientation = i % 2 == 1, .material = 0};
 }
 
 static inline params *describe(const subject *s)

@@ -125,7 +125,8 @@ static void test_hits_know_material_and_light(void)
         surface_hit hit;
         bsdf b;
         g_assert_true(scene_intersect(s, &r, &hit));
-        g_assert_true(scene_occluded(s, &r));
+        /* what has no material hides nothing */
+        g_assert_cmpint(scene_occluded(s, &r), ==, materials[i] != NO_INDEX);
         g_assert_cmpint(hit.shape, ==, i);
         g_assert_cmpint(hit.material, ==, materials[i]);
         g_assert_cmpint(hit.light, ==, lights[i]);
@@ -158,7 +159,7 @@ static void test_sampling_agrees_with_density(void)
             continue;
         seen[index]++;
         const light *l = scene_light(s, index);
-        float choice = distribution_pdf(&s->light_power, (size_t)index);
+        float choice = light_tree_probability(s->light_tree, ref, index);
         if (l->kind->is_delta) {
             g_assert_cmpfloat(fabsf(to.pdf / choice - 1), <, 1e-5);
             continue;
@@ -177,6 +178,38 @@ static void test_sampling_agrees_with_density(void)
     }
     for (int i = 0; i < 4; i++)
         g_assert_cmpuint(seen[i], >, 50);
+}
+
+/* Many lights of all kinds: picks come as often as is told, and probabilities sum to one. */
+static void test_light_tree(void)
+{
+    enum { LIGHTS = 40, DRAWS = 1 << 16 };
+    light_bound bounds[LIGHTS];
+    for (int i = 0; i < LIGHTS; i++) {
+        sampler random = sampler_make(8, (uint64_t)i);
+        vec3 p = vec3_make(sampler_1d(&random), sampler_1d(&random), sampler_1d(&random));
+        bounds[i] = i % 7 == 3 ? (light_bound){.irradiance = 0.1f * sampler_1d(&random)}
+                               : (light_bound){.is_local = true,
+                                               .box = {p, p + 0.05f * sampler_1d(&random)},
+                                               .power = sampler_1d(&random)};
+    }
+    light_tree *tree = light_tree_new(bounds, LIGHTS);
+    const vec3 ref = vec3_make(0.2f, 0.7f, 0.4f);
+    double sum = 0;
+    unsigned seen[LIGHTS] = {0};
+    for (uint32_t i = 0; i < DRAWS; i++) {
+        float p;
+        int k = light_tree_sample(tree, ref, ((float)i + 0.5f) / DRAWS, &p);
+        g_assert_cmpfloat(fabsf(p / light_tree_probability(tree, ref, k) - 1), <, 1e-4f);
+        seen[k]++;
+    }
+    for (int i = 0; i < LIGHTS; i++) {
+        double p = (double)light_tree_probability(tree, ref, i);
+        g_assert_cmpfloat(fabs(seen[i] / (double)DRAWS - p), <, 2e-4);
+        sum += p;
+    }
+    g_assert_cmpfloat(fabs(sum - 1), <, 1e-5);
+    light_tree_free(tree);
 }
 
 /* One unbiased sum over all lights is the sum of each light alone. */
@@ -395,6 +428,7 @@ int main(int argc, char **argv)
     g_test_add_func("/scene/commit", test_commit_finds_the_world);
     g_test_add_func("/scene/hits", test_hits_know_material_and_light);
     g_test_add_func("/scene/lights/density", test_sampling_agrees_with_density);
+    g_test_add_func("/scene/lights/tree", test_light_tree);
     g_test_add_func("/scene/lights/sum", test_one_light_for_all);
     g_test_add_func("/scene/scale", test_scale_by_thousand);
     g_test_add_func("/scene/refused", test_what_only_the_whole_can_tell);

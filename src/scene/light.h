@@ -10,6 +10,7 @@
 #include "math/box.h"
 #include "math/transform.h"
 #include "scene/hit.h"
+#include "scene/light_tree.h"
 #include "scene/params.h"
 #include "scene/shape.h"
 
@@ -39,8 +40,8 @@ typedef struct light_kind {
     const char *name;    /**< "point", "spot", "distant", "infinite", "diffuse" (area) */
     bool is_delta;       /**< no camera ray can hit it: point, spot, distant */
     bool is_environment; /**< shines from beyond the scene */
-    bool is_parallel;    /**< emit_toward is given a direction and leaves the place across the
-                              ray open: distant and infinite lights */
+    bool is_parallel;    /**< emit_toward is given a direction and leaves the place across
+                            the    ray open: distant and infinite lights */
     /** From parameters; area lights get their shape, others NULL. */
     void *(*create)(const struct scene *s, const params *p, const transform *to_world,
                     const shape *on, GError **error);
@@ -49,6 +50,8 @@ typedef struct light_kind {
     void (*prepare)(void *self, vec3 center, float radius);
     /** Power (W per nm), over both sides if two-sided. */
     spectrum (*power)(const void *self, const wavelengths *w);
+    /** Where it is and how strongly it shines in its main direction. */
+    light_bound (*bound)(const void *self, const wavelengths *w);
     /** Emits by its own density: position first, then direction. */
     bool (*emit)(const void *self, const wavelengths *w, float u_primitive,
                  vec2 u_position, vec2 u_direction, light_emission *out);

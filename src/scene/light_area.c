@@ -56,6 +56,15 @@ static float direction_pdf(const area_light *l, float cosine)
     return INV_PI_F * fmaxf(0.0f, cosine);
 }
 
+static light_bound bound(const void *self, const wavelengths *w)
+{
+    const area_light *l = self;
+    float intensity = spectrum_mean(emitter_eval(&l->radiance, w)) * l->on->area;
+    return (light_bound){.is_local = true,
+                         .box = l->on->kind->bounds(l->on->self),
+                         .power = 4.0f * PI_F * intensity};
+}
+
 static light_emission leave(const area_light *l, const shape_sample *at, vec3 direction)
 {
     surface_hit from = {.p = at->p, .n_geom = at->n, .error = at->error};
@@ -140,6 +149,7 @@ const light_kind area_light_kind = {
     .create = create,
     .free = free_area,
     .power = power,
+    .bound = bound,
     .emit = emit,
     .emit_pdf = emit_pdf,
     .emit_toward = emit_toward,

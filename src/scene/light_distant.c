@@ -54,6 +54,12 @@ static spectrum power(const void *self, const wavelengths *w)
     return light_disk_area(&l->disk) * emitter_eval(&l->irradiance, w);
 }
 
+static light_bound bound(const void *self, const wavelengths *w)
+{
+    const distant_light *l = self;
+    return (light_bound){.irradiance = spectrum_mean(emitter_eval(&l->irradiance, w))};
+}
+
 static light_emission leave(const distant_light *l, vec3 origin, spectrum flux)
 {
     return (light_emission){.ray = {origin, l->direction, INFINITY, 0.0f},
@@ -117,6 +123,7 @@ const light_kind distant_light_kind = {
     .free = free_distant,
     .prepare = prepare,
     .power = power,
+    .bound = bound,
     .emit = emit,
     .emit_pdf = emit_pdf,
     .emit_toward = emit_toward,

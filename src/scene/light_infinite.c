@@ -44,6 +44,13 @@ static spectrum power(const void *self, const wavelengths *w)
     return all_around * light_disk_area(&l->disk) * emitter_eval(&l->radiance, w);
 }
 
+static light_bound bound(const void *self, const wavelengths *w)
+{
+    const infinite_light *l = self;
+    return (light_bound){.irradiance =
+                             PI_F * spectrum_mean(emitter_eval(&l->radiance, w))};
+}
+
 static light_emission leave(const infinite_light *l, vec3 origin, vec3 direction,
                             spectrum flux)
 {
@@ -118,6 +125,7 @@ const light_kind infinite_light_kind = {
     .free = free_infinite,
     .prepare = prepare,
     .power = power,
+    .bound = bound,
     .emit = emit,
     .emit_pdf = emit_pdf,
     .emit_toward = emit_toward,

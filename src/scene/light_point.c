@@ -49,6 +49,13 @@ static light_emission leave(const point_light *l, vec3 direction, spectrum flux)
                             .pdf_direction = 1.0f / all_around};
 }
 
+static light_bound bound(const void *self, const wavelengths *w)
+{
+    const point_light *l = self;
+    return (light_bound){
+        .is_local = true, .box = {l->p, l->p}, .power = spectrum_mean(power(self, w))};
+}
+
 static bool emit(const void *self, const wavelengths *w, float u_primitive,
                  vec2 u_position, vec2 u_direction, light_emission *out)
 {
@@ -101,6 +108,7 @@ const light_kind point_light_kind = {
     .create = create,
     .free = free_point,
     .power = power,
+    .bound = bound,
     .emit = emit,
     .emit_pdf = emit_pdf,
     .emit_toward = emit_toward,

@@ -140,6 +140,14 @@ static light_emission leave(const spot_light *l, vec3 direction, spectrum flux)
                             .pdf_direction = falloff(l, direction) / l->solid_angle};
 }
 
+static light_bound bound(const void *self, const wavelengths *w)
+{
+    const spot_light *l = self;
+    float intensity = spectrum_mean(emitter_eval(&l->intensity, w));
+    return (light_bound){
+        .is_local = true, .box = {l->p, l->p}, .power = 4.0f * PI_F * intensity};
+}
+
 static bool emit(const void *self, const wavelengths *w, float u_primitive,
                  vec2 u_position, vec2 u_direction, light_emission *out)
 {
@@ -199,6 +207,7 @@ const light_kind spot_light_kind = {
     .create = create,
     .free = free_spot,
     .power = power,
+    .bound = bound,
     .emit = emit,
     .emit_pdf = emit_pdf,
     .emit_toward = emit_toward,

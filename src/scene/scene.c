@@ -66,6 +66,7 @@ void scene_free(scene *s)
     filter_clear(&s->filter);
     g_free(s->film.filename);
     distribution_clear(&s->light_power);
+    light_tree_free(s->light_tree);
     distribution_clear(&s->caustic_area);
     g_free(s->environments);
     g_free(s->caustic_shapes);
@@ -234,8 +235,11 @@ static bool find_lights(scene *s, GError **error)
     guint n = s->lights->len;
     s->environments = g_new0(int, MAX(n, 1));
     float *power = big_alloc(n, sizeof(float), "lights", error);
-    if (!power)
+    light_bound *bounds = power ? big_alloc(n, sizeof *bounds, "lights", error) : NULL;
+    if (!bounds) {
+        big_free(power);
         return false;
+    }
     for (guint i = 0; i < n; i++) {
         const light *l = s->lights->pdata[i];
         if (l->kind->prepare)
@@ -243,9 +247,12 @@ static bool find_lights(scene *s, GError **error)
         if (l->kind->is_environment)
             s->environments[s->n_environments++] = (int)i;
         power[i] = spectrum_mean(l->kind->power(l->self, &w));
+        bounds[i] = l->kind->bound(l->self, &w);
     }
+    s->light_tree = light_tree_new(bounds, (int)n);
     bool done = distribution_init(&s->light_power, power, n, error);
     big_free(power);
+    big_free(bounds);
     double total = done ? distribution_total(&s->light_power) : 0.0;
     if (done && !(total > 0.0 && isfinite(total))) {
         error_set(error, ERROR_INPUT,
@@ -284,6 +291,7 @@ static void forget_commit(scene *s)
     accel_free(s->accel);
     s->accel = NULL;
     distribution_clear(&s->light_power);
+    g_clear_pointer(&s->light_tree, light_tree_free);
     distribution_clear(&s->caustic_area);
     g_clear_pointer(&s->environments, g_free);
     g_clear_pointer(&s->caustic_shapes, g_free);

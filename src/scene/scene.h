@@ -47,11 +47,13 @@ typedef struct scene {
     /* From here on valid once committed. */
     bool committed;
     accel *accel;
-    box3 bounds;              /**< of all shapes */
-    vec3 center;              /**< of the bounding sphere */
-    float radius;             /**< of the bounding sphere; > 0 also for an empty scene */
-    distribution light_power; /**< over lights, by power */
-    int *environments;        /**< indices of lights that are environments */
+    box3 bounds;  /**< of all shapes */
+    vec3 center;  /**< of the bounding sphere */
+    float radius; /**< of the bounding sphere; > 0 also for an empty scene */
+    distribution
+        light_power;        /**< over lights, by power: which one a photon starts from */
+    light_tree *light_tree; /**< which one a point is lit by */
+    int *environments;      /**< indices of lights that are environments */
     int n_environments;
     int *caustic_shapes; /**< indices of shapes whose material casts caustics */
     int n_caustic_shapes;
@@ -126,8 +128,9 @@ spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w);
 /** @brief The bsdf at a hit. @return false if the hit has no material (an interface). */
 bool scene_bsdf(const scene *s, const surface_hit *hit, const wavelengths *w, int lane,
                 const bsdf_options *options, bsdf *out);
-/** @brief One light by power and a direction to it. *light gets its index; out->pdf
- * includes the probability of the choice. @return false if no light reaches ref that way.
+/** @brief One light, by about what it sends to ref, and a direction to it. *light gets
+ * its index; out->pdf includes the probability of the choice. @return false if no light
+ * reaches ref that way.
  */
 bool scene_sample_light(const scene *s, const wavelengths *w, vec3 ref, float u_light,
                         float u_primitive, vec2 u, int *light, light_sample *out);

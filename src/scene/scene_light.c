@@ -1,6 +1,6 @@
 /*
  * The lights of a committed scene, asked as one: emission at a hit, the environment, and
- * a light chosen by power with a direction to it.
+ * a light chosen by what it sends to a point, with a direction to it.
  */
 #include "scene/scene.h"
 
@@ -26,19 +26,21 @@ spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w)
 bool scene_sample_light(const scene *s, const wavelengths *w, vec3 ref, float u_light,
                         float u_primitive, vec2 u, int *index, light_sample *out)
 {
-    size_t i = distribution_sample(&s->light_power, &u_light);
-    const light *l = scene_light(s, (int)i);
-    *index = (int)i;
+    float p;
+    *index = light_tree_sample(s->light_tree, ref, u_light, &p);
+    if (*index < 0)
+        return false;
+    const light *l = scene_light(s, *index);
     if (!l->kind->sample(l->self, w, ref, u_primitive, u, out))
         return false;
-    out->pdf *= distribution_pdf(&s->light_power, i);
+    out->pdf *= p;
     return out->pdf > 0.0f;
 }
 
 static float light_pdf(const scene *s, int i, vec3 ref, vec3 wi, const surface_hit *hit)
 {
     const light *l = scene_light(s, i);
-    return distribution_pdf(&s->light_power, (size_t)i) *
+    return light_tree_probability(s->light_tree, ref, i) *
            l->kind->pdf(l->self, ref, wi, hit);
 }
 
