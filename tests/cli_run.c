@@ -19,7 +19,7 @@ const char scene_body[] = "WorldBegin\n"
                           "Shape \"sphere\" \"float radius\" 0.4\n";
 const char scene_integrator[] =
     "Integrator \"photonmap\" \"integer passes\" 2 \"integer photons\" 2000\n"
-    "    \"integer spp\" 1\n";
+    "    \"integer spp\" 1 \"string caustic_emission\" \"uniform\"\n";
 
 void folder_write(const folder *f, const char *name, const char *text)
 {

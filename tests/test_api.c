@@ -19,7 +19,7 @@ static const char scene_text[] =
     "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 12\n"
     "    \"string filename\" \"wanted.exr\"\n"
     "Integrator \"photonmap\" \"integer passes\" 3 \"integer photons\" 2000\n"
-    "    \"integer spp\" 1\n"
+    "    \"integer spp\" 1 \"string caustic_emission\" \"uniform\"\n"
     "WorldBegin\n"
     "LightSource \"point\" \"rgb I\" [10 10 10] \"point3 from\" [0 1.8 0]\n"
     "Material \"diffuse\" \"rgb reflectance\" [0.7 0.5 0.3]\n"
@@ -287,7 +287,6 @@ static void test_render_survives_refusals(void)
     NephSettings *settings = neph_scene_settings(scene);
     neph_settings_set(settings, "passes", "1", NULL);
     neph_settings_set(settings, "threads", "1", NULL);
-    neph_settings_set(settings, "caustic_emission", "uniform", NULL);
     unsigned n = 0;
     for (bool done = false; !done && n < 500; n++) {
         g_autoptr(GError) error = NULL;
