@@ -1,7 +1,8 @@
 #!/bin/sh
-# The shared library shows only names with our prefix.
-# usage: test_exports.sh LIBRARY; speaks TAP. CC chooses the compiler.
+# The shared library shows what the installed header declares and nothing else.
+# usage: test_exports.sh LIBRARY HEADER; speaks TAP. CC chooses the compiler.
 library=$1
+header=$2
 work=$(mktemp -d) || exit 99
 trap 'rm -rf "$work"' EXIT
 number=0
@@ -26,11 +27,19 @@ report() {
     fi
 }
 
-echo 1..2
+echo 1..3
 found=$(strangers "$library")
 [ -z "$found" ] || echo "# not ours: $(echo "$found" | tr '\n' ' ')"
 [ -z "$found" ]
 report only-ours $?
+
+tr '\n' ' ' <"$header" | grep -o 'NEPH_API [^;(]*(' |
+    sed -n -E 's/.*[ *](neph_[a-z0-9_]*)\($/\1/p' | sort >"$work/declared"
+names "$library" >"$work/defined"
+missing=$(comm -23 "$work/declared" "$work/defined")
+[ -z "$missing" ] || echo "# declared, but not there: $(echo "$missing" | tr '\n' ' ')"
+[ -s "$work/declared" ] && [ -z "$missing" ]
+report all-declared $?
 
 echo 'int neph_ours(void) { return 0; } int stranger(void) { return 0; }' >"$work/fault.c"
 "${CC:-cc}" -shared -fPIC -o "$work/fault.so" "$work/fault.c"
