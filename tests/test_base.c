@@ -62,7 +62,7 @@ static void test_parallel_visits_each_once(void)
 
 static void test_parallel_stops_when_cancelled(void)
 {
-    cancel_flag cancel = {true};
+    cancel_flag cancel = {.set = true};
     unsigned char visits[10] = {0};
     g_assert_false(parallel_for(10, 1, 2, &cancel, count_visits, visits));
     for (size_t i = 0; i < 10; i++)

@@ -87,7 +87,7 @@ static void test_text_round_trip(void)
 static void test_default_is_the_table(void)
 {
     settings s = settings_default();
-    g_assert_cmpint(s.passes, ==, 16);
+    g_assert_cmpint(settings_most_passes(&s), ==, 16);
     g_assert_cmpint(s.spp, ==, 4);
     g_assert_cmpint(s.max_forward_bounces, ==, -1);
     g_assert_true(s.direct_illumination && s.shadow_rays && !s.final_gather);
@@ -164,8 +164,8 @@ static void test_refusals(void)
     refuse("pases", "3",
            "expected a setting's name, found 'pases'; did you mean 'passes'?");
     refuse("xyzzy", "3", "expected a setting's name, found 'xyzzy'");
-    refuse("passes", "0",
-           "setting 'passes': expected a whole number from 1 to 1000000000, found '0'");
+    refuse("passes", "-1",
+           "setting 'passes': expected a whole number from 0 to 1000000000, found '-1'");
     refuse("spp", "2.5",
            "setting 'spp': expected a whole number from 1 to 65536 samples/pixel, found "
            "'2.5'");

@@ -151,19 +151,35 @@ typedef enum {
     NEPH_N_PHOTON_CLASSES
 } NephPhotonClass;
 
+/** @brief Why a render is over: by its settings `passes`, `time`, `noise`, or because
+ * someone asked to stop. */
+typedef enum {
+    NEPH_GOES_ON,
+    NEPH_PASSES_DONE,
+    NEPH_TIME_UP,
+    NEPH_NOISE_REACHED,
+    NEPH_CANCELLED
+} NephStop;
+
 /** @brief What a render did so far. Times in seconds, summed over passes. */
 typedef struct NephStatistics {
     int64_t passes;
+    int64_t passes_wanted; /**< the most there will be; 0: time or noise decides */
     double time_total, time_prepare, time_trace, time_build, time_gather, time_camera;
     uint64_t photon_rays, camera_rays, shadow_rays;
     uint64_t emitted[NEPH_N_PHOTON_CLASSES], stored[NEPH_N_PHOTON_CLASSES];
     double radius[NEPH_N_PHOTON_CLASSES]; /**< m, of the last pass */
     uint64_t memory_peak, memory_photons; /**< bytes */
     uint64_t n_not_finite; /**< samples dropped since they were not finite */
+    double noise; /**< relative error of the image, estimated from the scatter of its
+                     passes; INFINITY while there are too few. While rendering it is only
+                     kept if the setting `noise` asks for it. */
+    NephStop stopped_by;
 } NephStatistics;
 
 /** @brief Told after every pass and some times within one, on the thread that called
- *  neph_render_run. fraction: 0..1 of all passes. @return false to stop. */
+ *  neph_render_run. fraction: 0..1 of the whole render. Once statistics->passes > 0 it
+ *  may call neph_render_image. @return false to stop. */
 typedef bool (*NephProgressFunc)(double fraction, const NephStatistics *statistics,
                                  void *data);
 
@@ -173,7 +189,8 @@ NEPH_API NephRender *neph_render_new(const NephScene *scene, const NephSettings 
                                      GError **error);
 NEPH_API void neph_render_free(NephRender *render);
 /** @brief Renders the passes that are left. Stopped early (false, NEPH_ERROR_CANCELLED)
- * the image holds the passes finished, or the one begun if there is none. */
+ * the image holds the passes finished, or the one begun if there is none; another call
+ * goes on from there to the same image. */
 NEPH_API bool neph_render_run(NephRender *render, NephProgressFunc progress, void *data,
                               GError **error);
 /** @brief Asks neph_render_run to stop soon. Any thread; also from a signal handler. */

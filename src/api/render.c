@@ -2,6 +2,12 @@
 
 #include "api/statistics.h"
 
+_Static_assert(NEPH_GOES_ON == (int)RENDER_GOES_ON, "reasons are one list");
+_Static_assert(NEPH_PASSES_DONE == (int)RENDER_PASSES_DONE, "reasons are one list");
+_Static_assert(NEPH_TIME_UP == (int)RENDER_TIME_UP, "reasons are one list");
+_Static_assert(NEPH_NOISE_REACHED == (int)RENDER_NOISE_REACHED, "reasons are one list");
+_Static_assert(NEPH_CANCELLED == (int)RENDER_CANCELLED, "reasons are one list");
+
 struct NephRender {
     render *render;
     NephProgressFunc progress; /* of the run under way */
@@ -11,6 +17,7 @@ struct NephRender {
 NephStatistics statistics_export(const render_statistics *from)
 {
     NephStatistics out = {.passes = from->passes,
+                          .passes_wanted = from->passes_wanted,
                           .time_total = from->time_total,
                           .time_prepare = from->time_prepare,
                           .time_trace = from->time_trace,
@@ -22,7 +29,9 @@ NephStatistics statistics_export(const render_statistics *from)
                           .shadow_rays = from->shadow_rays,
                           .memory_peak = from->memory_peak,
                           .memory_photons = from->memory_photons,
-                          .n_not_finite = from->n_not_finite};
+                          .n_not_finite = from->n_not_finite,
+                          .noise = from->noise,
+                          .stopped_by = (NephStop)from->stopped_by};
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
         out.emitted[c] = from->emitted[c];
         out.stored[c] = from->stored[c];

@@ -2,8 +2,16 @@
 
 #include "base/json.h"
 
+#include <math.h>
+
 static const char *const class_names[NEPH_N_PHOTON_CLASSES] = {"direct", "indirect",
                                                                "caustic"};
+
+static const char *const stop_words[] = {[NEPH_GOES_ON] = "nothing",
+                                         [NEPH_PASSES_DONE] = "passes",
+                                         [NEPH_TIME_UP] = "time",
+                                         [NEPH_NOISE_REACHED] = "noise",
+                                         [NEPH_CANCELLED] = "request"};
 
 static void put_times_json(json *j, const NephStatistics *s)
 {
@@ -35,6 +43,8 @@ static char *statistics_json(const NephStatistics *s)
     json j = {0};
     json_object_begin(&j, NULL);
     json_integer(&j, "passes", s->passes);
+    json_string(&j, "stopped_by", stop_words[s->stopped_by]);
+    json_number(&j, "noise", s->noise);
     put_times_json(&j, s);
     json_object_begin(&j, "rays");
     json_count(&j, "photon", s->photon_rays);
@@ -85,7 +95,11 @@ static char *statistics_table(const NephStatistics *s)
 {
     const double mebi = 1024.0 * 1024.0;
     GString *out = g_string_new(NULL);
-    g_string_append_printf(out, "passes       %12" G_GINT64_FORMAT "\n", s->passes);
+    g_string_append_printf(out, "passes       %12" G_GINT64_FORMAT "    stopped by %s\n",
+                           s->passes, stop_words[s->stopped_by]);
+    if (isfinite(s->noise))
+        g_string_append_printf(out, "noise        %12.3g %%  of the light\n",
+                               100.0 * s->noise);
     g_string_append_printf(out, "time         %12.3f s\n", s->time_total);
     put_time(out, "prepare", s->time_prepare, s->time_total);
     put_time(out, "trace", s->time_trace, s->time_total);

@@ -9,9 +9,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/** @brief A flag that asks long work to stop soon. Set from any thread, read by all. */
+/** @brief A flag that asks long work to stop soon, set from any thread and read by all;
+ * and the pulse of that work. Zero to begin. */
 typedef struct cancel_flag {
     atomic_bool set;
+    void (*beat)(void *data); /**< called again and again on the thread that called
+                                 parallel_for; NULL: nobody listens */
+    void *beat_data;
 } cancel_flag;
 
 /** @brief True if flag is not NULL and has been set. */
@@ -31,7 +35,8 @@ typedef void (*parallel_body)(size_t begin, size_t end, unsigned thread, void *d
  * @brief Calls body for every chunk of [0, n), in any order, on the given number of
  * threads.
  * @param threads 0 = one per processor
- * @param cancel may be NULL; when set, chunks not yet begun are skipped
+ * @param cancel may be NULL; when set, chunks not yet begun are skipped; its beat is
+ * called after each chunk on the calling thread
  * @return false if cancelled before all chunks ran
  */
 bool parallel_for(size_t n, size_t chunk_size, unsigned threads,

@@ -260,7 +260,7 @@ static void apply_path(pbrt_parser *parser, const path_integrator *kind,
     note(parser, in->place,
          "integrator '%s' becomes photonmap with %" G_GINT64_FORMAT
          " passes of %" G_GINT64_FORMAT " samples a pixel and maxdepth %d",
-         kind->name, s->passes, s->spp, depth);
+         kind->name, settings_planned_passes(s), s->spp, depth);
 }
 
 void pbrt_apply_integrator(pbrt_parser *parser)

@@ -2,8 +2,18 @@
 
 #include "base/memory.h"
 
+enum { LUMINANCE = 1 /* of X, Y, Z */ };
+
+/* Pixels darker than this share of the mean count as if they were that bright. */
+#define DARK_SHARE 0.1
+
 static const char *const layer_names[FILM_COLORS] = {"direct",   "indirect", "caustic",
                                                      "specular", "emission", "albedo"};
+
+static size_t n_pixels(const film *f)
+{
+    return (size_t)f->width * (size_t)f->height;
+}
 
 bool film_open(film *f, const scene *s, GError **error)
 {
@@ -23,16 +33,20 @@ bool film_open(film *f, const scene *s, GError **error)
                   how->width, how->height);
         return false;
     }
-    f->pixels = big_alloc((size_t)f->width * (size_t)f->height, sizeof *f->pixels,
-                          "the film", error);
+    f->pass = big_alloc(n_pixels(f), sizeof *f->pass, "the film", error);
+    if (f->pass)
+        f->pixels = big_alloc(n_pixels(f), sizeof *f->pixels, "the film", error);
     return f->pixels != NULL;
 }
 
 void film_clear(film *f)
 {
+    big_free(f->pass);
     big_free(f->pixels);
     *f = (film){0};
 }
+
+/* ---- A pass ---- */
 
 film_pass film_pass_for(const wavelengths *w)
 {
@@ -49,27 +63,118 @@ static void add_color(double sum[3], const wavelengths *w, spectrum radiance,
         sum[i] += (double)(xyz[i] * weight);
 }
 
-void film_add(film *f, const film_pass *pass, int x, int y, const radiance_sample *sample,
+void film_add(film_sum *sum, const film_pass *pass, const radiance_sample *sample,
               float weight)
 {
-    film_pixel *pixel =
-        &f->pixels[(size_t)(y - f->y0) * (size_t)f->width + (size_t)(x - f->x0)];
     for (int i = 0; i < N_LAYERS; i++)
-        add_color(pixel->color[i], pass->w, sample->layers[i], weight);
-    pixel->weight += (double)weight;
+        add_color(sum->color[i], pass->w, sample->layers[i], weight);
+    sum->weight += (double)weight;
     if (!(sample->depth > 0.0f))
         return;
-    add_color(pixel->color[N_LAYERS], pass->w, sample->albedo * pass->white, weight);
+    add_color(sum->color[N_LAYERS], pass->w, sample->albedo * pass->white, weight);
     for (int i = 0; i < 3; i++)
-        pixel->normal[i] += (double)(sample->normal[i] * weight);
-    pixel->depth += (double)(sample->depth * weight);
-    pixel->surface_weight += (double)weight;
+        sum->normal[i] += (double)(sample->normal[i] * weight);
+    sum->depth += (double)(sample->depth * weight);
+    sum->surface_weight += (double)weight;
+}
+
+void film_put(film *f, int x, int y, const film_sum *sum)
+{
+    size_t i = (size_t)(y - f->y0) * (size_t)f->width + (size_t)(x - f->x0);
+    const double *number = (const double *)sum;
+    for (int k = 0; k < FILM_NUMBERS; k++)
+        f->pass[i].number[k] = (float)number[k];
+}
+
+static void add_numbers(film_sum *sum, const pass_pixel *pass)
+{
+    double *number = (double *)sum;
+    for (int k = 0; k < FILM_NUMBERS; k++)
+        number[k] += (double)pass->number[k];
+}
+
+/* Of the beauty image, not yet divided by the weight. */
+static double luminance(const film_sum *sum)
+{
+    double y = 0.0;
+    for (int i = 0; i < N_LAYERS; i++)
+        y += sum->color[i][LUMINANCE];
+    return y;
+}
+
+static void end_pixels(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const film *f = data;
+    for (size_t i = begin; i < end; i++) {
+        film_pixel *pixel = &f->pixels[i];
+        film_sum pass = {0};
+        add_numbers(&pass, &f->pass[i]);
+        add_numbers(&pixel->sum, &f->pass[i]);
+        double y = luminance(&pass);
+        pixel->y2 += y * y;
+        pixel->yw += y * pass.weight;
+        pixel->w2 += pass.weight * pass.weight;
+    }
+}
+
+void film_end_pass(film *f, unsigned threads)
+{
+    parallel_for(n_pixels(f), 1 << 12, threads, NULL, end_pixels, f);
+    f->n_passes++;
+}
+
+/* ---- Its error ---- */
+
+/* Mean luminance of a pixel. */
+static double pixel_mean(const film_pixel *pixel)
+{
+    return fabs(pixel->sum.weight) > 0.0 ? luminance(&pixel->sum) / pixel->sum.weight
+                                         : 0.0;
+}
+
+/* Variance of that mean, by the scatter of n passes around it. */
+static double pixel_variance(const film_pixel *pixel, int64_t n)
+{
+    double weight = pixel->sum.weight, mean = pixel_mean(pixel);
+    if (n < 2 || !(fabs(weight) > 0.0))
+        return 0.0;
+    double scatter = pixel->y2 - 2.0 * mean * pixel->yw + mean * mean * pixel->w2;
+    return fmax(scatter, 0.0) * (double)n / (double)(n - 1) / (weight * weight);
+}
+
+/* Mean over pixels of what they are beneath a ceiling. */
+static double mean_below(const film *f, double ceiling)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n_pixels(f); i++)
+        sum += fmin(pixel_mean(&f->pixels[i]), ceiling);
+    return sum / (double)n_pixels(f);
+}
+
+double film_noise(const film *f)
+{
+    if (f->n_passes < 2)
+        return INFINITY;
+    double dark = DARK_SHARE * mean_below(f, mean_below(f, INFINITY));
+    double sum = 0.0;
+    for (size_t i = 0; i < n_pixels(f); i++) {
+        double y = pixel_mean(&f->pixels[i]);
+        double variance = pixel_variance(&f->pixels[i], f->n_passes);
+        sum += variance > 0.0 ? variance / (y * y + dark * dark) : 0.0;
+    }
+    return sqrt(sum / (double)n_pixels(f));
 }
 
 /* ---- The picture ---- */
 
+static bool has_variance(const film *f)
+{
+    return f->n_passes >= 2;
+}
+
 /* Channel names: R G B, then layer.R ..., normal.X ..., depth.Z. */
-static GPtrArray *channel_names(void)
+static GPtrArray *channel_names(const film *f)
 {
     GPtrArray *names = g_ptr_array_new_with_free_func(g_free);
     for (const char *c = "RGB"; *c; c++)
@@ -81,6 +186,8 @@ static GPtrArray *channel_names(void)
     for (const char *c = "XYZ"; *c; c++)
         g_ptr_array_add(names, g_strdup_printf("normal.%c", *c));
     g_ptr_array_add(names, g_strdup("depth.Z"));
+    if (has_variance(f))
+        g_ptr_array_add(names, g_strdup("variance.Y"));
     return names;
 }
 
@@ -92,35 +199,46 @@ static void to_rgb(const film *f, const double sum[3], double weight, float out[
     color_space_from_xyz(f->space, xyz, out);
 }
 
-static void write_pixel(const film *f, const film_pixel *pixel, float *out)
+static void write_sum(const film *f, const film_sum *sum, float *out)
 {
     float *beauty = out, *layers = out + 3;
     for (int i = 0; i < FILM_COLORS; i++) {
         bool is_albedo = i == N_LAYERS;
         float *rgb = layers + 3 * i;
-        to_rgb(f, pixel->color[i], is_albedo ? pixel->surface_weight : pixel->weight,
-               rgb);
+        to_rgb(f, sum->color[i], is_albedo ? sum->surface_weight : sum->weight, rgb);
         for (int c = 0; c < 3 && !is_albedo; c++) {
             rgb[c] *= f->scale;
             beauty[c] += rgb[c];
         }
     }
     float *rest = layers + 3 * FILM_COLORS;
-    double weight = fabs(pixel->surface_weight) > 0.0 ? pixel->surface_weight : 1.0;
+    double weight = fabs(sum->surface_weight) > 0.0 ? sum->surface_weight : 1.0;
     for (int i = 0; i < 3; i++)
-        rest[i] = (float)(pixel->normal[i] / weight);
-    rest[3] = (float)(pixel->depth / weight);
+        rest[i] = (float)(sum->normal[i] / weight);
+    rest[3] = (float)(sum->depth / weight);
+}
+
+static void write_pixel(const film *f, size_t i, float *out)
+{
+    film_sum begun = {0};
+    if (f->n_passes == 0)
+        add_numbers(&begun, &f->pass[i]);
+    write_sum(f, f->n_passes ? &f->pixels[i].sum : &begun, out);
+    double scale2 = (double)f->scale * (double)f->scale;
+    if (has_variance(f))
+        out[3 + 3 * FILM_COLORS + 4] =
+            (float)(scale2 * pixel_variance(&f->pixels[i], f->n_passes));
 }
 
 image *film_image(const film *f, GError **error)
 {
-    g_autoptr(GPtrArray) names = channel_names();
+    g_autoptr(GPtrArray) names = channel_names(f);
     image *img = image_new(f->width, f->height, (int)names->len,
                            (const char *const *)names->pdata, error);
     if (!img)
         return NULL;
-    for (size_t i = 0; i < (size_t)f->width * (size_t)f->height; i++)
-        write_pixel(f, &f->pixels[i], img->pixels + i * names->len);
+    for (size_t i = 0; i < n_pixels(f); i++)
+        write_pixel(f, i, img->pixels + i * names->len);
     color_space_chromaticities(f->space, img->chromaticities);
     image_header_set(img, "colorSpace", color_space_name(f->space));
     return img;

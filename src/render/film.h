@@ -2,8 +2,15 @@
  * The film: sums over samples, pixel by pixel, in double precision so that a million
  * passes add up.
  *
- * Each pixel is written by one thread at a time, passes come in order: the sums are the
- * same bits on any number of threads.
+ *   sample ─► film_sum (of one pixel in one pass) ─► pass[] ── film_end_pass ─► pixels[]
+ *
+ * A pass is kept apart until it is whole, so that one given up leaves no trace: the
+ * picture is always the mean of whole passes, and can be looked at while the next one is
+ * rendered. Each pixel is written by one thread at a time, passes come in order: the sums
+ * are the same bits on any number of threads.
+ *
+ * Beside the sums stand those of squares over passes. Passes are independent, so their
+ * scatter tells the error of their mean, pixel by pixel.
  */
 #pragma once
 
@@ -13,20 +20,36 @@
 
 enum { FILM_COLORS = N_LAYERS + 1 /* albedo */ };
 
-/** @brief Sums of one pixel, weighed by the pixel filter. */
-typedef struct film_pixel {
+/** @brief Sums of one pixel in one pass, weighed by the pixel filter. Zero to begin. */
+typedef struct film_sum {
     double color[FILM_COLORS]
                 [3]; /**< XYZ of the layers, then of the albedo under the white */
     double normal[3], depth;
     double weight;
     double
         surface_weight; /**< of the samples that met a surface: albedo, normal, depth */
+} film_sum;
+
+enum { FILM_NUMBERS = sizeof(film_sum) / sizeof(double) };
+
+/** @brief What a pass made of a pixel: film_sum's numbers. */
+typedef struct pass_pixel {
+    float number[FILM_NUMBERS];
+} pass_pixel;
+
+/** @brief A pixel over all passes. */
+typedef struct film_pixel {
+    film_sum sum;
+    double y2, yw, w2; /**< Σ over passes of y y, y w and w w; y: weighed luminance of the
+                          pass, w: its weight */
 } film_pixel;
 
 typedef struct film {
     int x0, y0, width, height; /**< the part of the picture that is rendered, pixels */
-    film_pixel *pixels;
-    float scale; /**< the sensor's: scene_imaging_ratio */
+    pass_pixel *pass;          /**< of the pass under way */
+    film_pixel *pixels;        /**< of the passes done */
+    int64_t n_passes;          /**< done */
+    float scale;               /**< the sensor's: scene_imaging_ratio */
     const color_space *space;
 } film;
 
@@ -42,10 +65,24 @@ typedef struct film_pass {
 
 film_pass film_pass_for(const wavelengths *w);
 
-/** @brief Adds a sample to pixel (x, y) of the whole picture. */
-void film_add(film *f, const film_pass *pass, int x, int y, const radiance_sample *sample,
+/** @brief Adds a sample to the sum of a pixel. */
+void film_add(film_sum *sum, const film_pass *pass, const radiance_sample *sample,
               float weight);
+/** @brief Pixel (x, y) of the whole picture is done in this pass. */
+void film_put(film *f, int x, int y, const film_sum *sum);
+/** @brief Adds the pass, of which every pixel was put, to the picture. */
+void film_end_pass(film *f, unsigned threads);
+
+/**
+ * @brief The relative error of the picture, estimated from the scatter of its passes:
+ * √ of the mean over pixels of Var / (Y² + (m/10)²).
+ *
+ * Y is the pixel's luminance and m the mean one, lamps in sight counting no more than the
+ * mean does. INFINITY before there are two passes.
+ */
+double film_noise(const film *f);
 
 /** @brief The picture: R G B, the layers' R G B, albedo, normal, depth; linear, film's
- * space. */
+ * space. With two passes or more also variance.Y, the square of the standard error of
+ * the luminance. Before the first pass is done, what was put of it. */
 image *film_image(const film *f, GError **error);

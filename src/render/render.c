@@ -2,18 +2,34 @@
 
 #include "base/memory.h"
 #include "render/film.h"
-#include "transport/transport.h"
+#include "render/stop.h"
 
-enum { TILE = 16 };
+enum { TILE = 16, SAMPLES_BETWEEN_BEATS = 64 };
+
+/* The caller hears of progress no more often than this, s. */
+#define BEAT_INTERVAL 0.1
 
 struct render {
     transport_plan plan;
     const transport_kind *transport;
     film film;
+    bool prepared;
     uint32_t passes_done;
     render_statistics statistics;
     cancel_flag cancel;
     unsigned n_threads;
+
+    /* Of the call under way. */
+    render_progress progress;
+    void *progress_data;
+    double start;     /* clock when it would have begun without pauses */
+    double last_beat; /* clock */
+
+    /* Of the pass under way: how far it is. */
+    double pass_start, last_pass; /* clock; s */
+    double photon_share;          /* of the last pass, before the camera looked */
+    size_t n_tiles;               /* 0: the camera does not look yet */
+    atomic_size_t tiles_done;
 };
 
 static double seconds(void)
@@ -29,15 +45,13 @@ render *render_new(const scene *s, const settings *how, GError **error)
     r->transport = transport_find(how->integrator);
     r->n_threads = parallel_threads((unsigned)how->threads);
     r->plan.how.threads = r->n_threads;
-    double start = seconds();
-    if (!film_open(&r->film, s, error) ||
-        !r->transport->prepare(&r->plan, &r->cancel, error)) {
-        render_free(r);
-        return NULL;
-    }
-    r->statistics.time_prepare = seconds() - start;
-    r->statistics.time_total = r->statistics.time_prepare;
-    return r;
+    r->statistics.noise = INFINITY;
+    bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
+    r->statistics.passes_wanted = open_end ? 0 : settings_most_passes(how);
+    if (film_open(&r->film, s, error))
+        return r;
+    render_free(r);
+    return NULL;
 }
 
 void render_free(render *r)
@@ -54,6 +68,49 @@ void render_cancel(render *r)
     atomic_store(&r->cancel.set, true);
 }
 
+/* ---- How far it is ---- */
+
+/* Share of the pass under way that is done. While photons are on their way, time tells,
+   as the last pass spent it. */
+static double pass_fraction(const render *r)
+{
+    if (r->n_tiles > 0)
+        return r->photon_share + (1.0 - r->photon_share) *
+                                     (double)atomic_load(&r->tiles_done) /
+                                     (double)r->n_tiles;
+    if (!(r->last_pass > 0.0))
+        return 0.0;
+    return fmin((seconds() - r->pass_start) / r->last_pass, r->photon_share);
+}
+
+static stop_state state_of(const render *r, double pass_fraction)
+{
+    return (stop_state){
+        .passes = (double)r->passes_done + pass_fraction,
+        .elapsed = seconds() - r->start,
+        .last_pass = r->last_pass,
+        .noise = r->statistics.noise,
+    };
+}
+
+static void tell(render *r, double pass_fraction)
+{
+    stop_state now = state_of(r, pass_fraction);
+    r->last_beat = seconds();
+    r->statistics.time_total = now.elapsed;
+    if (r->progress &&
+        !r->progress(stop_fraction(&r->plan.how, &now), &r->statistics, r->progress_data))
+        render_cancel(r);
+}
+
+/* cancel_flag.beat: comes from all parallel work, on the thread that called. */
+static void beat(void *data)
+{
+    render *r = data;
+    if (r->progress && seconds() - r->last_beat >= BEAT_INTERVAL)
+        tell(r, r->prepared ? pass_fraction(r) : 0.0);
+}
+
 /* ---- One pass ---- */
 
 /* The camera's half of a pass, shared by all threads. */
@@ -63,22 +120,20 @@ typedef struct camera_loop {
     film_pass film_pass;
     uint32_t index;
     int n_tiles_x;
-    size_t n_tiles;
-    atomic_size_t tiles_done;
     transport_scratch *scratch; /* one a thread */
-    render_progress progress;
-    void *progress_data;
-    double last_progress; /* only the calling thread's */
 } camera_loop;
 
-static void render_pixel(camera_loop *loop, int x, int y, transport_scratch *scratch)
+static void render_pixel(camera_loop *loop, int x, int y, unsigned thread)
 {
     render *r = loop->render;
     const scene *s = r->plan.scene;
     const settings *how = &r->plan.how;
     uint64_t pixel = (uint64_t)y * (uint64_t)s->film.width + (uint64_t)x;
     uint64_t key = hash_mix((uint64_t)how->seed, hash_mix(pixel, 0x7069786cu));
-    for (int64_t i = 0; i < how->spp; i++) {
+    film_sum sum = {0};
+    for (int64_t i = 0; i < how->spp && !cancelled(&r->cancel); i++) {
+        if (thread == 0 && i % SAMPLES_BETWEEN_BEATS == 0)
+            beat(r);
         sampler random =
             sampler_make(key, loop->index * (uint64_t)how->spp + (uint64_t)i);
         float weight;
@@ -87,43 +142,27 @@ static void render_pixel(camera_loop *loop, int x, int y, transport_scratch *scr
         vec2 u_lens = sampler_2d(&random);
         ray from_eye = camera_ray(&s->camera, raster, u_lens, sampler_1d(&random));
         radiance_sample sample;
-        r->transport->radiance(loop->pass, &from_eye, &random, scratch, &sample);
-        film_add(&r->film, &loop->film_pass, x, y, &sample, weight);
+        r->transport->radiance(loop->pass, &from_eye, &random, &loop->scratch[thread],
+                               &sample);
+        film_add(&sum, &loop->film_pass, &sample, weight);
     }
-}
-
-static double fraction_done(const camera_loop *loop)
-{
-    double in_pass = (double)atomic_load(&loop->tiles_done) / (double)loop->n_tiles;
-    return ((double)loop->index + in_pass) / (double)loop->render->plan.how.passes;
-}
-
-/* Tells the caller now and then; only on the thread that called render_run. */
-static void tell_progress(camera_loop *loop, unsigned thread)
-{
-    double now = thread == 0 ? seconds() : 0.0;
-    if (thread != 0 || !loop->progress || now - loop->last_progress < 0.1)
-        return;
-    loop->last_progress = now;
-    if (!loop->progress(fraction_done(loop), &loop->render->statistics,
-                        loop->progress_data))
-        render_cancel(loop->render);
+    film_put(&r->film, x, y, &sum);
 }
 
 static void render_tile(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)end;
     camera_loop *loop = data;
-    const film *f = &loop->render->film;
+    render *r = loop->render;
+    const film *f = &r->film;
     int x0 = f->x0 + TILE * (int)(begin % (size_t)loop->n_tiles_x);
     int y0 = f->y0 + TILE * (int)(begin / (size_t)loop->n_tiles_x);
     int x1 = MIN(x0 + TILE, f->x0 + f->width), y1 = MIN(y0 + TILE, f->y0 + f->height);
     for (int y = y0; y < y1; y++) {
         for (int x = x0; x < x1; x++)
-            render_pixel(loop, x, y, &loop->scratch[thread]);
+            render_pixel(loop, x, y, thread);
     }
-    atomic_fetch_add(&loop->tiles_done, 1);
-    tell_progress(loop, thread);
+    atomic_fetch_add(&r->tiles_done, 1);
 }
 
 static bool collect(render *r, transport_scratch *scratch, GError **error)
@@ -158,26 +197,24 @@ static void add_counts(render_statistics *st, const transport_counts *counts)
     }
 }
 
-static bool look(render *r, const void *pass, uint32_t index, render_progress progress,
-                 void *data, GError **error)
+static bool look(render *r, const void *pass, GError **error)
 {
     const film *f = &r->film;
     camera_loop loop = {
         .render = r,
         .pass = pass,
         .film_pass = film_pass_for(r->transport->pass_wavelengths(pass)),
-        .index = index,
+        .index = r->passes_done,
         .n_tiles_x = (f->width + TILE - 1) / TILE,
-        .progress = progress,
-        .progress_data = data,
     };
-    loop.n_tiles = (size_t)loop.n_tiles_x * (size_t)((f->height + TILE - 1) / TILE);
     loop.scratch = big_alloc(r->n_threads, sizeof *loop.scratch, "thread scratch", error);
     if (!loop.scratch)
         return false;
     double start = seconds();
-    bool done =
-        parallel_for(loop.n_tiles, 1, r->n_threads, &r->cancel, render_tile, &loop);
+    atomic_store(&r->tiles_done, 0);
+    r->n_tiles = (size_t)loop.n_tiles_x * (size_t)((f->height + TILE - 1) / TILE);
+    bool done = parallel_for(r->n_tiles, 1, r->n_threads, &r->cancel, render_tile, &loop);
+    r->n_tiles = 0;
     r->statistics.time_camera += seconds() - start;
     if (!collect(r, loop.scratch, error))
         return false;
@@ -186,34 +223,85 @@ static bool look(render *r, const void *pass, uint32_t index, render_progress pr
     return done;
 }
 
-static bool run_pass(render *r, uint32_t index, render_progress progress, void *data,
-                     GError **error)
+static void note_pass(render *r, double photons_done)
+{
+    render_statistics *st = &r->statistics;
+    double now = seconds();
+    r->last_pass = now - r->pass_start;
+    r->photon_share = r->last_pass > 0.0 ? photons_done / r->last_pass : 0.0;
+    st->passes = ++r->passes_done;
+    if (r->plan.how.noise > 0.0)
+        st->noise = film_noise(&r->film);
+}
+
+static bool run_pass(render *r, GError **error)
 {
     transport_counts counts = {0};
-    void *pass = r->transport->begin_pass(&r->plan, index, &r->cancel, &counts, error);
+    r->pass_start = seconds();
+    void *pass =
+        r->transport->begin_pass(&r->plan, r->passes_done, &r->cancel, &counts, error);
     if (!pass)
         return false;
+    double photons_done = seconds() - r->pass_start;
     add_counts(&r->statistics, &counts);
-    bool ok = look(r, pass, index, progress, data, error);
+    bool ok = look(r, pass, error);
     r->transport->end_pass(pass);
-    return ok;
+    if (!ok)
+        return false;
+    film_end_pass(&r->film, r->n_threads);
+    note_pass(r, photons_done);
+    tell(r, 0.0);
+    return true;
+}
+
+/* ---- All passes ---- */
+
+static bool prepare(render *r, GError **error)
+{
+    double start = seconds();
+    if (r->prepared)
+        return true;
+    transport_plan_clear(&r->plan);
+    r->prepared = r->transport->prepare(&r->plan, &r->cancel, error);
+    r->statistics.time_prepare += seconds() - start;
+    return r->prepared;
+}
+
+/* Renders until a rule says stop. */
+static bool run_passes(render *r, GError **error)
+{
+    for (;;) {
+        stop_state now = state_of(r, 0.0);
+        r->statistics.stopped_by = stop_decide(&r->plan.how, &now);
+        if (r->statistics.stopped_by != RENDER_GOES_ON)
+            return true;
+        if (!run_pass(r, error))
+            return false;
+    }
+}
+
+static void end_run(render *r)
+{
+    render_statistics *st = &r->statistics;
+    r->cancel.beat = NULL;
+    st->time_total = seconds() - r->start;
+    st->memory_peak = memory_peak();
+    st->noise = film_noise(&r->film);
+    if (atomic_exchange(&r->cancel.set, false) && st->stopped_by == RENDER_GOES_ON)
+        st->stopped_by = RENDER_CANCELLED;
 }
 
 bool render_run(render *r, render_progress progress, void *data, GError **error)
 {
-    while (r->passes_done < r->plan.how.passes) {
-        double start = seconds();
-        bool ok = run_pass(r, r->passes_done, progress, data, error);
-        r->statistics.time_total += seconds() - start;
-        r->statistics.memory_peak = memory_peak();
-        if (!ok)
-            return false;
-        r->statistics.passes = ++r->passes_done;
-        double fraction = (double)r->passes_done / (double)r->plan.how.passes;
-        if (progress && !progress(fraction, &r->statistics, data))
-            render_cancel(r);
-    }
-    return true;
+    r->progress = progress;
+    r->progress_data = data;
+    r->start = seconds() - r->statistics.time_total;
+    r->cancel.beat = beat;
+    r->cancel.beat_data = r;
+    r->statistics.stopped_by = RENDER_GOES_ON;
+    bool ok = prepare(r, error) && run_passes(r, error);
+    end_run(r);
+    return ok;
 }
 
 static void describe(const render *r, image *img)

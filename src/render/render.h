@@ -1,6 +1,6 @@
 /*
- * The pass loop: plan once, then pass after pass onto the film, until all are done or
- * someone asks to stop.
+ * The pass loop: plan once, then pass after pass onto the film, until the settings'
+ * `passes`, `time` or `noise` say that it is enough, or someone asks to stop.
  */
 #pragma once
 
@@ -8,34 +8,48 @@
 #include "photon/photon.h"
 #include "scene/scene.h"
 
+/** @brief Why a render is over. */
+typedef enum render_stop {
+    RENDER_GOES_ON,
+    RENDER_PASSES_DONE,
+    RENDER_TIME_UP,
+    RENDER_NOISE_REACHED,
+    RENDER_CANCELLED
+} render_stop;
+
 /** @brief What a render did so far; the fields of NephStatistics. Seconds, summed over
  * passes. */
 typedef struct render_statistics {
     int64_t passes;
+    int64_t passes_wanted; /**< 0: time or noise decides */
     double time_total, time_prepare, time_trace, time_build, time_gather, time_camera;
     uint64_t photon_rays, camera_rays, shadow_rays;
     uint64_t emitted[N_PHOTON_CLASSES], stored[N_PHOTON_CLASSES];
     double radius[N_PHOTON_CLASSES]; /**< m, of the last pass */
     uint64_t memory_peak, memory_photons;
     uint64_t n_not_finite;
+    double noise; /**< relative error of the picture (film_noise), INFINITY if unknown */
+    render_stop stopped_by;
 } render_statistics;
 
-/** @brief Told on the thread that called; fraction 0..1. @return false to stop. */
+/** @brief Told on the thread that called, after every pass and now and then within one;
+ * fraction 0..1. It may call render_image once a pass is done. @return false to stop. */
 typedef bool (*render_progress)(double fraction, const render_statistics *statistics,
                                 void *data);
 
 typedef struct render render;
 
-/** @brief Prepares a render of a committed scene, which must outlive it. */
+/** @brief A render of a committed scene, which must outlive it. */
 render *render_new(const scene *s, const settings *how, GError **error);
 void render_free(render *r);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(render, render_free)
-/** @brief Renders the passes that are left. ERROR_CANCELLED when stopped: the film then
- * holds what was done. progress may be NULL. */
+/** @brief Renders the passes that are left. ERROR_CANCELLED when asked to stop: the film
+ * then holds the passes done, and the next call goes on as if nothing had happened.
+ * progress may be NULL. */
 bool render_run(render *r, render_progress progress, void *data, GError **error);
 /** @brief Asks render_run to stop soon. Any thread, also a signal handler. */
 void render_cancel(render *r);
-/** @brief The mean of what was rendered so far, with layers and metadata; owned by the
- * caller. */
+/** @brief The mean of the passes done, with layers and metadata; before there is one,
+ * what was done of the first. Owned by the caller. */
 image *render_image(const render *r, GError **error);
 render_statistics render_get_statistics(const render *r);

@@ -19,15 +19,25 @@ static const char *const map_words[] = {"list", "kdtree", "grid", NULL};
 static const char *const roulette_words[] = {"mean", "max", NULL};
 static const char *const emission_words[] = {"uniform", "specular-area", "guided", NULL};
 
+enum { MOST_PASSES = 1000000000, USUAL_PASSES = 16 };
+
 #define AT(field) offsetof(settings, field)
 
 static const setting_row table[] = {
     {"integrator", SETTING_CHOICE, AT(integrator), "", 0, 2, INTEGRATOR_PHOTONMAP,
      integrator_words, "", "all",
      "The algorithm that carries light from the lamps to the eye."},
-    {"passes", SETTING_COUNT, AT(passes), "", 1, 1e9, 16, NULL,
+    {"passes", SETTING_COUNT, AT(passes), "", 0, MOST_PASSES, 0, NULL,
      "iterations numiterations", "all",
-     "Independent passes whose mean is the image; 1 is classic photon mapping."},
+     "Independent passes whose mean is the image; 1 is classic photon mapping. 0: as "
+     "many "
+     "as time and noise ask for, or 16 if neither is given."},
+    {"time", SETTING_REAL, AT(time), "s", 0, 1e9, 0, NULL, "", "all",
+     "No pass is begun that would end much later; 0: no limit. One pass is always "
+     "rendered."},
+    {"noise", SETTING_REAL, AT(noise), "", 0, 1, 0, NULL, "", "all",
+     "Stops when the relative error of the image, estimated from the scatter of its "
+     "passes, is below this; 0: never."},
     {"spp", SETTING_COUNT, AT(spp), "samples/pixel", 1, 65536, 4, NULL,
      "pixelsamples samples_per_pixel", "all", "Camera rays a pixel in each pass."},
     {"max_backward_bounces", SETTING_COUNT, AT(max_backward_bounces), "", -1, 1e6, 32,
@@ -188,6 +198,17 @@ settings settings_default(void)
     for (size_t i = 0; i < N_ROWS; i++)
         store(&s, &table[i], table[i].initial);
     return s;
+}
+
+int64_t settings_most_passes(const settings *s)
+{
+    bool other_rule = s->time > 0.0 || s->noise > 0.0;
+    return s->passes > 0 ? s->passes : other_rule ? MOST_PASSES : USUAL_PASSES;
+}
+
+int64_t settings_planned_passes(const settings *s)
+{
+    return s->passes > 0 ? s->passes : USUAL_PASSES;
 }
 
 /** pbrt's name, which sets two settings at once. */

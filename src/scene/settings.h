@@ -35,8 +35,10 @@ typedef enum integrator_choice {
 /** @brief Every knob. Arrays are indexed by photon class. A plain value: copy it. */
 typedef struct settings {
     int integrator; /**< integrator_choice */
-    int64_t passes;
-    int64_t spp; /**< camera samples a pixel in each pass */
+    int64_t passes; /**< 0: see settings_most_passes */
+    double time;    /**< s; 0: no limit */
+    double noise;   /**< relative error to stop at; 0: none */
+    int64_t spp;    /**< camera samples a pixel in each pass */
     int64_t max_backward_bounces, max_forward_bounces; /**< -1: unlimited */
     bool final_gather;
     int64_t gather_rays;
@@ -85,6 +87,11 @@ const setting_row *settings_table(size_t *n);
 /** @brief A row by name or alias (case-sensitive for names, not for aliases), or NULL. */
 const setting_row *settings_find(const char *name);
 settings settings_default(void);
+/** @brief Passes after which a render ends at the latest. */
+int64_t settings_most_passes(const settings *s);
+/** @brief Passes that decisions taken before the first one count on. It does not depend
+ * on `time` and `noise`, so neither does what a pass renders. */
+int64_t settings_planned_passes(const settings *s);
 /** @brief Sets from text, checked against type and range. ERROR_USAGE naming setting,
  * what was expected and what was found. */
 bool settings_set(settings *s, const char *name, const char *value, GError **error);

@@ -121,7 +121,7 @@ static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
     if (!map)
         return false;
     double density = (double)plan->n_photons[c] / (double)task.n_photons;
-    double passes = (double)MAX(plan->how.passes, 1);
+    double passes = (double)settings_planned_passes(&plan->how);
     double wanted = fmax(photons_wanted[c] / passes, photons_wanted_least[c]);
     double r = measured_radius(p, c, map) * sqrt(wanted / PILOT_NEAREST / density);
     double largest = 0.1 * (double)plan->scene->radius;

@@ -1,0 +1,21 @@
+/*
+ * When a render is done: after so many passes, so many seconds, or when its error is
+ * small. Asked between passes only, so that what a pass is never depends on when the
+ * render stops.
+ */
+#pragma once
+
+#include "render/render.h"
+
+/** @brief What the rules look at. */
+typedef struct stop_state {
+    double passes;    /**< done; with a fraction while one is under way */
+    double elapsed;   /**< s */
+    double last_pass; /**< s that the last pass took */
+    double noise;     /**< film_noise, INFINITY if unknown */
+} stop_state;
+
+/** @brief Why to stop now, or RENDER_GOES_ON. One pass is always rendered. */
+render_stop stop_decide(const settings *how, const stop_state *now);
+/** @brief How much is done, 0..1, by the rule that will stop first. */
+double stop_fraction(const settings *how, const stop_state *now);

@@ -1,0 +1,375 @@
+/*
+ * The pass loop: when it stops, what it tells, and that neither changes a bit of what it
+ * renders; the error it claims against the error it makes.
+ */
+#include "render/stop.h"
+#include "render_scenes.h"
+
+#define SMALL_ROOM ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS
+
+static void assert_same_bits(const image *a, const image *b)
+{
+    g_assert_cmpint(a->n_channels, ==, b->n_channels);
+    size_t n = pixels_of(a) * (size_t)a->n_channels;
+    g_assert_cmpmem(a->pixels, n * sizeof(float), b->pixels, n * sizeof(float));
+}
+
+/* ---- Rules ---- */
+
+static settings with_rules(int64_t passes, double time, double noise)
+{
+    settings how = settings_default();
+    how.passes = passes;
+    how.time = time;
+    how.noise = noise;
+    return how;
+}
+
+static void test_rules(void)
+{
+    const settings five = with_rules(5, 0, 0), none = with_rules(0, 0, 0),
+                   second = with_rules(0, 1.0, 0), still = with_rules(0, 0, 0.1),
+                   all = with_rules(100, 1.0, 0.1);
+    const struct {
+        const settings *how;
+        stop_state now;
+        render_stop expected;
+    } cases[] = {
+        {&five, {4, 1e9, 1, 0}, RENDER_GOES_ON},
+        {&five, {5, 0, 0, INFINITY}, RENDER_PASSES_DONE},
+        {&none, {15, 0, 0, INFINITY}, RENDER_GOES_ON},
+        {&none, {16, 0, 0, INFINITY}, RENDER_PASSES_DONE},
+        {&second, {0, 7, 0, INFINITY}, RENDER_GOES_ON}, /* one pass is always rendered */
+        {&second, {1, 7, 7, INFINITY}, RENDER_TIME_UP},
+        {&second, {1000, 0.99, 0.001, INFINITY}, RENDER_GOES_ON},
+        {&second, {1000, 1.0, 0.001, INFINITY}, RENDER_TIME_UP},
+        {&second, {2, 0.6, 0.3, INFINITY}, RENDER_GOES_ON},
+        {&second, {1, 0.6, 0.6, INFINITY}, RENDER_TIME_UP}, /* would take 1.2 s */
+        {&still, {3, 1e9, 1, 0.01}, RENDER_GOES_ON},        /* too few to know */
+        {&still, {4, 0, 1, 0.1}, RENDER_NOISE_REACHED},
+        {&still, {1e6, 0, 1, 0.11}, RENDER_GOES_ON},
+        {&all, {50, 0.5, 0.01, 0.2}, RENDER_GOES_ON},
+        {&all, {50, 0.5, 0.01, 0.05}, RENDER_NOISE_REACHED},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_test_message("case %zu", i);
+        g_assert_cmpint(stop_decide(cases[i].how, &cases[i].now), ==, cases[i].expected);
+    }
+}
+
+static void test_fraction(void)
+{
+    const settings four = with_rules(4, 0, 0), all = with_rules(100, 10, 0.1);
+    const stop_state middle = {2.5, 0, 0, INFINITY}, by_time = {1, 8, 1, 1.0},
+                     by_noise = {1, 1, 1, 0.2}, late = {1, 99, 1, INFINITY};
+    g_assert_cmpfloat_with_epsilon(stop_fraction(&four, &middle), 0.625, 1e-12);
+    g_assert_cmpfloat_with_epsilon(stop_fraction(&all, &by_time), 0.8, 1e-12);
+    g_assert_cmpfloat_with_epsilon(stop_fraction(&all, &by_noise), 0.25, 1e-12);
+    g_assert_cmpfloat_with_epsilon(stop_fraction(&all, &late), 1.0, 1e-12);
+}
+
+/* Ends between the pass that was too early and the one that was too late. */
+static void test_time_is_kept(void)
+{
+    g_autoptr(scene) s = scene_of(SMALL_ROOM);
+    g_autoptr(render) r = render_of(s, "integrator=path spp=1 time=0.4");
+    double start = (double)g_get_monotonic_time() * 1e-6;
+    g_assert_true(render_run(r, NULL, NULL, NULL));
+    double took = (double)g_get_monotonic_time() * 1e-6 - start;
+    const render_statistics st = render_get_statistics(r);
+    g_test_message("%" G_GINT64_FORMAT " passes in %g s", st.passes, took);
+    g_assert_cmpint(st.stopped_by, ==, RENDER_TIME_UP);
+    g_assert_cmpint(st.passes, >, 16);
+    g_assert_cmpfloat(took, >, 0.4 * 0.8);
+    g_assert_cmpfloat(st.time_total, <=, took);
+    /* A busy machine may keep the last pass waiting. */
+    g_assert_cmpfloat(took, <, 0.4 * 1.2 + 0.5);
+}
+
+static void test_noise_is_reached(void)
+{
+    g_autoptr(scene) s = scene_of(SMALL_ROOM);
+    g_autoptr(render) r = render_of(s, "integrator=path spp=4 noise=0.05");
+    g_assert_true(render_run(r, NULL, NULL, NULL));
+    const render_statistics st = render_get_statistics(r);
+    g_test_message("%" G_GINT64_FORMAT " passes to %g", st.passes, st.noise);
+    g_assert_cmpint(st.stopped_by, ==, RENDER_NOISE_REACHED);
+    g_assert_cmpfloat(st.noise, <=, 0.05);
+    g_assert_cmpfloat(st.noise, >, 0.03);
+}
+
+/* ---- The same bits ---- */
+
+typedef struct interruption {
+    int64_t passes;  /* stop when so many are done ... */
+    double fraction; /* ... and at least this share of all */
+} interruption;
+
+static bool interrupt(double fraction, const render_statistics *st, void *data)
+{
+    const interruption *when = data;
+    return st->passes < when->passes || fraction < when->fraction;
+}
+
+/* Renders until the interruption comes. */
+static void run_until(render *r, interruption when)
+{
+    g_autoptr(GError) error = NULL;
+    g_assert_false(render_run(r, interrupt, &when, &error));
+    g_assert_error(error, error_quark(), ERROR_CANCELLED);
+    g_assert_cmpint(render_get_statistics(r).stopped_by, ==, RENDER_CANCELLED);
+}
+
+/* After n of at most 12 passes: one image, whatever ended the render and whether it was
+   taken up again. */
+static void test_stopping_changes_nothing(void)
+{
+    const char *ways[] = {"integrator=path spp=2",
+                          "photons=3000 spp=1 final_gather=on "
+                          "gather_rays=4",
+                          "integrator=auto photons=2000 spp=1"};
+    g_autoptr(scene) s =
+        scene_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS GLASS_BALL);
+    for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
+        g_autofree char *plain = g_strconcat(ways[i], " passes=6", NULL);
+        g_autofree char *noisy =
+            g_strconcat(ways[i], " passes=6 noise=1 threads=3", NULL);
+        g_autoptr(render) straight = render_of(s, plain), broken = render_of(s, plain),
+                          by_noise = render_of(s, noisy);
+        g_assert_true(render_run(straight, NULL, NULL, NULL));
+        g_assert_true(render_run(by_noise, NULL, NULL, NULL));
+        run_until(broken, (interruption){4, 0.0});
+        g_assert_cmpint(render_get_statistics(by_noise).stopped_by, ==,
+                        RENDER_NOISE_REACHED);
+        g_autoptr(image) four = image_of(broken), also_four = image_of(by_noise);
+        assert_same_bits(four, also_four);
+        g_assert_true(render_run(broken, NULL, NULL, NULL));
+        g_autoptr(image) six = image_of(straight), also_six = image_of(broken);
+        assert_same_bits(six, also_six);
+    }
+}
+
+/* A pass given up halfway leaves no trace in the picture. */
+static void test_half_a_pass_is_no_pass(void)
+{
+    g_autoptr(scene) s =
+        scene_of(ROOM_CAMERA SIZE(96) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    const char *how = "integrator=path passes=2 spp=64 threads=2";
+    g_autoptr(render) straight = render_of(s, how), broken = render_of(s, how);
+    run_until(straight, (interruption){1, 0.0});
+    run_until(broken, (interruption){1, 0.0});
+    run_until(broken, (interruption){1, 0.51});
+    g_assert_cmpint(render_get_statistics(broken).passes, ==, 1);
+    g_autoptr(image) one = image_of(straight), also_one = image_of(broken);
+    assert_same_bits(one, also_one);
+    g_assert_true(render_run(straight, NULL, NULL, NULL));
+    g_assert_true(render_run(broken, NULL, NULL, NULL));
+    g_autoptr(image) two = image_of(straight), also_two = image_of(broken);
+    assert_same_bits(two, also_two);
+}
+
+/* ---- Progress ---- */
+
+typedef struct listener {
+    const render *render;
+    int calls, calls_before_first, images;
+    double last;
+} listener;
+
+static bool listen(double fraction, const render_statistics *st, void *data)
+{
+    listener *l = data;
+    l->calls++;
+    l->calls_before_first += st->passes == 0;
+    g_assert_cmpfloat(fraction, >=, l->last - 1e-9);
+    g_assert_cmpfloat(fraction, <=, 1.0);
+    l->last = fraction;
+    if (st->passes > l->images) {
+        g_autoptr(image) img = image_of(l->render);
+        g_assert_cmpfloat(mean_of(img, ""), >, 0.1);
+        l->images++;
+    }
+    return true;
+}
+
+static void test_progress_while_photons_fly(void)
+{
+    g_autoptr(scene) s =
+        scene_of(ROOM_CAMERA SIZE(4) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    g_autoptr(render) r = render_of(s, "passes=2 spp=1 photons=1000000 radius=0.1");
+    listener l = {.render = r};
+    g_assert_true(render_run(r, listen, &l, NULL));
+    g_assert_cmpint(l.images, ==, 2);
+    g_assert_cmpint(l.calls_before_first, >=, 1);
+    g_assert_cmpfloat_with_epsilon(l.last, 1.0, 1e-12);
+}
+
+static gpointer cancel_soon(gpointer data)
+{
+    g_usleep(100000);
+    render_cancel(data);
+    return NULL;
+}
+
+/* Seconds from a cancel out of the blue to the end of the render. */
+static double time_to_cancel(const scene *s, const char *words)
+{
+    g_autoptr(render) r = render_of(s, words);
+    g_autoptr(GError) error = NULL;
+    GThread *thread = g_thread_new("cancel", cancel_soon, r);
+    double start = (double)g_get_monotonic_time() * 1e-6;
+    g_assert_false(render_run(r, NULL, NULL, &error));
+    double took = (double)g_get_monotonic_time() * 1e-6 - start - 0.1;
+    g_assert_error(error, error_quark(), ERROR_CANCELLED);
+    g_thread_join(thread);
+    g_test_message("%s: %g s", words, took);
+    return took;
+}
+
+/* 0.2 s on a machine that has nothing else to do. */
+static void test_cancel_is_quick(void)
+{
+    g_autoptr(scene) s = scene_of(ROOM_CAMERA SIZE(256) "WorldBegin\n" ROOM_LAMP("")
+                                      ROOM_WALLS GLASS_BALL);
+    const char *const ways[] = {
+        "integrator=path spp=65536",
+        "photons=1000000000",
+        "photons=20000 final_gather=on gather_rays=1000 precompute_radiance=off spp=64",
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(ways); i++)
+        g_assert_cmpfloat(time_to_cancel(s, ways[i]), <, 2.0);
+}
+
+/* ---- The error it claims ---- */
+
+/* film_noise's measure, of an image against a reference. */
+static double relative_error(const image *img, const image *reference)
+{
+    static const double y[3] = {0.2126, 0.7152, 0.0722};
+    size_t n = pixels_of(img);
+    g_autofree double *truth = g_new0(double, n), *off = g_new0(double, n);
+    double mean = 0, capped = 0, sum = 0;
+    for (size_t i = 0; i < n; i++) {
+        for (size_t c = 0; c < 3; c++) {
+            truth[i] += y[c] * at(reference, i, c);
+            off[i] += y[c] * (at(img, i, c) - at(reference, i, c));
+        }
+        mean += truth[i] / (double)n;
+    }
+    for (size_t i = 0; i < n; i++)
+        capped += fmin(truth[i], mean) / (double)n;
+    for (size_t i = 0; i < n; i++)
+        sum += off[i] * off[i] / (truth[i] * truth[i] + 0.01 * capped * capped);
+    return sqrt(sum / (double)n);
+}
+
+typedef struct noise_case {
+    const char *name, *world, *how, *reference;
+} noise_case;
+
+/* Fixed radii: the noise is that of the light, without what the radius blurs. */
+static const noise_case noise_cases[] = {
+    {"path", ROOM_LAMP("") ROOM_WALLS, "integrator=path passes=16 spp=1",
+     "integrator=path passes=256 spp=4"},
+    {"photonmap", ROOM_LAMP("") ROOM_WALLS,
+     "passes=16 spp=1 photons=3000 radius=0.2 alpha=1",
+     "passes=256 spp=1 photons=3000 radius=0.2 alpha=1"},
+    {"caustic", ROOM_LAMP("") ROOM_WALLS GLASS_BALL,
+     "integrator=auto passes=16 spp=1 photons=2000 radius=0.1 alpha=1",
+     "integrator=auto passes=256 spp=1 photons=2000 radius=0.1 alpha=1"},
+};
+
+static void test_noise_is_honest(gconstpointer data)
+{
+    enum { SEEDS = 4 };
+    const noise_case *c = data;
+    g_autofree char *text =
+        g_strconcat(ROOM_CAMERA SIZE(12) "WorldBegin\n", c->world, NULL);
+    g_autoptr(scene) s = scene_of(text);
+    g_autofree char *long_run = g_strconcat(c->reference, " seed=99", NULL);
+    g_autoptr(image) reference = render_with(s, long_run);
+    double claimed2 = 0, made2 = 0;
+    for (int seed = 0; seed < SEEDS; seed++) {
+        g_autofree char *words = g_strdup_printf("%s seed=%d", c->how, seed);
+        g_autoptr(render) r = render_of(s, words);
+        g_assert_true(render_run(r, NULL, NULL, NULL));
+        g_autoptr(image) img = image_of(r);
+        double claimed = render_get_statistics(r).noise;
+        double made = relative_error(img, reference);
+        g_test_message("%s: claimed %g, made %g", c->name, claimed, made);
+        claimed2 += claimed * claimed;
+        made2 += made * made;
+    }
+    double ratio = sqrt(claimed2 / made2);
+    g_test_message("%s: %g", c->name, ratio);
+    g_assert_cmpfloat(ratio, >, 1 / 1.5);
+    g_assert_cmpfloat(ratio, <, 1.5);
+}
+
+static double luminance_at(const image *img, size_t pixel)
+{
+    return 0.2126 * at(img, pixel, 0) + 0.7152 * at(img, pixel, 1) +
+           0.0722 * at(img, pixel, 2);
+}
+
+/* Over many seeds the squares of the errors are, on the mean over pixels, what variance.Y
+   says. Both are taken relative to the brightness: at the lamp's edge, where the samples
+   of a pixel fill it evenly, the scatter of passes overstates the error. */
+static void test_variance_layer(void)
+{
+    enum { SEEDS = 40, PIXELS = 64 };
+    double sum[PIXELS] = {0}, sum2[PIXELS] = {0}, layer[PIXELS] = {0};
+    g_autoptr(scene) s =
+        scene_of(ROOM_CAMERA SIZE(8) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    for (int seed = 0; seed < SEEDS; seed++) {
+        g_autofree char *words =
+            g_strdup_printf("passes=8 spp=1 photons=2000 radius=0.2 seed=%d", seed);
+        g_autoptr(image) img = render_with(s, words);
+        size_t variance = channel_of(img, "variance.Y");
+        for (size_t i = 0; i < PIXELS; i++) {
+            double y = luminance_at(img, i);
+            sum[i] += y;
+            sum2[i] += y * y;
+            layer[i] += at(img, i, variance);
+        }
+    }
+    double claimed = 0, found = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        double mean = sum[i] / SEEDS;
+        found += (sum2[i] - sum[i] * mean) / (SEEDS - 1) / (mean * mean);
+        claimed += layer[i] / SEEDS / (mean * mean);
+    }
+    g_test_message("claimed %g, found %g", claimed, found);
+    g_assert_cmpfloat(claimed / found, >, 0.75);
+    g_assert_cmpfloat(claimed / found, <, 1.33);
+}
+
+static void test_one_pass_claims_nothing(void)
+{
+    g_autoptr(scene) s = scene_of(SMALL_ROOM);
+    g_autoptr(render) r = render_of(s, "integrator=path passes=1 spp=1");
+    g_assert_true(render_run(r, NULL, NULL, NULL));
+    g_autoptr(image) img = image_of(r);
+    g_assert_cmpint(image_channel(img, "variance.Y"), ==, -1);
+    g_assert_true(isinf(render_get_statistics(r).noise));
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/render/stop/rules", test_rules);
+    g_test_add_func("/render/stop/fraction", test_fraction);
+    g_test_add_func("/render/stop/time", test_time_is_kept);
+    g_test_add_func("/render/stop/noise", test_noise_is_reached);
+    g_test_add_func("/render/bits/stopping", test_stopping_changes_nothing);
+    g_test_add_func("/render/bits/half-a-pass", test_half_a_pass_is_no_pass);
+    g_test_add_func("/render/progress/photons", test_progress_while_photons_fly);
+    g_test_add_func("/render/progress/cancel", test_cancel_is_quick);
+    for (size_t i = 0; i < G_N_ELEMENTS(noise_cases); i++) {
+        g_autofree char *path = g_strconcat("/render/noise/", noise_cases[i].name, NULL);
+        g_test_add_data_func(path, &noise_cases[i], test_noise_is_honest);
+    }
+    g_test_add_func("/render/noise/variance", test_variance_layer);
+    g_test_add_func("/render/noise/one-pass", test_one_pass_claims_nothing);
+    return g_test_run();
+}
