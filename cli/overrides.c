@@ -22,6 +22,8 @@ static bool apply_flag(NephSettings *settings, const char *name, const char *val
 
 bool overrides_apply(const overrides *o, NephSettings *settings, GError **error)
 {
+    if ((o->time || o->noise) && !neph_settings_set(settings, "passes", "0", error))
+        return false;
     if (o->file && !neph_settings_load(settings, o->file, error))
         return false;
     for (char **pair = o->set; pair && *pair; pair++)
@@ -29,6 +31,8 @@ bool overrides_apply(const overrides *o, NephSettings *settings, GError **error)
             return false;
     return apply_flag(settings, "integrator", o->integrator, error) &&
            apply_flag(settings, "passes", o->passes, error) &&
+           apply_flag(settings, "time", o->time, error) &&
+           apply_flag(settings, "noise", o->noise, error) &&
            apply_flag(settings, "spp", o->spp, error) &&
            apply_flag(settings, "threads", o->threads, error) &&
            apply_flag(settings, "seed", o->seed, error);

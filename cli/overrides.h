@@ -2,6 +2,8 @@
  * Settings from the command line, over those of the scene.
  *
  *   scene file < --settings FILE < --set name=value in their order < --spp and the like
+ *
+ * With --time or --noise the scene's own number of passes is no limit.
  */
 #pragma once
 
@@ -9,9 +11,10 @@
 
 /** @brief The options as given; zero: none. */
 typedef struct overrides {
-    char *file;                                       /**< --settings */
-    char **set;                                       /**< --set, "name=value" */
-    char *integrator, *passes, *spp, *threads, *seed; /**< NULL: not given */
+    char *file; /**< --settings */
+    char **set; /**< --set, "name=value" */
+    char *integrator, *passes, *time, *noise, *spp, *threads,
+        *seed; /**< NULL: not given */
 } overrides;
 
 /** @brief Puts them over the settings. Errors name the option. */

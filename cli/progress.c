@@ -10,11 +10,10 @@ enum { BAR_WIDTH = 30 };
 static const int64_t bar_interval = G_USEC_PER_SEC / 10;
 static const int64_t line_interval = 10 * G_USEC_PER_SEC;
 
-progress progress_begin(bool quiet, int64_t n_passes)
+progress progress_begin(bool quiet)
 {
     return (progress){.quiet = quiet,
                       .on_terminal = isatty(STDERR_FILENO),
-                      .n_passes = n_passes,
                       .start = g_get_monotonic_time()};
 }
 
@@ -29,14 +28,22 @@ static char *clock_text(double seconds)
 }
 
 /* "pass 3 of 16, 0:12 left"; too early no time is told. */
-static char *state_text(const progress *p, double fraction, int64_t passes, int64_t now)
+static char *state_text(const progress *p, double fraction, const NephStatistics *so_far,
+                        int64_t now)
 {
+    GString *out = g_string_new("pass ");
+    const int64_t passes = so_far->passes, wanted = so_far->passes_wanted;
+    if (wanted)
+        g_string_append_printf(out, "%" G_GINT64_FORMAT " of %" G_GINT64_FORMAT,
+                               MIN(passes + 1, wanted), wanted);
+    else
+        g_string_append_printf(out, "%" G_GINT64_FORMAT, passes + 1);
     double elapsed = (double)(now - p->start) / G_USEC_PER_SEC;
-    g_autofree char *left = clock_text(elapsed * (1.0 - fraction) / MAX(fraction, 1e-9));
-    const bool known = fraction > 0.01 || (fraction > 0.0 && elapsed > 2.0);
-    return g_strdup_printf("pass %" G_GINT64_FORMAT " of %" G_GINT64_FORMAT "%s%s%s",
-                           MIN(passes + 1, p->n_passes), p->n_passes, known ? ", " : "",
-                           known ? left : "", known ? " left" : "");
+    if (fraction > 0.01 || (fraction > 0.0 && elapsed > 2.0)) {
+        g_autofree char *left = clock_text(elapsed * (1.0 - fraction) / fraction);
+        g_string_append_printf(out, ", %s left", left);
+    }
+    return g_string_free(out, FALSE);
 }
 
 static void draw_bar(double fraction, const char *state)
@@ -60,7 +67,7 @@ bool progress_show(double fraction, const NephStatistics *statistics, void *data
                          : tenths > p->shown_tenths || quiet_for >= line_interval;
     if (p->quiet || !due)
         return true;
-    g_autofree char *state = state_text(p, done, statistics->passes, now);
+    g_autofree char *state = state_text(p, done, statistics, now);
     if (p->on_terminal)
         draw_bar(done, state);
     else

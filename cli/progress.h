@@ -9,13 +9,12 @@
 typedef struct progress {
     bool quiet;       /**< says nothing */
     bool on_terminal; /**< stderr is one */
-    int64_t n_passes; /**< to come */
     int64_t start;    /**< monotonic µs */
     int64_t shown_at; /**< monotonic µs of the last word, 0: none yet */
     int shown_tenths; /**< of the last line */
 } progress;
 
-progress progress_begin(bool quiet, int64_t n_passes);
+progress progress_begin(bool quiet);
 /** @brief A NephProgressFunc; data: progress. Never stops the render. */
 bool progress_show(double fraction, const NephStatistics *statistics, void *data);
 /** @brief Removes the bar. */

@@ -7,13 +7,14 @@
 #include "message.h"
 #include "overrides.h"
 #include "progress.h"
+#include "snapshots.h"
 #include "stop.h"
 
 #include <string.h>
 
 static struct {
     char **outputs;
-    char *size, *exposure, *stats;
+    char *size, *exposure, *stats, *every;
     gboolean quiet;
     overrides settings;
 } given;
@@ -30,6 +31,12 @@ static const GOptionEntry entries[] = {
      "Camera samples a pixel in each pass", "N"},
     {"passes", 0, 0, G_OPTION_ARG_STRING, &given.settings.passes, "Number of passes",
      "N"},
+    {"time", 0, 0, G_OPTION_ARG_STRING, &given.settings.time,
+     "Stop after so many seconds, when a pass is done", "SECONDS"},
+    {"noise", 0, 0, G_OPTION_ARG_STRING, &given.settings.noise,
+     "Stop when the estimated relative error is below this", "X"},
+    {"every", 0, 0, G_OPTION_ARG_STRING, &given.every,
+     "Write the image every N passes, or as 30s every so many seconds", "N|Ns"},
     {"integrator", 0, 0, G_OPTION_ARG_STRING, &given.settings.integrator,
      "photonmap or path", "NAME"},
     {"threads", 'j', 0, G_OPTION_ARG_STRING, &given.settings.threads,
@@ -53,8 +60,10 @@ static const usage how = {
         "Without -o the image goes where the scene's Film says, else to the scene's "
         "name with\n.exr in the current folder.\n\n"
         "Settings: the scene's are overridden by --settings, these by --set in the "
-        "order given,\nthese by --spp, --passes, --integrator, --threads and --seed. "
-        "'nephroid settings' lists\nthem all.\n\n"
+        "order given,\nthese by --spp, --passes, --time, --noise, --integrator, "
+        "--threads "
+        "and --seed.\n'nephroid settings' lists them all. With --time or --noise the "
+        "scene's own number of\npasses is no limit; --passes N is.\n\n"
         "Ctrl-C writes what there is and exits with 3; a second one ends at once.\n",
     .entries = entries};
 
@@ -65,6 +74,7 @@ typedef struct job {
     int width, height; /* 0: the scene's */
     float exposure;
     unsigned threads;
+    snapshots snapshots;
 } job;
 
 static bool check_outputs(char **outputs, GError **error)
@@ -83,6 +93,7 @@ static bool job_init(job *j, const char *scene_file, GError **error)
                  argument_size("--size", given.size, &j->width, &j->height, error)) &&
                 (!given.exposure ||
                  argument_real("--exposure", given.exposure, &exposure, error)) &&
+                snapshots_init(&j->snapshots, given.every, error) &&
                 overrides_check(&given.settings, &j->threads, error) &&
                 check_outputs(j->outputs, error) &&
                 (!given.stats || neph_file_can_write(given.stats, error));
@@ -115,7 +126,7 @@ static bool choose_outputs(job *j, const NephScene *scene, GError **error)
     return false;
 }
 
-static NephRender *prepare(job *j, NephScene *scene, int64_t *n_passes, GError **error)
+static NephRender *prepare(job *j, NephScene *scene, GError **error)
 {
     g_autoptr(NephSettings) settings = neph_scene_settings(scene);
     NephRender *render = NULL;
@@ -123,12 +134,10 @@ static NephRender *prepare(job *j, NephScene *scene, int64_t *n_passes, GError *
         (!j->width || neph_scene_resize(scene, j->width, j->height, error)) &&
         choose_outputs(j, scene, error))
         render = neph_render_new(scene, settings, error);
-    g_autofree char *passes = neph_settings_get(settings, "passes");
-    *n_passes = g_ascii_strtoll(passes, NULL, 10);
     return render;
 }
 
-static int write_images(const job *j, const NephRender *render)
+static int write_images(const job *j, const NephRender *render, bool quiet)
 {
     g_autoptr(GError) error = NULL;
     g_autoptr(NephImage) image = neph_render_image(render, &error);
@@ -139,7 +148,7 @@ static int write_images(const job *j, const NephRender *render)
         g_autoptr(GError) refused = NULL;
         if (!neph_image_write(image, *path, j->exposure, &refused))
             result = report_error(refused);
-        else if (!given.quiet)
+        else if (!quiet)
             print_result("wrote %s\n", *path);
     }
     return result;
@@ -159,8 +168,7 @@ static int write_statistics(const NephRender *render)
 }
 
 /* Tells why the render ended early. @return whether there is something to write. */
-static bool report_end(const NephRender *render, int64_t n_passes, const GError *error,
-                       int *exit_code)
+static bool report_end(const NephRender *render, const GError *error, int *exit_code)
 {
     NephStatistics statistics;
     neph_render_statistics(render, &statistics);
@@ -169,24 +177,42 @@ static bool report_end(const NephRender *render, int64_t n_passes, const GError 
         return statistics.passes > 0;
     }
     *exit_code = EXIT_FAILED;
-    say("stopped by %s after %" G_GINT64_FORMAT " of %" G_GINT64_FORMAT
-        " passes; writing what there is",
-        stop_reason() ? stop_reason() : "request", statistics.passes, n_passes);
+    g_autofree char *wanted =
+        statistics.passes_wanted
+            ? g_strdup_printf(" of %" G_GINT64_FORMAT, statistics.passes_wanted)
+            : g_strdup("");
+    say("stopped by %s after %" G_GINT64_FORMAT "%s passes; writing what there is",
+        stop_reason() ? stop_reason() : "request", statistics.passes, wanted);
     return true;
 }
 
-static int run(const job *j, NephRender *render, int64_t n_passes)
+/* What is told of a render under way. */
+typedef struct watch {
+    job *job;
+    const NephRender *render;
+    progress shown;
+} watch;
+
+static bool look_on(double fraction, const NephStatistics *statistics, void *data)
+{
+    watch *w = data;
+    if (snapshots_due(&w->job->snapshots, statistics->passes))
+        write_images(w->job, w->render, true);
+    return progress_show(fraction, statistics, &w->shown);
+}
+
+static int run(job *j, NephRender *render)
 {
     g_autoptr(GError) error = NULL;
     int ended = EXIT_DONE;
-    progress shown = progress_begin(given.quiet, n_passes);
+    watch w = {j, render, progress_begin(given.quiet)};
     stop_watch(render);
-    bool done = neph_render_run(render, progress_show, &shown, &error);
+    bool done = neph_render_run(render, look_on, &w, &error);
     stop_unwatch();
-    progress_end(&shown);
-    if (!done && !report_end(render, n_passes, error, &ended))
+    progress_end(&w.shown);
+    if (!done && !report_end(render, error, &ended))
         return ended;
-    int images = write_images(j, render);
+    int images = write_images(j, render, given.quiet);
     int statistics = write_statistics(render);
     return ended ? ended : images ? images : statistics;
 }
@@ -199,9 +225,8 @@ static int render_scene(job *j)
         neph_scene_load(j->scene_file, j->threads, log_to_stderr, &quiet, &error);
     if (!scene)
         return report_error(error);
-    int64_t n_passes;
-    g_autoptr(NephRender) render = prepare(j, scene, &n_passes, &error);
-    return render ? run(j, render, n_passes) : report_error(error);
+    g_autoptr(NephRender) render = prepare(j, scene, &error);
+    return render ? run(j, render) : report_error(error);
 }
 
 int command_render(int argc, char **argv)

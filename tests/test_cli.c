@@ -37,7 +37,7 @@ static void test_bad_usage(folder *f, gconstpointer data)
         {"render box.pbrt --frobnicate", "--frobnicate"},
         {"render box.pbrt --spp 4x", "'spp': expected a whole number"},
         {"render box.pbrt --spp 4.5", "'spp'"},
-        {"render box.pbrt --passes 0", "'passes'"},
+        {"render box.pbrt --passes -1", "'passes'"},
         {"render box.pbrt --seed -1", "'seed'"},
         {"render box.pbrt --threads many", "'threads'"},
         {"render box.pbrt --integrator magic", "expected one of photonmap, path"},

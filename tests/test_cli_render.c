@@ -84,6 +84,87 @@ static void test_order_of_settings(folder *f, gconstpointer data)
     }
 }
 
+/* ---- When it ends ---- */
+
+static void test_stops_by_rules(folder *f, gconstpointer data)
+{
+    (void)data;
+    static const struct {
+        const char *arguments, *stopped_by;
+        double least, most;
+    } cases[] = {
+        {"--passes 3", "\"passes\"", 3, 3},
+        {"--set passes=0", "\"passes\"", 16, 16},
+        {"--noise 1", "\"noise\"", 4, 4}, /* the scene's two passes are no limit */
+        {"--noise 1e-9 --passes 5", "\"passes\"", 5, 5},
+        {"--time 0.2", "\"time\"", 1, 1e9},
+        {"--time 1e6 --set passes=3", "\"passes\"", 3, 3},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autofree char *line = g_strdup_printf(
+            "render box.pbrt -q --size 4x4 --stats s.json %s", cases[i].arguments);
+        run_well(f, line);
+        g_autofree char *json = folder_read(f, "s.json");
+        const double passes = json_find_number(json, "passes");
+        g_test_message("%s: %g passes", cases[i].arguments, passes);
+        g_assert_true(json_is_valid(json));
+        contains(strstr(json, "stopped_by"), cases[i].stopped_by);
+        g_assert_cmpfloat(passes, >=, cases[i].least);
+        g_assert_cmpfloat(passes, <=, cases[i].most);
+    }
+}
+
+/* Looks at the image of a render under way until it has changed so often; each time it
+   must be whole. */
+static void test_every(folder *f, gconstpointer data)
+{
+    enum { CHANGES = 3, TRIES = 6000 };
+    (void)data;
+    g_autofree char *path = g_build_filename(f->path, "a.pfm", NULL);
+    const char *arguments[] = {run_program(), "render",  "box.pbrt", "-q",
+                               "-o",          "a.pfm",   "--every",  "0.05s",
+                               "--passes",    "1000000", NULL};
+    GPid child;
+    g_assert_true(g_spawn_async(f->path, (char **)arguments, NULL,
+                                G_SPAWN_DO_NOT_REAP_CHILD, NULL, NULL, &child, NULL));
+    g_autofree char *last = NULL;
+    gsize size = 0, first_size = 0;
+    int changes = 0;
+    for (int tries = 0; tries < TRIES && changes < CHANGES; tries++) {
+        g_autofree char *now = NULL;
+        g_usleep(5000);
+        if (!g_file_get_contents(path, &now, &size, NULL))
+            continue;
+        first_size = first_size ? first_size : size;
+        g_assert_cmpuint(size, ==, first_size);
+        if (!last || memcmp(now, last, size) != 0) {
+            changes++;
+            g_free(last);
+            last = g_steal_pointer(&now);
+        }
+    }
+    int status;
+    kill(child, SIGINT);
+    g_assert_cmpint(waitpid(child, &status, 0), ==, child);
+    g_assert_cmpint(changes, ==, CHANGES);
+    g_assert_cmpuint(first_size, >=, 16 * 12 * 3 * sizeof(float));
+    g_assert_cmpint(WEXITSTATUS(status), ==, 3);
+    g_assert_cmpuint(folder_count(f), ==, 2);
+}
+
+static void test_every_is_read(folder *f, gconstpointer data)
+{
+    (void)data;
+    const char *const wrong[] = {"0", "-1", "s", "1.5", "0s", "3m", "''", "1e99s"};
+    for (size_t i = 0; i < G_N_ELEMENTS(wrong); i++) {
+        g_autofree char *line = g_strdup_printf("render box.pbrt --every=%s", wrong[i]);
+        g_auto(result) r = run(f, line);
+        g_assert_cmpint(r.code, ==, 2);
+        contains(r.err, "--every: expected a number of passes");
+    }
+    run_well(f, "render box.pbrt -q --every 1");
+}
+
 /* ---- Ctrl-C ---- */
 
 static int open_terminal(char **name)
@@ -211,6 +292,9 @@ int main(int argc, char **argv)
     folder_add_test("/cli/quiet", test_quiet_is_quiet);
     folder_add_test("/cli/named", test_scene_names_the_output);
     folder_add_test("/cli/order", test_order_of_settings);
+    folder_add_test("/cli/render/stops-by-rules", test_stops_by_rules);
+    folder_add_test("/cli/render/every", test_every);
+    folder_add_test("/cli/render/every-is-read", test_every_is_read);
     g_test_add("/cli/interrupt", folder, GINT_TO_POINTER(SIGINT), folder_set_up,
                test_ctrl_c_writes, folder_tear_down);
     g_test_add("/cli/terminate", folder, GINT_TO_POINTER(SIGTERM), folder_set_up,
