@@ -29,22 +29,28 @@ static uint32_t owen_scramble(uint32_t x, uint32_t seed)
     return reverse_bits(laine_karras(reverse_bits(x), seed));
 }
 
-/* The second Sobol dimension: its generator matrix is Pascal's triangle mod 2, which
-   factors into five shift-and-xor steps over the bits, most significant first. */
-static uint32_t sobol_second(uint32_t index)
+/* The second Sobol dimension, bits reversed: its generator matrix is Pascal's triangle
+   mod 2, which factors into five shift-and-xor steps over the bits. */
+static uint32_t sobol_second_reversed(uint32_t index)
 {
-    uint32_t x = reverse_bits(index);
-    x ^= (x & 0x0000ffffu) << 16;
-    x ^= (x & 0x00ff00ffu) << 8;
-    x ^= (x & 0x0f0f0f0fu) << 4;
-    x ^= (x & 0x33333333u) << 2;
-    x ^= (x & 0x55555555u) << 1;
-    return x;
+    uint32_t x = index;
+    x ^= x >> 16;
+    x ^= (x & 0xff00ff00u) >> 8;
+    x ^= (x & 0xf0f0f0f0u) >> 4;
+    x ^= (x & 0xccccccccu) >> 2;
+    return x ^ (x & 0xaaaaaaaau) >> 1;
 }
 
 static float to_unit(uint32_t x)
 {
     return (float)(x >> 8) * 0x1p-24f;
+}
+
+/* An Owen scramble of what is given with its bits reversed, as both dimensions are: the
+   index itself is the first one so. */
+static float scrambled(uint32_t reversed, uint32_t seed)
+{
+    return to_unit(reverse_bits(laine_karras(reversed, seed)));
 }
 
 float sampler_1d(sampler *s)
@@ -53,7 +59,7 @@ float sampler_1d(sampler *s)
     if (s->dimension > SOBOL_DIMENSIONS)
         return to_unit((uint32_t)hash_mix(h, s->index));
     uint32_t shuffled = owen_scramble(s->index, (uint32_t)h);
-    return to_unit(owen_scramble(reverse_bits(shuffled), (uint32_t)(h >> 32)));
+    return scrambled(shuffled, (uint32_t)(h >> 32));
 }
 
 vec2 sampler_2d(sampler *s)
@@ -67,6 +73,6 @@ vec2 sampler_2d(sampler *s)
     uint32_t shuffled = owen_scramble(s->index, (uint32_t)h);
     uint32_t scramble = (uint32_t)(h >> 32);
     return (vec2){
-        to_unit(owen_scramble(reverse_bits(shuffled), scramble)),
-        to_unit(owen_scramble(sobol_second(shuffled), scramble * 0x9e3779b9u + 1u))};
+        scrambled(shuffled, scramble),
+        scrambled(sobol_second_reversed(shuffled), scramble * 0x9e3779b9u + 1u)};
 }
