@@ -3,6 +3,7 @@
  */
 #include "color/fit.h"
 #include "color/table.h"
+#include "math/vec.h"
 
 #include <string.h>
 
@@ -24,7 +25,7 @@ void smooth_from_rgb(const color_space *space, const float rgb[3], float coeffic
 {
     float c[3];
     for (int i = 0; i < 3; i++)
-        c[i] = rgb[i] > 0.0f ? fminf(rgb[i], 1.0f) : 0.0f;
+        c[i] = rgb[i] > 0.0f ? minf(rgb[i], 1.0f) : 0.0f;
     if (smooth_is_grey(c)) {
         smooth_solve(space, c, coefficients);
         return;

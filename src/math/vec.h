@@ -10,6 +10,9 @@
 /** @brief A point, vector or normal: x, y, z and an unused lane. 16 bytes, 16-aligned. */
 typedef float vec3 __attribute__((vector_size(16)));
 
+/** @brief The bits of a vec3, or the outcome of a comparison: each lane 0 or -1. */
+typedef int vec3_bits __attribute__((vector_size(16)));
+
 /** @brief Two plain floats: a random pair, a texture coordinate, a raster position. */
 typedef struct vec2 {
     float x, y;
@@ -80,22 +83,29 @@ static inline float max_component3(vec3 a)
 
 static inline vec3 abs3(vec3 a)
 {
-    return vec3_make(fabsf(a[0]), fabsf(a[1]), fabsf(a[2]));
+    return (vec3)((vec3_bits)a & 0x7fffffff);
+}
+
+/** @brief a where the mask is set, else b. */
+static inline vec3 choose3(vec3_bits mask, vec3 a, vec3 b)
+{
+    return (vec3)(((vec3_bits)a & mask) | ((vec3_bits)b & ~mask));
 }
 
 static inline vec3 min3(vec3 a, vec3 b)
 {
-    return vec3_make(minf(a[0], b[0]), minf(a[1], b[1]), minf(a[2], b[2]));
+    return choose3(a < b, a, b);
 }
 
 static inline vec3 max3(vec3 a, vec3 b)
 {
-    return vec3_make(maxf(a[0], b[0]), maxf(a[1], b[1]), maxf(a[2], b[2]));
+    return choose3(a > b, a, b);
 }
 
 static inline bool finite3(vec3 a)
 {
-    return isfinite(a[0]) && isfinite(a[1]) && isfinite(a[2]);
+    vec3 zero = a * 0.0f;
+    return isfinite(zero[0] + zero[1] + zero[2]);
 }
 
 static inline float clampf(float x, float low, float high)

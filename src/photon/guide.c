@@ -112,12 +112,12 @@ float emission_guide_draw(const emission_guide *guide, sampler *random,
         const guide_node *first = node_at(guide, node->child);
         float p = (float)(first->mass / node->mass), *x = &u[node->axis];
         bool second = *x >= p;
-        *x = fminf(second ? (*x - p) / (1.0f - p) : *x / p, 0x1.fffffep-1f);
+        *x = minf(second ? (*x - p) / (1.0f - p) : *x / p, 0x1.fffffep-1f);
         node = first + (second ? 1 : 0);
     }
     for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
         float below = nextafterf(node->high[a], 0.0f);
-        u[a] = fminf(lerpf(node->low[a], node->high[a], u[a]), below);
+        u[a] = minf(lerpf(node->low[a], node->high[a], u[a]), below);
     }
     return (float)(node->mass / volume(node));
 }

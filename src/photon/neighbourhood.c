@@ -88,5 +88,5 @@ float neighbourhood_coverage(const neighbourhood *hood, const kernel *k)
                     disc_point(hood, &f, sqrtf(r2), first + golden_angle * (float)i)))
             found += weight;
     }
-    return fmaxf(found / whole, LEAST_COVERAGE);
+    return maxf(found / whole, LEAST_COVERAGE);
 }

@@ -186,7 +186,7 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
     if (path->out && !spectrum_is_finite(flux))
         path->out->n_not_finite++;
     float survival =
-        fminf(1.0f, power_of(task->how, flux) / power_of(task->how, path->flux));
+        minf(1.0f, power_of(task->how, flux) / power_of(task->how, path->flux));
     if (!(u_roulette < survival)) {
         tell(path, PHOTON_ABSORBED, hit, 0);
         return false;

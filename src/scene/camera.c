@@ -92,7 +92,7 @@ void camera_resize(camera *c, int width, int height)
     c->width = width;
     c->height = height;
     float aspect = c->aspect > 0.0f ? c->aspect : (float)width / (float)height;
-    float x = fmaxf(aspect, 1.0f), y = fmaxf(1.0f / aspect, 1.0f);
+    float x = maxf(aspect, 1.0f), y = maxf(1.0f / aspect, 1.0f);
     const float fitted[4] = {-x, x, -y, y};
     for (int i = 0; i < 4; i++)
         c->screen[i] = c->half_screen * (c->has_window ? c->window[i] : fitted[i]);

@@ -64,7 +64,7 @@ static float eval_triangle(const profile *f, float x)
 static float eval_gaussian(const profile *f, float x)
 {
     float s = -0.5f / square(f->shape[0]);
-    return fmaxf(0.0f, expf(s * x * x) - expf(s * square(f->radius)));
+    return maxf(0.0f, expf(s * x * x) - expf(s * square(f->radius)));
 }
 
 static float eval_mitchell(const profile *f, float x)
@@ -130,7 +130,7 @@ static bool axis_init(axis *a, GError **error)
 static float invert_linear(float f0, float f1, float u)
 {
     float root = sqrtf(lerpf(f0 * f0, f1 * f1, u));
-    return f0 + root > 0.0f ? fminf(u * (f0 + f1) / (f0 + root), 1.0f) : u;
+    return f0 + root > 0.0f ? minf(u * (f0 + f1) / (f0 + root), 1.0f) : u;
 }
 
 static float axis_sample(const axis *a, float u, float *weight)

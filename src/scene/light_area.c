@@ -53,7 +53,7 @@ static float direction_pdf(const area_light *l, float cosine)
 {
     if (l->two_sided)
         return 0.5f * INV_PI_F * fabsf(cosine);
-    return INV_PI_F * fmaxf(0.0f, cosine);
+    return INV_PI_F * maxf(0.0f, cosine);
 }
 
 static light_bound bound(const void *self, const wavelengths *w)

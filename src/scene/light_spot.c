@@ -126,7 +126,7 @@ static vec3 sample_cone(const spot_light *l, vec2 u)
         float share = clampf((mass - l->inner) / (0.5f * width), 0.0f, 1.0f);
         y = l->outer - width * solve_fade(1.0f - share);
     }
-    float r = sqrtf(fmaxf(0.0f, y * (2.0f - y)));
+    float r = sqrtf(maxf(y * (2.0f - y), 0.0f));
     float phi = 2.0f * PI_F * u.y;
     return frame_to_world(&l->axis, vec3_make(r * cosf(phi), r * sinf(phi), 1.0f - y));
 }

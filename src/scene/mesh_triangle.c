@@ -50,7 +50,7 @@ double triangle_solid_angle(const triangle *t, vec3 ref)
 static dvec3 turn_toward(dvec3 axis, dvec3 v, double c)
 {
     dvec3 across = v - dvec3_dot(axis, v) * axis;
-    double s = sqrt(fmax(0.0, 1.0 - c * c));
+    double s = sqrt(MAX(1.0 - c * c, 0.0));
     return c * axis + s / dvec3_length(across) * across;
 }
 

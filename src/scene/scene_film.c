@@ -65,7 +65,7 @@ static bool read_pixel_bounds(const param *given, film_settings *film, GError **
     for (int i = 0; i < 2 && fits; i++) {
         int low = given->integers[2 * i], high = given->integers[2 * i + 1];
         fits = low >= 0 && low < high && high <= size[i];
-        film->crop[2 * i] = fmaxf(0.0f, ((float)low - 0.5f) / (float)size[i]);
+        film->crop[2 * i] = maxf(0.0f, ((float)low - 0.5f) / (float)size[i]);
         film->crop[2 * i + 1] = ((float)high - 0.5f) / (float)size[i];
     }
     if (!fits)

@@ -41,8 +41,8 @@ static void *create(const params *p, const shape_place *at, GError **error)
         return NULL;
     }
     cylinder *c = g_new(cylinder, 1);
-    *c = (cylinder){q, (double)radius, (double)fminf(z[0], z[1]),
-                    (double)fmaxf(z[0], z[1])};
+    *c = (cylinder){q, (double)radius, (double)minf(z[0], z[1]),
+                    (double)maxf(z[0], z[1])};
     double area = q.phi_max * c->radius * (c->z_max - c->z_min);
     if (quadric_set_area(&c->q, map_cylinder, area, p, error))
         return c;

@@ -58,8 +58,8 @@ static bool read_extent(sphere *s, const params *p, GError **error)
     if (!params_float(p, "zmin", &z[0], error) || !params_float(p, "zmax", &z[1], error))
         return false;
     s->radius = (double)radius;
-    s->z_min = (double)clampf(fminf(z[0], z[1]), -radius, radius);
-    s->z_max = (double)clampf(fmaxf(z[0], z[1]), -radius, radius);
+    s->z_min = (double)clampf(minf(z[0], z[1]), -radius, radius);
+    s->z_max = (double)clampf(maxf(z[0], z[1]), -radius, radius);
     s->theta_min = acos(s->z_min / s->radius);
     s->theta_max = acos(s->z_max / s->radius);
     return true;
@@ -174,8 +174,8 @@ static bool sample_toward(const void *self, vec3 ref, float u_primitive, vec2 u,
     }
     double x = (double)u.x * one_minus_cos(sin2_max), sin2 = x * (2.0 - x);
     double cos_alpha =
-        sin2 / sqrt(sin2_max) + (1.0 - x) * sqrt(fmax(0.0, 1.0 - sin2 / sin2_max));
-    float sin_alpha = (float)sqrt(fmax(0.0, 1.0 - cos_alpha * cos_alpha));
+        sin2 / sqrt(sin2_max) + (1.0 - x) * sqrt(MAX(1.0 - sin2 / sin2_max, 0.0));
+    float sin_alpha = (float)sqrt(MAX(1.0 - cos_alpha * cos_alpha, 0.0));
     float phi = 2.0f * PI_F * u.y;
     frame f =
         frame_from_normal(vec3_make((float)axis[0], (float)axis[1], (float)axis[2]));

@@ -189,7 +189,7 @@ static bool survives(camera_tree *tree, camera_branch *branch)
 {
     if (branch->n_followed < ROULETTE_BOUNCES)
         return true;
-    float p = fminf(1.0f, spectrum_mean(branch->beta) * branch->eta2);
+    float p = minf(1.0f, spectrum_mean(branch->beta) * branch->eta2);
     if (!(sampler_1d(tree->random) < p))
         return false;
     branch->beta /= p;

@@ -165,7 +165,7 @@ static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b,
         !bsdf_sample_direction(b, -path->ray.direction, u_lobe, u, LOBE_FOLLOWED,
                                TRANSPORT_RADIANCE, &next))
         return false;
-    float p = fminf(1.0f, spectrum_mean(next.weight) * next.eta * next.eta);
+    float p = minf(1.0f, spectrum_mean(next.weight) * next.eta * next.eta);
     if (!(u_roulette < p))
         return false;
     path->beta *= next.weight / p;
@@ -202,7 +202,7 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
                       float importance, sampler *random, transport_scratch *scratch)
 {
     float wanted = ceilf((float)pass->how->gather_rays * clampf(importance, 0.0f, 1.0f));
-    uint32_t n = (uint32_t)fmaxf(1.0f, wanted);
+    uint32_t n = (uint32_t)maxf(1.0f, wanted);
     sampler own = sampler_split(random, 0x6761u);
     uint64_t key = hash_mix(own.key, own.index);
     spectrum sum = {0};

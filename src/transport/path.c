@@ -152,7 +152,7 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     count_bounce(path, next.lobe);
     if (path->bounces < ROULETTE_BOUNCES)
         return !spectrum_is_black(path->beta);
-    float p = fminf(1.0f, spectrum_mean(path->beta) * path->eta2);
+    float p = minf(1.0f, spectrum_mean(path->beta) * path->eta2);
     path->beta /= p;
     return sampler_1d(walk->random) < p;
 }

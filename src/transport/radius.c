@@ -59,7 +59,7 @@ static float nearest_distance(const photon_map *map, vec3 p, photon_hits *hits)
         return 0.0f;
     float d2 = 0.0f;
     for (size_t i = 0; i < hits->n; i++)
-        d2 = fmaxf(d2, hits->distance2[i]);
+        d2 = maxf(d2, hits->distance2[i]);
     return sqrtf(d2);
 }
 
