@@ -8,11 +8,12 @@
  *   with normals     the true normal is turned into the hemisphere of the interpolated
  *                    one; ReverseOrientation turns the normals given
  *
- * Hits are computed from barycentric weights in double precision. Embree itself works in
- * float on coordinates relative to the ray's origin; how far off the plane that may see a
- * ray that starts on it is bounded here per hit (field error), since the coordinates of
- * the hit alone do not tell: a large slanted triangle through the origin has hits with
- * tiny coordinates.
+ * True normals are computed once per triangle, in double precision, and kept: 16 bytes a
+ * triangle for two roots and divisions less at every hit. A hit's point is the mean of
+ * the corners by barycentric weights. Embree itself works in float on coordinates
+ * relative to the ray's origin; how far off the plane that may see a ray that starts on
+ * it is bounded here per hit (field error), since the coordinates of the hit alone do not
+ * tell: a large slanted triangle through the origin has hits with tiny coordinates.
  *
  * Toward a point a triangle is chosen by area, then sampled uniformly by solid angle; one
  * that looks tiny or fills nearly the hemisphere by area, where the former loses digits.
@@ -32,6 +33,8 @@ typedef struct mesh_shape {
     mesh m;
     bool flip; /* for triangles without normals */
     distribution areas;
+    vec3 *planes; /* per triangle: unit normal as the corners turn, and in the unused lane
+                     1 / |e1 x e2|, which tells slivers */
 } mesh_shape;
 
 void mesh_clear(mesh *m)
@@ -108,17 +111,31 @@ static void move_to_world(mesh *m, const shape_place *at)
     }
 }
 
-static bool init_areas(mesh_shape *s, GError **error)
+/* Degenerate triangles get any normal. */
+static vec3 plane_of(const triangle *t)
 {
-    float *areas = big_alloc(s->m.n_triangles, sizeof(float), "triangle areas", error);
+    double length = dvec3_length(t->cross);
+    vec3 n = vec3_make(0.0f, 0.0f, 1.0f);
+    if (length > 0.0)
+        n = dvec3_to_float(t->cross / length);
+    n[3] = (float)(1.0 / length);
+    return n;
+}
+
+static bool init_triangles(mesh_shape *s, GError **error)
+{
+    size_t n = s->m.n_triangles;
+    float *areas = big_alloc(n, sizeof *areas, "triangle areas", error);
     if (!areas)
         return false;
-    for (size_t i = 0; i < s->m.n_triangles; i++) {
+    s->planes = big_alloc(n, sizeof *s->planes, "triangle normals", error);
+    for (size_t i = 0; s->planes && i < n; i++) {
         triangle t;
         triangle_get(&s->m, i, &t);
         areas[i] = (float)triangle_area(&t);
+        s->planes[i] = plane_of(&t);
     }
-    bool done = distribution_init(&s->areas, areas, s->m.n_triangles, error);
+    bool done = s->planes && distribution_init(&s->areas, areas, n, error);
     big_free(areas);
     return done;
 }
@@ -128,6 +145,7 @@ static void mesh_shape_free(void *self)
     mesh_shape *s = self;
     mesh_clear(&s->m);
     distribution_clear(&s->areas);
+    big_free(s->planes);
     g_free(s);
 }
 
@@ -142,7 +160,7 @@ void *mesh_shape_create(mesh *m, const shape_place *at, source_place place,
         move_to_world(&s->m, at);
         if (check_numbers(s->m.positions, s->m.n_vertices, 3, "transformed position",
                           place, error) &&
-            init_areas(s, error))
+            init_triangles(s, error))
             return s;
     }
     mesh_shape_free(s);
@@ -258,58 +276,77 @@ static const mesh *triangles(const void *self)
     return &((const mesh_shape *)self)->m;
 }
 
-static vec3 interpolate3(const float *values, const triangle *t, const double b[3])
+/* What a point on a triangle is computed from. */
+typedef struct corners {
+    const uint32_t *vertex;
+    vec3 p[3];
+} corners;
+
+/* One load; the lane that belongs to the next position, or to the padding after the last,
+ * is masked: setting it alone would send the vector through memory. */
+static vec3 corner_at(const mesh *m, uint32_t vertex)
+{
+    vec3 p;
+    memcpy(&p, m->positions + 3 * (size_t)vertex, sizeof p);
+    return (vec3)((vec3_bits)p & (vec3_bits){-1, -1, -1, 0});
+}
+
+static corners corners_of(const mesh *m, size_t primitive)
+{
+    const uint32_t *v = m->indices + 3 * primitive;
+    return (corners){
+        .vertex = v,
+        .p = {corner_at(m, v[0]), corner_at(m, v[1]), corner_at(m, v[2])},
+    };
+}
+
+static vec3 interpolate3(const float *values, const corners *c, const float b[3])
 {
     vec3 sum = {0};
     for (int i = 0; i < 3; i++) {
-        const float *v = values + 3 * (size_t)t->vertex[i];
-        sum += (float)b[i] * vec3_make(v[0], v[1], v[2]);
+        const float *v = values + 3 * (size_t)c->vertex[i];
+        sum += b[i] * vec3_make(v[0], v[1], v[2]);
     }
     return sum;
 }
 
-static vec3 point_of(const triangle *t, const double b[3])
+static vec3 point_of(const corners *c, const float b[3])
 {
-    return dvec3_to_float(b[0] * t->p[0] + b[1] * t->p[1] + b[2] * t->p[2]);
+    return b[0] * c->p[0] + b[1] * c->p[1] + b[2] * c->p[2];
 }
 
-/* The true normal, turned to the outside; *shading is the interpolated one. Degenerate
- * triangles get any. */
-static vec3 normal_of(const mesh_shape *s, const triangle *t, const double b[3],
+/* The true normal, turned to the outside; *shading is the interpolated one. */
+static vec3 normal_of(const mesh_shape *s, const corners *c, vec3 plane, const float b[3],
                       vec3 *shading)
 {
-    double length = dvec3_length(t->cross);
-    vec3 n = vec3_make(0.0f, 0.0f, 1.0f);
-    if (length > 0.0)
-        n = dvec3_to_float(t->cross / length);
+    vec3 n = vec3_make(plane[0], plane[1], plane[2]);
     if (!s->m.normals)
         return *shading = s->flip ? -n : n;
-    vec3 interpolated = normalize3(interpolate3(s->m.normals, t, b));
+    vec3 interpolated = normalize3(interpolate3(s->m.normals, c, b));
     *shading = length3_2(interpolated) > 0.0f ? interpolated : n;
     return face_forward(n, *shading);
 }
 
-static void corner_uvs(const mesh *m, const triangle *t, vec2 uv[3])
+static void corner_uvs(const mesh *m, const corners *c, vec2 uv[3])
 {
     static const vec2 usual[3] = {{0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 1.0f}};
     for (int i = 0; i < 3; i++)
-        uv[i] = m->uvs ? m->uvs[t->vertex[i]] : usual[i];
+        uv[i] = m->uvs ? m->uvs[c->vertex[i]] : usual[i];
 }
 
-static vec2 interpolate_uv(const vec2 uv[3], const double b[3])
+static vec2 interpolate_uv(const vec2 uv[3], const float b[3])
 {
-    float b0 = (float)b[0], b1 = (float)b[1], b2 = (float)b[2];
-    return (vec2){b0 * uv[0].x + b1 * uv[1].x + b2 * uv[2].x,
-                  b0 * uv[0].y + b1 * uv[1].y + b2 * uv[2].y};
+    return (vec2){b[0] * uv[0].x + b[1] * uv[1].x + b[2] * uv[2].x,
+                  b[0] * uv[0].y + b[1] * uv[1].y + b[2] * uv[2].y};
 }
 
 /* dp/du from two edges and their differences in uv; zero if uv does not tell. */
-static vec3 tangent_of(const triangle *t, const vec2 uv[3])
+static vec3 tangent_of(const corners *c, const vec2 uv[3])
 {
     float du1 = uv[1].x - uv[0].x, dv1 = uv[1].y - uv[0].y;
     float du2 = uv[2].x - uv[0].x, dv2 = uv[2].y - uv[0].y;
     float determinant = du1 * dv2 - dv1 * du2;
-    vec3 along = dv2 * dvec3_to_float(t->edge[0]) - dv1 * dvec3_to_float(t->edge[1]);
+    vec3 along = dv2 * (c->p[1] - c->p[0]) - dv1 * (c->p[2] - c->p[0]);
     vec3 dpdu = along / determinant;
     return finite3(dpdu) ? dpdu : (vec3){0};
 }
@@ -317,33 +354,32 @@ static vec3 tangent_of(const triangle *t, const vec2 uv[3])
 /* With v the vertices relative to p, D their largest coordinates and N = e1 x e2, the
  * plane's equation v·N / |N| is computed with an error of a few ε (|n|·D + 6 Dx Dy Dz /
  * |N|). Slivers could make it absurd: 16 ε |D| is the most that is believed. */
-static float rounding_error(const triangle *t, vec3 p, vec3 n)
+static float rounding_error(const corners *c, vec3 p, vec3 plane)
 {
     vec3 d = {0};
     for (int i = 0; i < 3; i++)
-        d = max3(d, abs3(dvec3_to_float(t->p[i]) - p));
+        d = max3(d, abs3(c->p[i] - p));
     const float epsilon = 0x1p-23f;
-    float length = sqrtf((float)dvec3_dot(t->cross, t->cross));
-    float bound = 2.0f * dot3(abs3(n), d) + 6.0f * d[0] * d[1] * d[2] / length;
-    return epsilon * fminf(bound, 16.0f * max_component3(d));
+    float bound = 2.0f * dot3(abs3(plane), d) + 6.0f * d[0] * d[1] * d[2] * plane[3];
+    return epsilon * minf(bound, 16.0f * max_component3(d));
 }
 
 static void fill_hit(const void *self, const ray *r, float u, float v, surface_hit *hit)
 {
     (void)r;
     const mesh_shape *s = self;
-    triangle t;
-    triangle_get(&s->m, hit->primitive, &t);
-    const double b[3] = {1.0 - (double)u - (double)v, (double)u, (double)v};
+    const corners c = corners_of(&s->m, hit->primitive);
+    const vec3 plane = s->planes[hit->primitive];
+    const float b[3] = {1.0f - u - v, u, v};
     vec2 uv[3];
-    corner_uvs(&s->m, &t, uv);
-    hit->p = point_of(&t, b);
-    hit->n_geom = normal_of(s, &t, b, &hit->n);
+    corner_uvs(&s->m, &c, uv);
+    hit->p = point_of(&c, b);
+    hit->n_geom = normal_of(s, &c, plane, b, &hit->n);
     hit->uv = interpolate_uv(uv, b);
-    hit->dpdu = s->m.tangents ? interpolate3(s->m.tangents, &t, b) : tangent_of(&t, uv);
+    hit->dpdu = s->m.tangents ? interpolate3(s->m.tangents, &c, b) : tangent_of(&c, uv);
     if (!(length3_2(hit->dpdu) > 0.0f))
         hit->dpdu = frame_from_normal(hit->n).s;
-    hit->error = rounding_error(&t, hit->p, hit->n_geom);
+    hit->error = rounding_error(&c, hit->p, plane);
 }
 
 /* Solid angles between which Arvo's formula is used. */
@@ -357,18 +393,21 @@ static float area(const void *self)
     return (float)distribution_total(&((const mesh_shape *)self)->areas);
 }
 
-static shape_sample sample_at(const mesh_shape *s, size_t primitive, const triangle *t,
-                              const double b[3])
+static shape_sample sample_at(const mesh_shape *s, size_t primitive,
+                              const double weights[3])
 {
+    const float b[3] = {(float)weights[0], (float)weights[1], (float)weights[2]};
+    const corners c = corners_of(&s->m, primitive);
+    const vec3 plane = s->planes[primitive];
     vec2 uv[3];
-    corner_uvs(&s->m, t, uv);
-    vec3 shading, p = point_of(t, b), n = normal_of(s, t, b, &shading);
+    corner_uvs(&s->m, &c, uv);
+    vec3 shading, p = point_of(&c, b), n = normal_of(s, &c, plane, b, &shading);
     return (shape_sample){.p = p,
                           .n = n,
                           .uv = interpolate_uv(uv, b),
                           .primitive = (uint32_t)primitive,
                           .pdf = 1.0f / area(s),
-                          .error = rounding_error(t, p, n)};
+                          .error = rounding_error(&c, p, plane)};
 }
 
 static void weights_by_area(vec2 u, double b[3])
@@ -383,11 +422,9 @@ static shape_sample sample_area(const void *self, float u_primitive, vec2 u)
 {
     const mesh_shape *s = self;
     size_t primitive = distribution_sample(&s->areas, &u_primitive);
-    triangle t;
-    triangle_get(&s->m, primitive, &t);
     double b[3];
     weights_by_area(u, b);
-    return sample_at(s, primitive, &t, b);
+    return sample_at(s, primitive, b);
 }
 
 /* Per solid angle at ref, of a point of the triangle, as sample_toward chooses it. */
@@ -417,7 +454,7 @@ static bool sample_toward(const void *self, vec3 ref, float u_primitive, vec2 u,
         triangle_sample_solid_angle(&t, ref, u, b);
     else
         weights_by_area(u, b);
-    *out = sample_at(s, primitive, &t, b);
+    *out = sample_at(s, primitive, b);
     out->pdf = pdf_of(s, &t, solid_angle, ref, out->p, out->n);
     return out->pdf > 0.0f;
 }
