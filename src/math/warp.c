@@ -1,14 +1,32 @@
 #include "math/warp.h"
 
+/* Sine and cosine of a quarter turn's half, |x| <= pi/4, to an ulp or two: Taylor's
+   series, without the reduction of the angle that libm must do. */
+static float small_sine(float x)
+{
+    float x2 = x * x;
+    float p = -1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040 + x2 * (1.0f / 362880)));
+    return x + x * x2 * p;
+}
+
+static float small_cosine(float x)
+{
+    float x2 = x * x;
+    float p =
+        1.0f / 24 + x2 * (-1.0f / 720 + x2 * (1.0f / 40320 - x2 * (1.0f / 3628800)));
+    return 1.0f + x2 * (-0.5f + x2 * p);
+}
+
 vec2 warp_disk(vec2 u)
 {
     float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
-    if (!(fabsf(x) > 0.0f) && !(fabsf(y) > 0.0f))
-        return (vec2){0.0f, 0.0f};
     bool wide = fabsf(x) > fabsf(y);
-    float r = wide ? x : y;
-    float angle = wide ? 0.25f * PI_F * (y / x) : 0.5f * PI_F - 0.25f * PI_F * (x / y);
-    return (vec2){r * cosf(angle), r * sinf(angle)};
+    float r = wide ? x : y, other = wide ? y : x;
+    if (!(fabsf(r) > 0.0f))
+        return (vec2){0.0f, 0.0f};
+    float angle = 0.25f * PI_F * (other / r); /* from the axis that r is along */
+    float along = r * small_cosine(angle), across = r * small_sine(angle);
+    return wide ? (vec2){along, across} : (vec2){across, along};
 }
 
 vec3 warp_cosine_hemisphere(vec2 u)
