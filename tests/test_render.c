@@ -354,6 +354,83 @@ static void test_one_pass_claims_nothing(void)
     g_assert_true(isinf(render_get_statistics(r).noise));
 }
 
+/* ---- What the camera does not see ---- */
+
+#define HIDDEN_BALL(kind)                                                                \
+    "AttributeBegin Attribute \"shape\" \"bool camera_visible\" false\n" kind            \
+    "Translate 0 0 0.6 Shape \"sphere\" \"float radius\" 0.5\nAttributeEnd\n"
+
+/* Largest ratio of a channel of two images, over pixels. */
+static double largest_ratio(const image *a, const image *b, const char *channel)
+{
+    double largest = 0;
+    size_t in_a = channel_of(a, channel), in_b = channel_of(b, channel);
+    for (size_t i = 0; i < pixels_of(a); i++)
+        largest = fmax(largest, at(a, i, in_a) / at(b, i, in_b));
+    return largest;
+}
+
+/* A ball that is not seen leaves depth and albedo as they are without it, but takes light
+   away beneath it. */
+static void test_hidden_casts_shadow(void)
+{
+    g_autoptr(scene) with = scene_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP(
+        "") HIDDEN_BALL("Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n") ROOM_WALLS);
+    g_autoptr(scene) without =
+        scene_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    const char *const ways[] = {"integrator=path passes=4 spp=16",
+                                "passes=4 spp=4 photons=20000 radius=0.2"};
+    for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
+        g_autoptr(image) a = render_with(with, ways[i]);
+        g_autoptr(image) b = render_with(without, ways[i]);
+        const char *const geometry[] = {"depth.Z", "albedo.R", "albedo.B"};
+        for (size_t k = 0; k < G_N_ELEMENTS(geometry); k++) {
+            g_assert_cmpfloat(largest_ratio(a, b, geometry[k]), <, 1.0001);
+            g_assert_cmpfloat(largest_ratio(b, a, geometry[k]), <, 1.0001);
+        }
+        g_test_message("%s: direct light %g of %g", ways[i], mean_of(a, "direct"),
+                       mean_of(b, "direct"));
+        g_assert_cmpfloat(largest_ratio(b, a, "direct.G"), >, 3.0);
+    }
+}
+
+/* A hidden lens: no depth, no highlight, but its caustic. */
+static void test_hidden_casts_caustic(void)
+{
+    g_autoptr(scene) s = scene_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP(
+        "") HIDDEN_BALL("Material \"dielectric\"\n") ROOM_WALLS);
+    const char *const ways[] = {"integrator=auto passes=4 spp=4 photons=20000",
+                                "passes=4 spp=4 photons=20000"};
+    for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
+        g_autoptr(image) img = render_with(s, ways[i]);
+        g_test_message("%s: caustic %g", ways[i], mean_of(img, "caustic"));
+        g_assert_cmpfloat(mean_of(img, "specular"), <=, 0.0);
+        g_assert_cmpfloat(mean_of(img, "caustic"), >, 0.01);
+    }
+}
+
+/* A mirror shows it, and a lamp that is not seen lights as ever. */
+static void test_hidden_is_seen_in_mirrors(void)
+{
+    static const char mirror[] =
+        "AttributeBegin Material \"conductor\" Shape \"trianglemesh\" \"point3 P\" [-1 "
+        "1.9 0 1 1.9 0 1 1.9 1.9 -1 1.9 1.9] \"integer indices\" [0 1 2 0 2 3] "
+        "AttributeEnd\n";
+    g_autofree char *shown_text = g_strconcat(ROOM_CAMERA SIZE(16) "WorldBegin\n",
+                                              ROOM_LAMP(""), mirror, ROOM_WALLS, NULL);
+    g_autofree char *hidden_text = g_strconcat(
+        ROOM_CAMERA SIZE(16) "WorldBegin\n",
+        "Attribute \"shape\" \"bool camera_visible\" false\n", ROOM_LAMP(""),
+        "Attribute \"shape\" \"bool camera_visible\" true\n", mirror, ROOM_WALLS, NULL);
+    g_autoptr(scene) shown = scene_of(shown_text), hidden = scene_of(hidden_text);
+    g_autoptr(image) a = render_with(shown, "integrator=path passes=2 spp=16");
+    g_autoptr(image) b = render_with(hidden, "integrator=path passes=2 spp=16");
+    g_assert_cmpfloat(mean_of(a, "emission"), >, 0.05);
+    g_assert_cmpfloat(mean_of(b, "emission"), <=, 0.0);
+    g_assert_cmpfloat(mean_of(b, "specular"), >, 0.99 * mean_of(a, "specular"));
+    g_assert_cmpfloat(fabs(mean_of(b, "direct") / mean_of(a, "direct") - 1.0), <, 0.05);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -371,5 +448,8 @@ int main(int argc, char **argv)
     }
     g_test_add_func("/render/noise/variance", test_variance_layer);
     g_test_add_func("/render/noise/one-pass", test_one_pass_claims_nothing);
+    g_test_add_func("/render/hidden/shadow", test_hidden_casts_shadow);
+    g_test_add_func("/render/hidden/caustic", test_hidden_casts_caustic);
+    g_test_add_func("/render/hidden/mirror", test_hidden_is_seen_in_mirrors);
     return g_test_run();
 }

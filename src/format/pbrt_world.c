@@ -207,14 +207,22 @@ static bool add_ply(pbrt_parser *parser, const params *p, const shape_place *at,
 
 static void add_shape(pbrt_parser *parser, const arguments *a)
 {
-    shape_place at = {parser->state.ctm, parser->state.reverse_orientation,
-                      current_material(parser, a->at), parser->state.area_light};
+    shape_place at = {.to_world = parser->state.ctm,
+                      .reverse_orientation = parser->state.reverse_orientation,
+                      .material = current_material(parser, a->at),
+                      .area_light = parser->state.area_light};
     const param *alpha = params_find(a->p, "alpha");
     if (alpha) {
         pbrt_error(parser, alpha->place, "parameter 'alpha' of shapes is not supported");
         return;
     }
     GError *error = NULL;
+    bool seen = true;
+    if (!params_bool(a->p, "camera_visible", &seen, &error)) {
+        pbrt_report(parser, error);
+        return;
+    }
+    at.camera_hidden = !seen;
     bool is_ply = strcmp(a->kind, "plymesh") == 0;
     bool done = is_ply ? add_ply(parser, a->p, &at, &error)
                        : scene_add_shape(parser->scene, a->kind, a->p, &at, &error);

@@ -329,6 +329,20 @@ void scene_resize(scene *s, int width, int height)
         camera_resize(&s->camera, width, height);
 }
 
+bool scene_see(const scene *s, const ray *r, surface_hit *hit)
+{
+    ray left = *r;
+    while (scene_intersect(s, &left, hit)) {
+        const shape *on = s->shapes->pdata[hit->shape];
+        if (!on->camera_hidden) {
+            hit->t = length3(hit->p - r->origin);
+            return true;
+        }
+        left = hit_ray(hit, r->direction);
+    }
+    return false;
+}
+
 float scene_imaging_ratio(const scene *s)
 {
     return s->film.iso / 100.0f * (s->camera.shutter_close - s->camera.shutter_open);

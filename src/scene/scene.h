@@ -108,6 +108,10 @@ static inline bool scene_intersect(const scene *s, const ray *r, surface_hit *hi
     return true;
 }
 
+/** @brief The same for a ray from the eye: it passes shapes that the camera does not see
+ * (camera_visible). */
+bool scene_see(const scene *s, const ray *r, surface_hit *hit);
+
 /** @brief True if something stands on the ray. */
 static inline bool scene_occluded(const scene *s, const ray *r)
 {

@@ -26,6 +26,7 @@ static shape *shape_wrap(const shape_kind *kind, void *self, const shape_place *
                  .self = self,
                  .material = at->material,
                  .light = NO_INDEX,
+                 .camera_hidden = at->camera_hidden,
                  .area = kind->area(self),
                  .place = place};
     return s;

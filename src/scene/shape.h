@@ -15,6 +15,7 @@ typedef struct shape_place {
     bool reverse_orientation;
     int material;             /**< index in scene->materials, or NO_INDEX */
     const params *area_light; /**< borrowed; NULL: does not shine */
+    bool camera_hidden;       /**< rays straight from the camera pass it unseen */
 } shape_place;
 
 /** @brief A triangle mesh in world space; arrays big_alloc'ed, owned. */
@@ -71,6 +72,7 @@ struct shape {
     void *self;
     int material;
     int light; /**< index in scene->lights or NO_INDEX */
+    bool camera_hidden;
     float area;
     source_place place;
 };

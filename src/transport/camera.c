@@ -86,7 +86,7 @@ static void note_first_surface(camera_tree *tree, const camera_branch *branch,
                                const surface_hit *hit, const bsdf *b)
 {
     vec3 wo = -branch->ray.direction;
-    tree->out->depth = hit->t;
+    tree->out->depth = length3(hit->p - branch->from);
     tree->out->normal = face_forward(hit->n, wo);
     tree->out->albedo = bsdf_albedo(b, wo, LOBE_ALL);
 }
@@ -229,7 +229,10 @@ static void follow(camera_tree *tree, camera_branch branch)
     for (bool first = branch.n_followed == 0;;) {
         surface_hit hit;
         tree->scratch->camera_rays++;
-        if (!scene_intersect(pass->scene, &branch.ray, &hit)) {
+        bool met = branch.n_followed == 0
+                       ? scene_see(pass->scene, &branch.ray, &hit)
+                       : scene_intersect(pass->scene, &branch.ray, &hit);
+        if (!met) {
             see_sky(tree, &branch);
             return;
         }

@@ -157,10 +157,11 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     return sampler_1d(walk->random) < p;
 }
 
-static void note_first_surface(path_walk *walk, const surface_hit *hit, const bsdf *b,
-                               vec3 wo)
+static void note_first_surface(path_walk *walk, const camera_path *path,
+                               const surface_hit *hit, const bsdf *b)
 {
-    walk->out->depth = hit->t;
+    vec3 wo = -path->ray.direction;
+    walk->out->depth = length3(hit->p - path->from);
     walk->out->normal = face_forward(hit->n, wo);
     walk->out->albedo = bsdf_albedo(b, wo, LOBE_ALL);
 }
@@ -171,13 +172,18 @@ void path_radiance(const void *data, const ray *r, sampler *random,
     const path_pass *pass = data;
     *out = (radiance_sample){0};
     path_walk walk = {pass, pass->plan->scene, &pass->plan->how, random, scratch, out};
-    camera_path path = {
-        .ray = *r, .beta = spectrum_fill(1.0f), .lane = ALL_LANES, .eta2 = 1.0f};
+    camera_path path = {.ray = *r,
+                        .beta = spectrum_fill(1.0f),
+                        .lane = ALL_LANES,
+                        .eta2 = 1.0f,
+                        .from = r->origin};
     int64_t limit = walk.how->max_backward_bounces;
     for (;;) {
         surface_hit hit;
         scratch->camera_rays++;
-        if (!scene_intersect(walk.scene, &path.ray, &hit)) {
+        bool met = path.bounces == 0 ? scene_see(walk.scene, &path.ray, &hit)
+                                     : scene_intersect(walk.scene, &path.ray, &hit);
+        if (!met) {
             meet_light(&walk, &path, NULL);
             return;
         }
@@ -188,7 +194,7 @@ void path_radiance(const void *data, const ray *r, sampler *random,
             continue;
         }
         if (path.bounces == 0)
-            note_first_surface(&walk, &hit, &b, -path.ray.direction);
+            note_first_surface(&walk, &path, &hit, &b);
         if (limit >= 0 && path.bounces >= limit)
             return;
         sample_lights(&walk, &path, &hit, &b);

@@ -17,7 +17,9 @@ static bool find_one(const lookout *from, ray r, sampler *random, visible_point 
         surface_hit hit;
         bsdf b;
         bsdf_sample next = {.wi = r.direction};
-        if (!scene_intersect(from->scene, &r, &hit))
+        bool met = bounces == 0 ? scene_see(from->scene, &r, &hit)
+                                : scene_intersect(from->scene, &r, &hit);
+        if (!met)
             return false;
         way += hit.t;
         bool surface =
