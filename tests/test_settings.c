@@ -97,6 +97,19 @@ static void test_default_is_the_table(void)
     g_assert_true(fabs(s.alpha - 2.0 / 3.0) < 1e-15);
 }
 
+static void test_sppm_is_a_preset(void)
+{
+    settings s = settings_default(), expected = settings_default();
+    set(&s, "indirect_nearest", "100");
+    set(&s, "final_gather", "on");
+    set(&s, "integrator", "path");
+    set(&s, "radius", "0.5");
+    set(&s, "integrator", "sppm");
+    expected.spp = 1;
+    expected.radius = 0.5;
+    g_assert_cmpmem(&s, sizeof s, &expected, sizeof expected);
+}
+
 static void test_values(void)
 {
     settings s = settings_default();
@@ -256,5 +269,6 @@ int main(int argc, char **argv)
     g_test_add_func("/settings/refusals", test_refusals);
     g_test_add_func("/settings/load", test_load);
     g_test_add_func("/settings/load-names-the-place", test_load_names_the_place);
+    g_test_add_func("/settings/sppm", test_sppm_is_a_preset);
     return g_test_run();
 }

@@ -211,6 +211,7 @@ static void apply_sppm(pbrt_parser *parser, const sampling *samples)
     int photons = -1;
     float radius = 1.0f;
     GError *error = NULL;
+    set(parser, in->place, "integrator", "sppm");
     apply_depth(parser);
     integer_of(parser, in->p, "photonsperiteration", &photons);
     if (!params_float(in->p, "radius", &radius, &error))
@@ -219,7 +220,6 @@ static void apply_sppm(pbrt_parser *parser, const sampling *samples)
     int64_t pixels = (int64_t)film->width * film->height;
     set_count(parser, in->place, "photons", photons > 0 ? photons : MAX(pixels, 1));
     set(parser, in->place, "radius", text);
-    set(parser, in->place, "spp", "1");
     if (samples->where)
         set_count(parser, samples->where->place, "passes", samples->pixel_samples);
     apply_seed(parser, in->p);

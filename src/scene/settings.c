@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const integrator_words[] = {"photonmap", "path", "auto", NULL};
+static const char *const integrator_words[] = {"photonmap", "path", "auto", "sppm", NULL};
 static const char *const kernel_words[] = {"constant", "cone", "gaussian", "epanechnikov",
                                            NULL};
 static const char *const map_words[] = {"list", "kdtree", "grid", NULL};
@@ -26,7 +26,8 @@ enum { MOST_PASSES = 1000000000, USUAL_PASSES = 16 };
 static const setting_row table[] = {
     {"integrator", SETTING_CHOICE, AT(integrator), "", 0, 2, INTEGRATOR_PHOTONMAP,
      integrator_words, "", "all",
-     "The algorithm that carries light from the lamps to the eye."},
+     "The algorithm that carries light from the lamps to the eye. sppm is photonmap with "
+     "spp = 1, all nearest = 0, final_gather off and alpha = 2/3: set it first."},
     {"passes", SETTING_COUNT, AT(passes), "", 0, MOST_PASSES, 0, NULL,
      "iterations numiterations", "all",
      "Independent passes whose mean is the image; 1 is classic photon mapping. 0: as "
@@ -302,10 +303,26 @@ static bool set_depth(settings *s, const char *text)
     return true;
 }
 
+/** Stochastic progressive photon mapping (Hachisuka & Jensen 2009) is photon mapping with
+ * certain settings. */
+static void set_sppm(settings *s)
+{
+    s->integrator = INTEGRATOR_PHOTONMAP;
+    s->spp = 1;
+    s->final_gather = false;
+    s->alpha = 2.0 / 3.0;
+    for (int c = 0; c < N_CLASSES; c++)
+        s->class_nearest[c] = 0;
+}
+
 static bool set_row(settings *s, const setting_row *row, const char *name,
                     const char *text)
 {
     double number;
+    if (row->offset == AT(integrator) && strcmp(text, "sppm") == 0) {
+        set_sppm(s);
+        return true;
+    }
     if (is_depth(name))
         return set_depth(s, text);
     int cone = class_of_cone_alias(row, name);

@@ -76,7 +76,8 @@ typedef struct setting_row {
     size_t offset;             /**< in struct settings */
     const char *unit;          /**< "" if none */
     double low, high, initial; /**< inclusive; index for a choice, 0/1 for a bool */
-    const char *const *words;  /**< of a choice, NULL-terminated */
+    const char *const *words;  /**< of a choice, NULL-terminated; behind that of `high`
+                                  come names of presets */
     const char *aliases;       /**< other accepted names, blank-separated, "" if none */
     const char *users;         /**< which integrators read it */
     const char *doc;           /**< one sentence */
