@@ -37,7 +37,7 @@ static void test_rows_are_whole(void)
         g_assert_cmpint((int)strlen(rows[i].users), >, 0);
         g_assert_true((rows[i].type == SETTING_CHOICE) == (rows[i].words != NULL));
         if (rows[i].words)
-            g_assert_cmpuint(g_strv_length((char **)rows[i].words), ==,
+            g_assert_cmpuint(g_strv_length((char **)rows[i].words), >=,
                              (guint)rows[i].high + 1);
     }
 }
