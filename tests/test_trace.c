@@ -106,7 +106,7 @@ static void test_emitted_flux_is_the_power(void)
         for (uint32_t k = 0; k < N; k++) {
             sampler random = sampler_make(i, k);
             photon_start start;
-            if (photon_emit(s, &w, EMISSION_UNIFORM, &random, &start))
+            if (photon_emit(s, &w, &random, &start))
                 sum += start.flux / N;
         }
         for (int lane = 0; lane < N_LANES; lane++)

@@ -166,11 +166,11 @@ static void test_photon_mapping_agrees_with_path_tracing(gconstpointer data)
     g_autofree char *text = g_strconcat(ROOM, f->text, NULL);
     g_autoptr(scene) s = scene_of(text);
     g_autoptr(image) path =
-        render_with(s, "integrator=path passes=16 spp=32 max_backward_bounces=-1 seed=1");
+        render_with(s, "integrator=path passes=8 spp=32 max_backward_bounces=-1 seed=1");
     const char *const ways[] = {
-        "passes=8 spp=16 photons=100000",
-        "integrator=auto passes=16 spp=16 photons=20000 max_backward_bounces=-1",
-        "passes=8 spp=8 photons=100000 direct_illumination=off",
+        "passes=4 spp=8 photons=60000",
+        "integrator=auto passes=8 spp=16 photons=10000 max_backward_bounces=-1",
+        "passes=4 spp=4 photons=60000 direct_illumination=off",
         "passes=4 spp=8 photons=100000 final_gather=on gather_rays=16 "
         "precompute_radiance=off",
     };
@@ -189,8 +189,8 @@ static void test_layers_agree_with_path_tracing(void)
     g_autofree char *text = g_strconcat(ROOM, furnishings[2].text, NULL);
     g_autoptr(scene) s = scene_of(text);
     g_autoptr(image) path =
-        render_with(s, "integrator=path passes=16 spp=64 max_backward_bounces=-1");
-    g_autoptr(image) photons = render_with(s, "passes=12 spp=16 photons=200000");
+        render_with(s, "integrator=path passes=8 spp=64 max_backward_bounces=-1");
+    g_autoptr(image) photons = render_with(s, "passes=8 spp=8 photons=60000");
     const char *const names[] = {"direct",   "indirect", "caustic",
                                  "specular", "emission", "albedo"};
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {

@@ -1,5 +1,7 @@
 #include "photon/emit.h"
 
+#include "math/warp.h"
+
 /* A ray crosses no more surfaces than this on its way through the scene: only a guard
    against endless loops on degenerate geometry. */
 enum { MAX_CROSSINGS = 4096 };
@@ -50,10 +52,11 @@ static double aimed_density(const scene *s, ray r, bool parallel)
 }
 
 /* Chooses a light by power; *u becomes uniform again. */
-static const light *choose_light(const scene *s, float *u, photon_start *out)
+static const light *choose_light(const scene *s, const distribution *power, float *u,
+                                 photon_start *out)
 {
-    out->light = (int)distribution_sample(&s->light_power, u);
-    out->p_light = distribution_pdf(&s->light_power, (size_t)out->light);
+    out->light = (int)distribution_sample(power, u);
+    out->p_light = distribution_pdf(power, (size_t)out->light);
     return scene_light(s, out->light);
 }
 
@@ -70,9 +73,9 @@ bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
     light_emission emission;
     float u_light = sampler_1d(random), u_primitive = sampler_1d(random);
     vec2 u = sampler_2d(random);
-    if (!(distribution_total(&s->light_power) > 0.0))
+    if (!(distribution_total(&s->caustic_power) > 0.0))
         return false;
-    const light *l = choose_light(s, &u_light, out);
+    const light *l = choose_light(s, &s->caustic_power, &u_light, out);
     vec3 target = caustic_target(s, random);
     if (!l->kind->emit_toward(l->self, w, u_primitive, u, target, &emission))
         return false;
@@ -80,17 +83,43 @@ bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
     return density > 0.0 && finish(&emission, (float)density, out);
 }
 
-bool photon_emit(const scene *s, const wavelengths *w, const emission_guide *guide,
-                 sampler *random, photon_start *out)
+bool photon_emit(const scene *s, const wavelengths *w, sampler *random, photon_start *out)
 {
     float u[EMISSION_DIMENSIONS];
     light_emission emission;
-    if (!(distribution_total(&s->light_power) > 0.0))
-        return false;
-    float density = emission_guide_draw(guide, random, u);
-    const light *l = choose_light(s, &u[0], out);
+    float density = emission_guide_draw(NULL, random, u);
+    const light *l = choose_light(s, &s->light_power, &u[0], out);
     if (!l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]}, (vec2){u[4], u[5]},
                        &emission))
         return false;
     return finish(&emission, density, out);
+}
+
+/* Parallel light through the disc of the sphere around what casts caustics. */
+static bool emit_at_sphere(const scene *s, const light *l, const wavelengths *w,
+                           const float u[EMISSION_DIMENSIONS], light_emission *out)
+{
+    vec2 u_direction = {u[4], u[5]}, disk = warp_disk((vec2){u[2], u[3]});
+    if (!l->kind->emit_toward(l->self, w, u[1], u_direction, s->caustic_center, out))
+        return false;
+    frame f = frame_from_normal(out->ray.direction);
+    out->ray.origin += s->caustic_radius * (disk.x * f.s + disk.y * f.t);
+    out->flux *= PI_F * s->caustic_radius * s->caustic_radius;
+    return true;
+}
+
+bool photon_emit_caustic(const scene *s, const wavelengths *w,
+                         const emission_guide *guide, sampler *random, photon_start *out)
+{
+    float u[EMISSION_DIMENSIONS];
+    light_emission emission;
+    if (!(distribution_total(&s->caustic_power) > 0.0))
+        return false;
+    float density = emission_guide_draw(guide, random, u);
+    const light *l = choose_light(s, &s->caustic_power, &u[0], out);
+    bool emitted = l->kind->is_parallel
+                       ? emit_at_sphere(s, l, w, u, &emission)
+                       : l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]},
+                                       (vec2){u[4], u[5]}, &emission);
+    return emitted && finish(&emission, density, out);
 }

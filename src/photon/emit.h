@@ -25,13 +25,17 @@ typedef struct photon_start {
     float p_light; /**< probability with which that light was chosen */
 } photon_start;
 
-/** @brief Emits one photon by its light's own density, or by a guide's.
- *  @param guide NULL: uniform. @return false: nothing is carried (it still counts as
- * emitted). */
-bool photon_emit(const scene *s, const wavelengths *w, const emission_guide *guide,
-                 sampler *random, photon_start *out);
+/** @brief Emits one photon by its light's own density.
+ *  @return false: nothing is carried (it still counts as emitted) */
+bool photon_emit(const scene *s, const wavelengths *w, sampler *random,
+                 photon_start *out);
 
-/** @brief Emits one photon toward the surfaces that cast caustics (specular-area). As
- * above. */
+/** @brief Emits one caustic photon: by the guide's numbers (NULL: uniform ones), parallel
+ * light only where it may meet what casts caustics. As above. */
+bool photon_emit_caustic(const scene *s, const wavelengths *w,
+                         const emission_guide *guide, sampler *random, photon_start *out);
+
+/** @brief Emits one caustic photon toward the surfaces that cast caustics
+ * (specular-area). */
 bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
                        photon_start *out);

@@ -10,7 +10,7 @@ enum {
 };
 
 /* Share of photons drawn uniformly, whatever was learned. */
-#define DEFENSIVE_SHARE 0.1
+#define DEFENSIVE_SHARE 0.25
 
 /* A cell is split if the fullest and emptiest quarters along some axis differ by this
    share of what it holds. */

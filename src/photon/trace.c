@@ -57,17 +57,12 @@ static uint64_t stream_key(const trace_task *task)
     return hash_mix(key, 0x70686f746f6eu + (uint64_t)task->photon_class);
 }
 
-static emission_choice emission_mode(const trace_task *task)
-{
-    return task->photon_class == PHOTON_CAUSTIC
-               ? (emission_choice)task->how->caustic_emission
-               : EMISSION_UNIFORM;
-}
-
 /* The guide serves the caustic photons that it was made for. */
 static const emission_guide *guide_of(const trace_task *task)
 {
-    return emission_mode(task) == EMISSION_GUIDED ? task->guide : NULL;
+    bool guided = task->photon_class == PHOTON_CAUSTIC &&
+                  task->how->caustic_emission == EMISSION_GUIDED;
+    return guided ? task->guide : NULL;
 }
 
 float photon_start_point(const trace_task *task, uint64_t index,
@@ -77,21 +72,26 @@ float photon_start_point(const trace_task *task, uint64_t index,
     return emission_guide_draw(guide_of(task), &random, u);
 }
 
+static bool start(const trace_task *task, sampler *random, photon_start *out)
+{
+    if (task->photon_class != PHOTON_CAUSTIC)
+        return photon_emit(task->scene, &task->w, random, out);
+    if (task->how->caustic_emission == EMISSION_SPECULAR_AREA)
+        return photon_emit_aimed(task->scene, &task->w, random, out);
+    return photon_emit_caustic(task->scene, &task->w, guide_of(task), random, out);
+}
+
 static bool emit(photon_path *path)
 {
     const trace_task *task = path->task;
-    photon_start start;
-    bool emitted =
-        emission_mode(task) == EMISSION_SPECULAR_AREA
-            ? photon_emit_aimed(task->scene, &task->w, &path->random, &start)
-            : photon_emit(task->scene, &task->w, guide_of(task), &path->random, &start);
-    if (!emitted)
+    photon_start at;
+    if (!start(task, &path->random, &at))
         return false;
-    path->ray = start.ray;
-    path->flux = start.flux / (float)task->n_photons;
-    path->light = start.light;
+    path->ray = at.ray;
+    path->flux = at.flux / (float)task->n_photons;
+    path->light = at.light;
     path->lane = ALL_LANES;
-    path->from_delta = scene_light(task->scene, start.light)->kind->is_delta;
+    path->from_delta = scene_light(task->scene, at.light)->kind->is_delta;
     path->specular_only = true;
     return true;
 }

@@ -68,6 +68,7 @@ void scene_free(scene *s)
     distribution_clear(&s->light_power);
     light_tree_free(s->light_tree);
     distribution_clear(&s->caustic_area);
+    distribution_clear(&s->caustic_power);
     g_free(s->environments);
     g_free(s->caustic_shapes);
     g_free(s);
@@ -264,9 +265,27 @@ static bool find_lights(scene *s, GError **error)
     return done;
 }
 
+/* Parallel light is spread over the whole scene: only what falls on the sphere counts. */
+static bool find_caustic_power(scene *s, GError **error)
+{
+    const wavelengths w = wavelengths_at(0.5f);
+    guint n = s->lights->len;
+    float share = square(minf(1.0f, s->caustic_radius / s->radius));
+    float *power = big_alloc(n, sizeof(float), "lights", error);
+    for (guint i = 0; i < n && power; i++) {
+        const light *l = s->lights->pdata[i];
+        power[i] = spectrum_mean(l->kind->power(l->self, &w)) *
+                   (l->kind->is_parallel ? share : 1.0f);
+    }
+    bool done = power && distribution_init(&s->caustic_power, power, n, error);
+    big_free(power);
+    return done;
+}
+
 static bool find_caustic_shapes(scene *s, GError **error)
 {
     guint n = s->shapes->len;
+    box3 box = box3_empty();
     s->caustic_shapes = g_new0(int, MAX(n, 1));
     float *area = big_alloc(n, sizeof(float), "shapes", error);
     if (!area)
@@ -278,11 +297,14 @@ static bool find_caustic_shapes(scene *s, GError **error)
             continue;
         area[s->n_caustic_shapes] = on->area;
         s->caustic_shapes[s->n_caustic_shapes++] = (int)i;
+        box = box3_union(box, on->kind->bounds(on->self));
     }
+    s->caustic_center = box3_is_empty(box) ? s->center : box3_center(box);
+    s->caustic_radius = 1.001f * box3_radius(box);
     bool done =
         distribution_init(&s->caustic_area, area, (size_t)s->n_caustic_shapes, error);
     big_free(area);
-    return done;
+    return done && find_caustic_power(s, error);
 }
 
 /* A commit that failed leaves the scene as it was before. */
@@ -293,6 +315,7 @@ static void forget_commit(scene *s)
     distribution_clear(&s->light_power);
     g_clear_pointer(&s->light_tree, light_tree_free);
     distribution_clear(&s->caustic_area);
+    distribution_clear(&s->caustic_power);
     g_clear_pointer(&s->environments, g_free);
     g_clear_pointer(&s->caustic_shapes, g_free);
     s->n_environments = s->n_caustic_shapes = 0;

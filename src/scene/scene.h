@@ -57,7 +57,11 @@ typedef struct scene {
     int n_environments;
     int *caustic_shapes; /**< indices of shapes whose material casts caustics */
     int n_caustic_shapes;
-    distribution caustic_area; /**< over caustic_shapes, by area */
+    distribution caustic_area;  /**< over caustic_shapes, by area */
+    vec3 caustic_center;        /**< of a sphere around them */
+    float caustic_radius;       /**< of that sphere; 0 if there are none */
+    distribution caustic_power; /**< over lights, by the power that may meet that sphere:
+                                   which one a caustic photon starts from */
 } scene;
 
 scene *scene_new(const log_sink *log);

@@ -222,6 +222,24 @@ static const wavelengths *pass_wavelengths(const void *pass)
 /* One gather in so many is timed: the clock costs as much as a small gather. */
 enum { TIMED_SHARE = 16 };
 
+#define LARGEST_OVER_TYPICAL 8.0f
+
+/* A place further from its radius' own place than that radius reaches is emptier still.
+   No radius is so much larger than the typical one that a look-up gets slow. */
+static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
+                          photon_hits *hits)
+{
+    const photon_map *radii = pass->plan->radius_map[c];
+    float typical = pass->estimates[c].radius;
+    if (!radii || pass->estimates[c].nearest > 0 ||
+        !photon_map_nearest(radii, p, 1, INFINITY, NULL, hits) || hits->n == 0)
+        return typical;
+    float shrunk = typical / (float)pass->plan->radius[c];
+    float r = photon_map_store(radii)->flux[hits->index[0]][0];
+    return minf(maxf(r, sqrtf(hits->distance2[0])) * shrunk,
+                LARGEST_OVER_TYPICAL * typical);
+}
+
 spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
                           const shading_point *at, unsigned delta_lobes,
                           transport_scratch *scratch)
@@ -229,6 +247,7 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
     if (!pass->maps[c])
         return (spectrum){0};
     estimate_options options = pass->estimates[c];
+    options.radius = local_radius(pass, c, at->hit->p, &scratch->estimate.hits);
     options.scene = pass->how->edges ? pass->scene : NULL;
     options.delta_lobes = delta_lobes ? delta_lobes | LOBE_ANY_SIDE : 0;
     bool timed = scratch->n_gathers++ % TIMED_SHARE == 0;

@@ -1,12 +1,14 @@
 /*
- * Radii without guessing: a pilot pass of few photons tells how dense they lie where the
- * camera looks (or, for caustics, where they concentrate), and from that the radius that
- * holds the wanted number of photons in a full pass follows by area,
+ * Radii without guessing: a pilot pass of few photons tells how dense they lie, and from
+ * that the radius that holds the wanted number of photons in a full pass follows by area,
  *
  *     r = r_k sqrt(wanted / k · N_pilot / N),
  *
- * r_k being the median distance to the k-th nearest. Everything scales with the scene:
- * the same scene in millimetres and in metres gets the same radius in pixels.
+ * r_k being the distance to the k-th nearest pilot photon. It is kept for places all over
+ * the scene: a caustic's focus gets a small radius, the faint light around it a large
+ * one. Passes shrink all of them alike, so the estimate converges as with one radius
+ * (Knaus & Zwicker 2011). Everything scales with the scene: in millimetres and in metres
+ * it gets the same radius in pixels.
  */
 #include "transport/photonmap.h"
 #include "transport/visible.h"
@@ -17,6 +19,7 @@ enum {
     PILOT_PHOTONS = 20000,
     PILOT_POINTS = 512,
     PILOT_NEAREST = 16,
+    PLACES = 8192, /* at which a radius is kept, at most */
 };
 
 /* Photons wanted within the radius, summed over all passes: what they are shared among
@@ -63,29 +66,55 @@ static float nearest_distance(const photon_map *map, vec3 p, photon_hits *hits)
     return sqrtf(d2);
 }
 
-/* Where to measure: caustics at their own photons, the rest where the camera looks. */
-static vec3 probe(const pilot *p, photon_class c, const photon_map *map, size_t i)
+/* Bounds of a class' radii, and what turns the pilot's distances into radii. */
+typedef struct radius_rule {
+    double scale, least, largest;
+} radius_rule;
+
+static double radius_by(const radius_rule *rule, float distance)
 {
-    const photon_store *store = photon_map_store(map);
-    if (c != PHOTON_CAUSTIC)
-        return p->points[i].p;
-    return photon_store_get(store, i * store->n / PILOT_POINTS).p;
+    return CLAMP(rule->scale * (double)distance, rule->least, rule->largest);
 }
 
-static double measured_radius(const pilot *p, photon_class c, const photon_map *map)
+/* The median over the places where the camera looks or, for caustics, where photons are.
+ */
+static double typical_radius(const pilot *p, photon_class c, const photon_map *map,
+                             const radius_rule *rule)
 {
     float distances[PILOT_POINTS];
+    const photon_store *store = photon_map_store(map);
     size_t n = 0, n_probes = c == PHOTON_CAUSTIC ? PILOT_POINTS : p->n_points;
     photon_hits hits = {0};
-    if (photon_map_store(map)->n < PILOT_NEAREST)
-        n_probes = 0;
-    for (size_t i = 0; i < n_probes; i++) {
-        float d = nearest_distance(map, probe(p, c, map, i), &hits);
+    for (size_t i = 0; i < n_probes && store->n >= PILOT_NEAREST; i++) {
+        vec3 at = c == PHOTON_CAUSTIC ? photon_store_get(store, i * store->n / n_probes).p
+                                      : p->points[i].p;
+        float d = nearest_distance(map, at, &hits);
         if (d > 0.0f)
             distances[n++] = d;
     }
     photon_hits_clear(&hits);
-    return n > 0 ? (double)median(distances, n) : 0.0;
+    return n > 0 ? radius_by(rule, median(distances, n)) : 0.2 * rule->largest;
+}
+
+/* A radius at each of some of the pilot's photons, evenly chosen. */
+static photon_map *keep_radii(const photon_map *map, const radius_rule *rule,
+                              GError **error)
+{
+    const photon_store *pilots = photon_map_store(map);
+    size_t n = MIN(pilots->n, PLACES);
+    photon_store places = {0};
+    photon_hits hits = {0};
+    if (!photon_store_reserve(&places, n, error))
+        return NULL;
+    for (size_t i = 0; i < n; i++) {
+        photon at = photon_store_get(pilots, i * pilots->n / n);
+        float d = nearest_distance(map, at.p, &hits);
+        double r = d > 0.0f ? radius_by(rule, d) : rule->largest;
+        at.flux = spectrum_fill((float)r);
+        photon_store_put(&places, &at);
+    }
+    photon_hits_clear(&hits);
+    return photon_map_build(MAP_KDTREE, &places, 0.0f, 1, error);
 }
 
 static double least_radius(const pilot *p)
@@ -96,10 +125,10 @@ static double least_radius(const pilot *p)
     return p->n_points > 0 ? (double)(LEAST_PIXELS * median(pixels, p->n_points)) : 0.0;
 }
 
-static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
-                          GError **error)
+static photon_map *pilot_map(const pilot *p, photon_class c, const cancel_flag *cancel,
+                             uint64_t *n_emitted, GError **error)
 {
-    transport_plan *plan = p->plan;
+    const transport_plan *plan = p->plan;
     trace_task task = {
         .scene = plan->scene,
         .how = &plan->how,
@@ -111,23 +140,35 @@ static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
         .cancel = cancel,
     };
     trace_result traced;
+    *n_emitted = task.n_photons;
     if (!photon_trace(&task, false, &traced, error))
-        return false;
+        return NULL;
     photon_store store = traced.photons;
     traced.photons = (photon_store){0};
     trace_result_clear(&traced);
-    g_autoptr(photon_map) map =
-        photon_map_build(MAP_KDTREE, &store, 0.0f, (unsigned)plan->how.threads, error);
+    return photon_map_build(MAP_KDTREE, &store, 0.0f, (unsigned)plan->how.threads, error);
+}
+
+static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
+                          GError **error)
+{
+    transport_plan *plan = p->plan;
+    uint64_t n_emitted;
+    g_autoptr(photon_map) map = pilot_map(p, c, cancel, &n_emitted, error);
     if (!map)
         return false;
-    double density = (double)plan->n_photons[c] / (double)task.n_photons;
     double passes = (double)settings_planned_passes(&plan->how);
     double wanted = fmax(photons_wanted[c] / passes, photons_wanted_least[c]);
-    double r = measured_radius(p, c, map) * sqrt(wanted / PILOT_NEAREST / density);
+    double density = (double)plan->n_photons[c] / (double)n_emitted;
     double largest = 0.1 * (double)plan->scene->radius;
-    plan->radius[c] =
-        r > 0.0 ? CLAMP(r, MIN(least_radius(p), largest), largest) : 0.2 * largest;
-    return true;
+    const radius_rule rule = {
+        .scale = sqrt(wanted / PILOT_NEAREST / density),
+        .least = MIN(least_radius(p), largest),
+        .largest = largest,
+    };
+    plan->radius[c] = typical_radius(p, c, map, &rule);
+    plan->radius_map[c] = keep_radii(map, &rule, error);
+    return plan->radius_map[c] != NULL;
 }
 
 bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,

@@ -20,4 +20,6 @@ void transport_plan_clear(transport_plan *plan)
 {
     emission_guide_free(plan->guide);
     plan->guide = NULL;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        g_clear_pointer(&plan->radius_map[c], photon_map_free);
 }

@@ -56,8 +56,11 @@ typedef struct transport_plan {
     settings how;
     uint64_t
         n_photons[N_PHOTON_CLASSES]; /**< emitted each pass; 0: the class is not needed */
-    double radius[N_PHOTON_CLASSES]; /**< of pass 0, m */
-    emission_guide *guide;           /**< owned; NULL: none was learned */
+    double radius[N_PHOTON_CLASSES]; /**< of pass 0, m: everywhere, or the median */
+    /** Where the radius is automatic: places (as photons) whose flux[0] is the radius of
+     * pass 0 around there; owned. NULL: the same everywhere. */
+    photon_map *radius_map[N_PHOTON_CLASSES];
+    emission_guide *guide; /**< owned; NULL: none was learned */
 } transport_plan;
 
 /** @brief Frees what the plan owns. */
