@@ -223,12 +223,14 @@ static bool gather_once(gather *g, const photon_map *map, estimate_scratch *scra
 }
 
 /* The photons again, of the part of the disc that is surface in sight, and its area. */
-static bool gather_part(gather *g, const photon_map *map, const neighbourhood *hood,
+static bool gather_part(gather *g, const photon_map *map, neighbourhood *hood,
                         estimate_scratch *scratch, float *area)
 {
-    estimate_options within = *g->options;
+    const estimate_options *options = g->options;
+    estimate_options within = *options;
     within.nearest = 0;
     within.radius = hood->radius;
+    *area *= neighbourhood_coverage(hood, &within.kernel);
     g->options = &within;
     g->hood = hood;
     g->probe.flat = true;
@@ -236,7 +238,8 @@ static bool gather_part(gather *g, const photon_map *map, const neighbourhood *h
     g->n = 0;
     g->sum = (spectrum){0};
     bool done = gather_once(g, map, scratch);
-    *area *= neighbourhood_coverage(hood, &within.kernel);
+    g->options = options;
+    g->hood = NULL;
     return done;
 }
 
@@ -247,7 +250,10 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
     const estimate_options *options = g->options;
     bool done = gather_once(g, map, scratch);
     float area = kernel_area(&options->kernel, g->r2);
-    neighbourhood hood = {options->scene, g->probe.p, g->probe.n, sqrtf(g->r2)};
+    neighbourhood hood = {.scene = options->scene,
+                          .p = g->probe.p,
+                          .n = g->probe.n,
+                          .radius = sqrtf(g->r2)};
     if (options->scene && g->n > 0 && isfinite(hood.radius) &&
         !neighbourhood_is_whole(&hood))
         done = gather_part(g, map, &hood, scratch, &area) && done;

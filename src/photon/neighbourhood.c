@@ -6,16 +6,13 @@
 
 enum {
     RIM_PROBES = 6,
-    AREA_PROBES = 32,
+    AREA_PROBES = 24,
 };
 
 /* How far probes are lifted off the surface, and where the rim is probed, over the
  * radius. */
 #define LIFT 0.06f
 #define RIM 0.9f
-
-/* A sight line ends this short of its end, over its length: the end lies on a surface. */
-#define SHORTENING 0.02f
 
 /* Even where no probe passes, the centre itself is surface. */
 #define LEAST_COVERAGE (0.5f / AREA_PROBES)
@@ -30,62 +27,82 @@ static float angle_at(vec3 p)
     return 2.0f * PI_F * (float)(h >> 40) * 0x1p-24f;
 }
 
-static bool is_clear(const neighbourhood *hood, vec3 from, vec3 to)
+static vec3 direction_at(const neighbourhood *hood, float angle)
 {
-    vec3 way = to - from;
-    float length = length3(way);
-    if (!(length > 0.0f))
-        return true;
-    ray r = {from, way / length, length * (1.0f - SHORTENING), 0.0f};
-    return !scene_occluded(hood->scene, &r);
+    return hood->frame.s * cosf(angle) + hood->frame.t * sinf(angle);
 }
 
-bool neighbourhood_sees(const neighbourhood *hood, vec3 q)
+static void turn_frame(neighbourhood *hood)
 {
-    vec3 lift = hood->n * (LIFT * hood->radius);
-    return is_clear(hood, hood->p + lift, q + lift);
+    hood->frame = frame_from_normal(hood->n);
+    vec3 s = direction_at(hood, angle_at(hood->p));
+    hood->frame = (frame){s, cross3(hood->n, s), hood->n};
 }
 
-/* True if the surface goes on to q, a point of the disc's plane. */
-static bool reaches(const neighbourhood *hood, vec3 q)
+static vec3 lifted(const neighbourhood *hood, vec3 p)
 {
-    if (!neighbourhood_sees(hood, q))
-        return false;
+    return p + hood->n * (LIFT * hood->radius);
+}
+
+/* True if there is surface of the disc under or at the point q of its plane. */
+static bool is_surface(const neighbourhood *hood, vec3 q)
+{
     float slab = NEIGHBOURHOOD_FLATTEN * hood->radius, height = LIFT * hood->radius;
-    ray down = {q + hood->n * height, -hood->n, height + slab, 0.0f};
+    ray down = {lifted(hood, q), -hood->n, height + slab, 0.0f};
     surface_hit hit;
     return scene_intersect(hood->scene, &down, &hit) && hit.t > height - slab;
 }
 
-static vec3 disc_point(const neighbourhood *hood, const frame *f, float r, float angle)
+bool neighbourhood_is_whole(neighbourhood *hood)
 {
-    return hood->p + hood->radius * r * (f->s * cosf(angle) + f->t * sinf(angle));
-}
-
-bool neighbourhood_is_whole(const neighbourhood *hood)
-{
-    frame f = frame_from_normal(hood->n);
-    float first = angle_at(hood->p);
+    turn_frame(hood);
     for (int i = 0; i < RIM_PROBES; i++) {
-        float angle = first + (2.0f * PI_F / RIM_PROBES) * (float)i;
-        if (!reaches(hood, disc_point(hood, &f, RIM, angle)))
+        vec3 d = direction_at(hood, (2.0f * PI_F / RIM_PROBES) * (float)i);
+        float rim = RIM * hood->radius;
+        ray along = {lifted(hood, hood->p), d, rim, 0.0f};
+        if (scene_occluded(hood->scene, &along) || !is_surface(hood, hood->p + rim * d))
             return false;
     }
     return true;
 }
 
+/* How far one can see from the centre, along the surface, in the middle of each sector.
+ */
+static void probe_sectors(neighbourhood *hood)
+{
+    for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++) {
+        float angle = (2.0f * PI_F / NEIGHBOURHOOD_SECTORS) * ((float)i + 0.5f);
+        ray along = {lifted(hood, hood->p), direction_at(hood, angle), hood->radius,
+                     0.0f};
+        surface_hit hit;
+        bool blocked = scene_intersect(hood->scene, &along, &hit);
+        hood->clear[i] = blocked ? hit.t : hood->radius;
+    }
+}
+
+bool neighbourhood_sees(const neighbourhood *hood, vec3 q)
+{
+    vec3 d = q - hood->p;
+    float x = dot3(d, hood->frame.s), y = dot3(d, hood->frame.t);
+    float turn = atan2f(y, x) * (0.5f * INV_PI_F);
+    int sector = (int)((turn < 0.0f ? turn + 1.0f : turn) * NEIGHBOURHOOD_SECTORS);
+    float clear = hood->clear[sector < NEIGHBOURHOOD_SECTORS ? sector : 0];
+    return x * x + y * y < clear * clear;
+}
+
 /* Probes on a sunflower spiral are even in area; the kernel weighs them. */
-float neighbourhood_coverage(const neighbourhood *hood, const kernel *k)
+float neighbourhood_coverage(neighbourhood *hood, const kernel *k)
 {
     const float golden_angle = 2.39996323f;
-    frame f = frame_from_normal(hood->n);
-    float first = angle_at(hood->p), whole = 0.0f, found = 0.0f;
+    float whole = 0.0f, found = 0.0f;
+    probe_sectors(hood);
     for (int i = 0; i < AREA_PROBES; i++) {
         float r2 = ((float)i + 0.5f) / AREA_PROBES;
         float weight = kernel_eval(k, r2, 1.0f);
+        vec3 d = direction_at(hood, golden_angle * (float)i);
+        vec3 q = hood->p + hood->radius * sqrtf(r2) * d;
         whole += weight;
-        if (reaches(hood,
-                    disc_point(hood, &f, sqrtf(r2), first + golden_angle * (float)i)))
+        if (neighbourhood_sees(hood, q) && is_surface(hood, q))
             found += weight;
     }
     return maxf(found / whole, LEAST_COVERAGE);

@@ -19,21 +19,26 @@
 #include "photon/kernel.h"
 #include "scene/scene.h"
 
-/** @brief A disc to be probed. Plain values; thread-safe. */
+enum { NEIGHBOURHOOD_SECTORS = 16 };
+
+/** @brief A disc to be probed. The first three are the caller's; thread-safe. */
 typedef struct neighbourhood {
     const scene *scene;
     vec3 p, n;    /**< centre, unit geometric normal on the side that is seen */
     float radius; /**< m */
+    frame frame;  /**< turned by an angle of its own for every place */
+    float clear[NEIGHBOURHOOD_SECTORS]; /**< how far each sector is open, m */
 } neighbourhood;
 
 /** Height over radius within which a surface counts as the disc's. */
 #define NEIGHBOURHOOD_FLATTEN 0.03f
 
 /** @brief True if a few probes around the rim find nothing amiss. */
-bool neighbourhood_is_whole(const neighbourhood *hood);
+bool neighbourhood_is_whole(neighbourhood *hood);
 
-/** @brief Share of the kernel's area that is surface in sight, in (0, 1]. */
-float neighbourhood_coverage(const neighbourhood *hood, const kernel *k);
+/** @brief Probes all sectors, and gives the share of the kernel's area that is surface in
+ * sight, in (0, 1]. After it neighbourhood_sees may be asked. */
+float neighbourhood_coverage(neighbourhood *hood, const kernel *k);
 
-/** @brief True if nothing stands between the centre and q, a point near the plane. */
+/** @brief True if q, a point near the plane, lies in the open part of its sector. */
 bool neighbourhood_sees(const neighbourhood *hood, vec3 q);

@@ -222,7 +222,7 @@ static const wavelengths *pass_wavelengths(const void *pass)
 /* One gather in so many is timed: the clock costs as much as a small gather. */
 enum { TIMED_SHARE = 16 };
 
-#define LARGEST_OVER_TYPICAL 8.0f
+#define LARGEST_OVER_TYPICAL 6.0f
 
 /* A place further from its radius' own place than that radius reaches is emptier still.
    No radius is so much larger than the typical one that a look-up gets slow. */
