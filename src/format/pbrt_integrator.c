@@ -209,7 +209,7 @@ static void apply_sppm(pbrt_parser *parser, const sampling *samples)
     const pending *in = &parser->integrator;
     const film_settings *film = &parser->scene->film;
     int photons = -1;
-    float radius = 1.0f;
+    float radius = 0.0f; /* automatic, where pbrt would start from 1 */
     GError *error = NULL;
     set(parser, in->place, "integrator", "sppm");
     apply_depth(parser);

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "photon/trace.h"
+#include "transport/aim.h"
 
 static const char *const class_names[N_PHOTON_CLASSES] = {"direct", "indirect",
                                                           "caustic"};
@@ -21,25 +22,36 @@ static uint64_t budget(const settings *how, photon_class c)
     return (uint64_t)MAX(own > 0 ? own : how->photons / n_sharing, 1);
 }
 
-static trace_task task_for(const scene *s, const settings *how, photon_class c)
+/* What a render would plan, without the radii. */
+static bool make_plan(transport_plan *plan, const scene *s, const settings *how,
+                      GError **error)
+{
+    *plan = (transport_plan){.scene = s, .how = *how};
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        bool possible = c != PHOTON_CAUSTIC || s->n_caustic_shapes > 0;
+        plan->n_photons[c] = possible ? budget(how, (photon_class)c) : 0;
+    }
+    return aim_caustics(plan, NULL, error);
+}
+
+static trace_task task_for(const transport_plan *plan, photon_class c)
 {
     return (trace_task){
-        .scene = s,
-        .how = how,
-        .w = wavelengths_for_pass((uint64_t)how->seed, 0),
+        .scene = plan->scene,
+        .how = &plan->how,
+        .w = wavelengths_for_pass((uint64_t)plan->how.seed, 0),
         .photon_class = c,
-        .n_photons = budget(how, c),
+        .guide = plan->guide,
+        .n_photons = plan->n_photons[c],
     };
 }
 
-static bool trace_class(render_photons *p, const scene *s, const settings *how,
-                        photon_class c, GError **error)
+static bool trace_class(render_photons *p, const transport_plan *plan, photon_class c,
+                        GError **error)
 {
     double start = seconds();
-    trace_task task = task_for(s, how, c);
+    trace_task task = task_for(plan, c);
     trace_result result = {0};
-    if (c == PHOTON_CAUSTIC && s->n_caustic_shapes == 0)
-        return true;
     if (!photon_trace(&task, false, &result, error))
         return false;
     render_statistics *st = &p->statistics;
@@ -57,11 +69,14 @@ static bool trace_class(render_photons *p, const scene *s, const settings *how,
 render_photons *render_trace_photons(const scene *s, const settings *how, GError **error)
 {
     g_autoptr(render_photons) p = g_aligned_alloc0(1, sizeof *p, 64);
+    transport_plan plan;
     p->w = wavelengths_for_pass((uint64_t)how->seed, 0);
-    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        if (!trace_class(p, s, how, (photon_class)c, error))
-            return NULL;
-    }
+    bool ok = make_plan(&plan, s, how, error);
+    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++)
+        ok = trace_class(p, &plan, (photon_class)c, error);
+    transport_plan_clear(&plan);
+    if (!ok)
+        return NULL;
     p->statistics.time_total = p->statistics.time_trace;
     p->statistics.memory_peak = memory_peak();
     return g_steal_pointer(&p);
@@ -142,14 +157,14 @@ bool render_photon_story(const scene *s, const settings *how, size_t n,
                          void (*write)(const char *line, void *data), void *data,
                          GError **error)
 {
-    (void)error;
-    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        trace_task task = task_for(s, how, (photon_class)c);
+    transport_plan plan;
+    bool ok = make_plan(&plan, s, how, error);
+    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
+        trace_task task = task_for(&plan, (photon_class)c);
         story st = {s, &task.w, (photon_class)c, write, data};
-        if (c == PHOTON_CAUSTIC && s->n_caustic_shapes == 0)
-            continue;
         for (size_t i = 0; i < MIN(n, task.n_photons); i++)
             photon_tell(&task, i, tell_event, &st);
     }
-    return true;
+    transport_plan_clear(&plan);
+    return ok;
 }
