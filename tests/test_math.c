@@ -9,6 +9,7 @@
 #include "math/warp.h"
 
 #include <glib.h>
+#include <string.h>
 
 static void test_transform_inverts(void)
 {
@@ -66,6 +67,33 @@ static void test_sampler_pairs_are_nets(void)
             check_net(&s, dimension, 8);
         s.index = 1024;
         check_net(&s, 0, 10);
+    }
+}
+
+static bool same_bits(float a, float b)
+{
+    return memcmp(&a, &b, sizeof a) == 0;
+}
+
+static void test_sampler_side_by_side_is_one_by_one(void)
+{
+    for (uint32_t i = 0; i < 2000; i++) {
+        sampler one = sampler_make(i % 7, i * 2654435761u), four = one;
+        for (int draw = 0; draw < 6; draw++) { /* past the last stratified dimension */
+            float lobe = sampler_1d(&one);
+            vec2 direction = sampler_2d(&one);
+            float roulette = sampler_1d(&one);
+            scatter_numbers s = sampler_scatter(&four);
+            g_assert_true(same_bits(s.lobe, lobe) && same_bits(s.roulette, roulette));
+            g_assert_true(same_bits(s.direction.x, direction.x) &&
+                          same_bits(s.direction.y, direction.y));
+            float light = sampler_1d(&one), primitive = sampler_1d(&one);
+            vec2 place = sampler_2d(&one);
+            light_numbers l = sampler_light(&four);
+            g_assert_true(same_bits(l.light, light) && same_bits(l.primitive, primitive));
+            g_assert_true(same_bits(l.place.x, place.x) && same_bits(l.place.y, place.y));
+        }
+        g_assert_cmpuint(one.dimension, ==, four.dimension);
     }
 }
 
@@ -150,6 +178,8 @@ int main(int argc, char **argv)
     g_test_add_func("/math/transform/rotates", test_rotation_turns_counter_clockwise);
     g_test_add_func("/math/transform/look-at", test_look_at);
     g_test_add_func("/math/sampler/nets", test_sampler_pairs_are_nets);
+    g_test_add_func("/math/sampler/side-by-side",
+                    test_sampler_side_by_side_is_one_by_one);
     g_test_add_func("/math/sampler/uniform", test_sampler_is_uniform_and_uncorrelated);
     g_test_add_func("/math/warp/integrals", test_warps_integrate);
     g_test_add_func("/math/frame/orthonormal", test_frames_are_orthonormal);

@@ -76,3 +76,84 @@ vec2 sampler_2d(sampler *s)
         scrambled(shuffled, scramble),
         scrambled(sobol_second_reversed(shuffled), scramble * 0x9e3779b9u + 1u)};
 }
+
+/* ---- Four numbers side by side, the same to the bit ---- */
+
+typedef uint8_t bytes16 __attribute__((vector_size(16)));
+typedef uint32_t words4 __attribute__((vector_size(16)));
+typedef int32_t ints4 __attribute__((vector_size(16)));
+typedef float floats4 __attribute__((vector_size(16)));
+
+static words4 reverse_bits4(words4 x)
+{
+    x = (words4)__builtin_shufflevector((bytes16)x, (bytes16)x, 3, 2, 1, 0, 7, 6, 5, 4,
+                                        11, 10, 9, 8, 15, 14, 13, 12);
+    x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+    x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+    return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+static words4 laine_karras4(words4 x, words4 seed)
+{
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+static words4 sobol_second_reversed4(words4 x)
+{
+    x ^= x >> 16;
+    x ^= (x & 0xff00ff00u) >> 8;
+    x ^= (x & 0xf0f0f0f0u) >> 4;
+    x ^= (x & 0xccccccccu) >> 2;
+    return x ^ (x & 0xaaaaaaaau) >> 1;
+}
+
+/* Each lane by the hash of its dimension; `second` masks the one that is the second of a
+   pair and shares its hash with the first. */
+static floats4 four_numbers(uint32_t index, const uint64_t hash[4], words4 second)
+{
+    words4 seed = {(uint32_t)hash[0], (uint32_t)hash[1], (uint32_t)hash[2],
+                   (uint32_t)hash[3]};
+    words4 scramble = {(uint32_t)(hash[0] >> 32), (uint32_t)(hash[1] >> 32),
+                       (uint32_t)(hash[2] >> 32), (uint32_t)(hash[3] >> 32)};
+    words4 scramble_second = scramble * 0x9e3779b9u + 1u;
+    words4 reversed = (words4){0} + reverse_bits(index);
+    words4 shuffled = reverse_bits4(laine_karras4(reversed, seed));
+    words4 points = (sobol_second_reversed4(shuffled) & second) | (shuffled & ~second);
+    scramble = (scramble_second & second) | (scramble & ~second);
+    words4 bits = reverse_bits4(laine_karras4(points, scramble));
+    return __builtin_convertvector((ints4)(bits >> 8), floats4) * 0x1p-24f;
+}
+
+scatter_numbers sampler_scatter(sampler *s)
+{
+    uint32_t d = s->dimension;
+    if (d + 4 > SOBOL_DIMENSIONS) {
+        float lobe = sampler_1d(s);
+        vec2 direction = sampler_2d(s);
+        return (scatter_numbers){lobe, direction, sampler_1d(s)};
+    }
+    s->dimension += 4;
+    uint64_t pair = hash_mix(s->key, d + 1);
+    const uint64_t hash[4] = {hash_mix(s->key, d), pair, pair, hash_mix(s->key, d + 3)};
+    floats4 u = four_numbers(s->index, hash, (words4){0, 0, ~0u, 0});
+    return (scatter_numbers){u[0], {u[1], u[2]}, u[3]};
+}
+
+light_numbers sampler_light(sampler *s)
+{
+    uint32_t d = s->dimension;
+    if (d + 4 > SOBOL_DIMENSIONS) {
+        float light = sampler_1d(s), primitive = sampler_1d(s);
+        return (light_numbers){light, primitive, sampler_2d(s)};
+    }
+    s->dimension += 4;
+    uint64_t pair = hash_mix(s->key, d + 2);
+    const uint64_t hash[4] = {hash_mix(s->key, d), hash_mix(s->key, d + 1), pair, pair};
+    floats4 u = four_numbers(s->index, hash, (words4){0, 0, 0, ~0u});
+    return (light_numbers){u[0], u[1], {u[2], u[3]}};
+}

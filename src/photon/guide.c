@@ -92,13 +92,14 @@ float emission_guide_density(const emission_guide *guide,
 
 static void draw_uniform(sampler *random, float u[EMISSION_DIMENSIONS])
 {
-    u[0] = sampler_1d(random);
-    u[1] = sampler_1d(random);
-    for (int a = 2; a < EMISSION_DIMENSIONS; a += 2) {
-        vec2 pair = sampler_2d(random);
-        u[a] = pair.x;
-        u[a + 1] = pair.y;
-    }
+    light_numbers from = sampler_light(random);
+    vec2 direction = sampler_2d(random);
+    u[0] = from.light;
+    u[1] = from.primitive;
+    u[2] = from.place.x;
+    u[3] = from.place.y;
+    u[4] = direction.x;
+    u[5] = direction.y;
 }
 
 float emission_guide_draw(const emission_guide *guide, sampler *random,

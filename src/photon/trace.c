@@ -176,18 +176,16 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
         tell(path, PHOTON_ENDED, hit, 0);
         return false;
     }
-    float u_lobe = sampler_1d(&path->random);
-    vec2 u = sampler_2d(&path->random);
-    float u_roulette = sampler_1d(&path->random);
+    scatter_numbers u = sampler_scatter(&path->random);
     bsdf_sample next;
-    bool scattered = bsdf_sample_direction(b, -path->ray.direction, u_lobe, u, lobes,
-                                           TRANSPORT_IMPORTANCE, &next);
+    bool scattered = bsdf_sample_direction(b, -path->ray.direction, u.lobe, u.direction,
+                                           lobes, TRANSPORT_IMPORTANCE, &next);
     spectrum flux = scattered ? path->flux * next.weight : (spectrum){0};
     if (path->out && !spectrum_is_finite(flux))
         path->out->n_not_finite++;
     float survival =
         minf(1.0f, power_of(task->how, flux) / power_of(task->how, path->flux));
-    if (!(u_roulette < survival)) {
+    if (!(u.roulette < survival)) {
         tell(path, PHOTON_ABSORBED, hit, 0);
         return false;
     }

@@ -44,13 +44,11 @@ direct_radiance direct_light(const direct_query *query, sampler *random,
                              uint64_t *shadow_rays_traced)
 {
     const direct_radiance none = {{0}, {0}};
-    float u_light = sampler_1d(random);
-    float u_primitive = sampler_1d(random);
-    vec2 u = sampler_2d(random);
+    light_numbers u = sampler_light(random);
     int index;
     light_sample to_light;
-    if (!scene_sample_light(query->scene, query->w, query->hit->p, u_light, u_primitive,
-                            u, &index, &to_light))
+    if (!scene_sample_light(query->scene, query->w, query->hit->p, u.light, u.primitive,
+                            u.place, &index, &to_light))
         return none;
     const light *l = scene_light(query->scene, index);
     spectrum diffuse = weighed_lobe(query, l, &to_light, LOBE_DIFFUSE);

@@ -157,16 +157,14 @@ static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
 static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b,
                       sampler *random)
 {
-    float u_lobe = sampler_1d(random);
-    vec2 u = sampler_2d(random);
-    float u_roulette = sampler_1d(random);
+    scatter_numbers u = sampler_scatter(random);
     bsdf_sample next;
     if (!(b->lobes & (LOBE_SPECULAR | LOBE_GLOSSY)) ||
-        !bsdf_sample_direction(b, -path->ray.direction, u_lobe, u, LOBE_FOLLOWED,
-                               TRANSPORT_RADIANCE, &next))
+        !bsdf_sample_direction(b, -path->ray.direction, u.lobe, u.direction,
+                               LOBE_FOLLOWED, TRANSPORT_RADIANCE, &next))
         return false;
     float p = minf(1.0f, spectrum_mean(next.weight) * next.eta * next.eta);
-    if (!(u_roulette < p))
+    if (!(u.roulette < p))
         return false;
     path->beta *= next.weight / p;
     path->lane = next.lane;
