@@ -12,6 +12,7 @@ typedef struct chunk_store {
     photon_store photons;
     uint32_t *normals;
     uint64_t n_rays, n_not_finite;
+    size_t offset; /* of its photons in the whole */
     GError *error;
 } chunk_store;
 
@@ -105,7 +106,7 @@ static photon_class class_here(const photon_path *path)
 
 static bool grow(chunk_store *out, bool want_normals)
 {
-    size_t old = out->photons.capacity, capacity = MAX(2 * old, CHUNK / 2);
+    size_t old = out->photons.capacity, capacity = MAX(2 * old, CHUNK);
     if (!photon_store_reserve(&out->photons, capacity, &out->error))
         return false;
     if (want_normals) {
@@ -266,24 +267,6 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
     }
 }
 
-static void append(trace_result *result, const chunk_store *from)
-{
-    photon_store *to = &result->photons;
-    const photon_store *p = &from->photons;
-    if (p->n) {
-        memcpy(to->x + to->n, p->x, p->n * sizeof *p->x);
-        memcpy(to->y + to->n, p->y, p->n * sizeof *p->y);
-        memcpy(to->z + to->n, p->z, p->n * sizeof *p->z);
-        memcpy(to->wi + to->n, p->wi, p->n * sizeof *p->wi);
-        memcpy(to->flux + to->n, p->flux, p->n * sizeof *p->flux);
-        if (from->normals)
-            memcpy(result->normals + to->n, from->normals, p->n * sizeof *from->normals);
-    }
-    to->n += p->n;
-    result->n_rays += from->n_rays;
-    result->n_not_finite += from->n_not_finite;
-}
-
 static void chunk_clear(chunk_store *chunk)
 {
     photon_store_clear(&chunk->photons);
@@ -291,29 +274,66 @@ static void chunk_clear(chunk_store *chunk)
     chunk->normals = NULL;
 }
 
-/* Puts the chunks behind one another, freeing each once it is copied. */
-static bool join(chunk_store *chunks, size_t n, bool want_normals, trace_result *result,
-                 GError **error)
+typedef struct join_loop {
+    trace_result *result;
+    chunk_store *chunks;
+} join_loop;
+
+/* Copies a chunk to its place and frees it. */
+static void join_chunk(size_t i, size_t end, unsigned thread, void *data)
 {
-    size_t total = 0;
+    (void)end, (void)thread;
+    join_loop *loop = data;
+    chunk_store *chunk = &loop->chunks[i];
+    const photon_store *to = &loop->result->photons, *p = &chunk->photons;
+    size_t at = chunk->offset;
+    if (p->n) {
+        memcpy(to->x + at, p->x, p->n * sizeof *p->x);
+        memcpy(to->y + at, p->y, p->n * sizeof *p->y);
+        memcpy(to->z + at, p->z, p->n * sizeof *p->z);
+        memcpy(to->wi + at, p->wi, p->n * sizeof *p->wi);
+        memcpy(to->flux + at, p->flux, p->n * sizeof *p->flux);
+        if (chunk->normals)
+            memcpy(loop->result->normals + at, chunk->normals,
+                   p->n * sizeof *chunk->normals);
+    }
+    chunk_clear(chunk);
+}
+
+/* Gives each chunk its place in the whole. @return false if one failed. */
+static bool add_up(chunk_store *chunks, size_t n, trace_result *result, size_t *total,
+                   GError **error)
+{
+    *total = 0;
     for (size_t i = 0; i < n; i++) {
         if (chunks[i].error) {
             g_propagate_error(error, g_steal_pointer(&chunks[i].error));
             return false;
         }
-        total += chunks[i].photons.n;
+        chunks[i].offset = *total;
+        *total += chunks[i].photons.n;
+        result->n_rays += chunks[i].n_rays;
+        result->n_not_finite += chunks[i].n_not_finite;
     }
-    if (!photon_store_reserve(&result->photons, total, error))
+    return true;
+}
+
+/* Puts the chunks behind one another. */
+static bool join(chunk_store *chunks, size_t n, const trace_loop *traced,
+                 trace_result *result, GError **error)
+{
+    size_t total;
+    if (!add_up(chunks, n, result, &total, error) ||
+        !photon_store_reserve(&result->photons, total, error))
         return false;
-    if (want_normals) {
+    if (traced->want_normals) {
         result->normals = big_alloc(total, sizeof(uint32_t), "photon normals", error);
         if (!result->normals)
             return false;
     }
-    for (size_t i = 0; i < n; i++) {
-        append(result, &chunks[i]);
-        chunk_clear(&chunks[i]);
-    }
+    join_loop loop = {result, chunks};
+    parallel_for(n, 1, (unsigned)traced->task->how->threads, NULL, join_chunk, &loop);
+    result->photons.n = total;
     return true;
 }
 
@@ -330,7 +350,7 @@ bool photon_trace(const trace_task *task, bool want_normals, trace_result *resul
                              task->cancel, trace_chunk, &loop);
     if (!done)
         error_set(error, ERROR_CANCELLED, "cancelled");
-    bool joined = done && join(chunks, n_chunks, want_normals, result, error);
+    bool joined = done && join(chunks, n_chunks, &loop, result, error);
     for (size_t i = 0; i < n_chunks; i++) {
         chunk_clear(&chunks[i]);
         g_clear_error(&chunks[i].error);
