@@ -20,13 +20,15 @@ static float small_cosine(float x)
 vec2 warp_disk(vec2 u)
 {
     float x = 2.0f * u.x - 1.0f, y = 2.0f * u.y - 1.0f;
-    bool wide = fabsf(x) > fabsf(y);
-    float r = wide ? x : y, other = wide ? y : x;
+    /* Multiplied by one and zero, not branched on: a branch would be guessed wrong every
+       other time. */
+    float wide = fabsf(x) > fabsf(y) ? 1.0f : 0.0f, tall = 1.0f - wide;
+    float r = wide * x + tall * y, other = wide * y + tall * x;
     if (!(fabsf(r) > 0.0f))
         return (vec2){0.0f, 0.0f};
     float angle = 0.25f * PI_F * (other / r); /* from the axis that r is along */
     float along = r * small_cosine(angle), across = r * small_sine(angle);
-    return wide ? (vec2){along, across} : (vec2){across, along};
+    return (vec2){wide * along + tall * across, wide * across + tall * along};
 }
 
 vec3 warp_cosine_hemisphere(vec2 u)

@@ -53,7 +53,8 @@ bool bsdf_sample_direction(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigne
     local_direction o, i;
     if (!to_local(b, wo, &o))
         return false;
-    *out = (bsdf_sample){.lane = b->lane, .eta = 1.0f};
+    out->lane = b->lane; /* a model sets the rest, these only if it changes them */
+    out->eta = 1.0f;
     if (!b->ops->sample(b, o.w, u_lobe, u, lobes, mode, out))
         return false;
     out->wi = normalize3(frame_to_world(&b->shading, out->wi));

@@ -36,15 +36,20 @@ typedef struct surface_hit {
     int light;    /**< index in scene->lights of the area light here, or NO_INDEX */
 } surface_hit;
 
-/** @brief Where a ray that leaves the hit in the given direction must start so as not to
- * meet the same surface: moved along n_geom by a distance that scales with the
- * coordinates. */
+/** @brief Where a ray that leaves p in the given direction must start so as not to meet
+ * the same surface: moved along n_geom by a distance that scales with the coordinates.
+ * @param t,error as in surface_hit; 0 where nothing is known */
+static inline vec3 offset_point(vec3 p, vec3 n_geom, float t, float error, vec3 direction)
+{
+    float scale = maxf(max_component3(abs3(p)), 1e-3f * t) * 4e-6f;
+    scale = maxf(scale, error);
+    return p + n_geom * (dot3(direction, n_geom) < 0.0f ? -scale : scale);
+}
+
+/** @brief offset_point of a hit. */
 static inline vec3 hit_offset(const surface_hit *hit, vec3 direction)
 {
-    vec3 a = abs3(hit->p);
-    float scale = maxf(max_component3(a), 1e-3f * hit->t) * 4e-6f;
-    scale = maxf(scale, hit->error);
-    return hit->p + hit->n_geom * (dot3(direction, hit->n_geom) < 0.0f ? -scale : scale);
+    return offset_point(hit->p, hit->n_geom, hit->t, hit->error, direction);
 }
 
 /** @brief The ray that leaves a hit. */

@@ -65,13 +65,15 @@ static light_bound bound(const void *self, const wavelengths *w)
                          .power = 4.0f * PI_F * intensity};
 }
 
-static light_emission leave(const area_light *l, const shape_sample *at, vec3 direction)
+static void leave(const area_light *l, const shape_sample *at, vec3 direction,
+                  light_emission *out)
 {
-    surface_hit from = {.p = at->p, .n_geom = at->n, .error = at->error};
-    return (light_emission){.ray = hit_ray(&from, direction),
-                            .n = at->n,
-                            .pdf_position = at->pdf,
-                            .pdf_direction = direction_pdf(l, dot3(at->n, direction))};
+    out->ray = (ray){.origin = offset_point(at->p, at->n, 0.0f, at->error, direction),
+                     .direction = direction,
+                     .t_max = INFINITY};
+    out->n = at->n;
+    out->pdf_position = at->pdf;
+    out->pdf_direction = direction_pdf(l, dot3(at->n, direction));
 }
 
 static bool emit(const void *self, const wavelengths *w, float u_primitive,
@@ -84,7 +86,7 @@ static bool emit(const void *self, const wavelengths *w, float u_primitive,
         u_direction.x = 2.0f * u_direction.x - (back ? 1.0f : 0.0f);
     vec3 local = warp_cosine_hemisphere(u_direction);
     frame f = frame_from_normal(back ? -at.n : at.n);
-    *out = leave(l, &at, frame_to_world(&f, local));
+    leave(l, &at, frame_to_world(&f, local), out);
     out->flux = power(self, w);
     return out->pdf_direction > 0.0f;
 }
@@ -105,7 +107,7 @@ static bool emit_toward(const void *self, const wavelengths *w, float u_primitiv
     shape_sample at = shape_sample_area(l->on, u_primitive, u);
     vec3 direction = normalize3(target - at.p);
     float cosine = dot3(at.n, direction);
-    *out = leave(l, &at, direction);
+    leave(l, &at, direction, out);
     out->flux = emitter_eval(&l->radiance, w) * (fabsf(cosine) * l->on->area);
     return out->pdf_direction > 0.0f;
 }
