@@ -148,9 +148,23 @@ static uint32_t pack_steps(int u, int v, unsigned flags)
            (uint32_t)flags << 30;
 }
 
-static int clamp_step(float x)
+static floats4 clamp_steps(floats4 x)
 {
-    return (int)clampf(x, -(float)OCTAHEDRON_STEPS, (float)OCTAHEDRON_STEPS);
+    const float end = (float)OCTAHEDRON_STEPS;
+    return max3(min3(x, (floats4){end, end, end, end}), -(floats4){end, end, end, end});
+}
+
+/* Squared sine, times |w|², of the angle between w and each of four grid points. The
+   points are computed as direction_octahedron does, in floats: exact all the same. */
+static floats4 squared_sines(floats4 u, floats4 v, vec3 w)
+{
+    const vec3_bits sign = (vec3_bits){0} + INT32_MIN;
+    floats4 z = (float)OCTAHEDRON_STEPS - abs3(u) - abs3(v);
+    vec3_bits fold = (vec3_bits)max3(-z, (floats4){0});
+    floats4 x = u - (floats4)(fold | ((vec3_bits)u & sign));
+    floats4 y = v - (floats4)(fold | ((vec3_bits)v & sign));
+    floats4 a = y * w[2] - z * w[1], b = z * w[0] - x * w[2], c = x * w[1] - y * w[0];
+    return (a * a + b * b + c * c) / (x * x + y * y + z * z);
 }
 
 uint32_t direction_pack(vec3 w, unsigned flags)
@@ -162,19 +176,13 @@ uint32_t direction_pack(vec3 w, unsigned flags)
         u = copysignf((float)OCTAHEDRON_STEPS - fabsf(o[1]), o[0]);
         v = copysignf((float)OCTAHEDRON_STEPS - fabsf(o[0]), o[1]);
     }
-    uint32_t best = 0;
-    float best_sine2 = INFINITY;
-    for (unsigned corner = 0; corner < 4; corner++) {
-        float cu = floorf(u) + (float)(corner & 1), cv = floorf(v) + (float)(corner >> 1);
-        uint32_t packed = pack_steps(clamp_step(cu), clamp_step(cv), flags);
-        vec3 candidate = direction_octahedron(packed);
-        float sine2 = length3_2(cross3(candidate, w)) / length3_2(candidate);
-        if (sine2 < best_sine2) {
-            best_sine2 = sine2;
-            best = packed;
-        }
-    }
-    return best;
+    floats4 us = clamp_steps(floorf(u) + (floats4){0.0f, 1.0f, 0.0f, 1.0f});
+    floats4 vs = clamp_steps(floorf(v) + (floats4){0.0f, 0.0f, 1.0f, 1.0f});
+    floats4 sine2 = squared_sines(us, vs, w);
+    int best = 0;
+    for (int corner = 1; corner < 4; corner++)
+        best = sine2[corner] < sine2[best] ? corner : best;
+    return pack_steps((int)us[best], (int)vs[best], flags);
 }
 
 vec3 direction_unpack(uint32_t packed)
