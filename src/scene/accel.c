@@ -184,17 +184,17 @@ void accel_free(accel *a)
 
 /* ---- Queries ---- */
 
+/* Embree reads origin and tnear, direction and time, as vectors: written as vectors they
+ * reach it without waiting for the cache. */
 static struct RTCRay to_embree(const ray *r)
 {
-    return (struct RTCRay){.org_x = r->origin[0],
-                           .org_y = r->origin[1],
-                           .org_z = r->origin[2],
-                           .tnear = FLT_MIN,
-                           .dir_x = r->direction[0],
-                           .dir_y = r->direction[1],
-                           .dir_z = r->direction[2],
-                           .tfar = r->t_max,
-                           .mask = ~0u};
+    const vec3_bits xyz = {-1, -1, -1, 0};
+    const vec3 origin = choose3(xyz, r->origin, (vec3){0.0f, 0.0f, 0.0f, FLT_MIN});
+    const vec3 direction = choose3(xyz, r->direction, (vec3){0});
+    struct RTCRay to = {.tfar = r->t_max, .mask = ~0u};
+    memcpy(&to.org_x, &origin, sizeof origin);
+    memcpy(&to.dir_x, &direction, sizeof direction);
+    return to;
 }
 
 bool accel_intersect(const accel *a, const ray *r, surface_hit *hit)
