@@ -6,6 +6,7 @@
 #include "photon/estimate.h"
 #include "photon/trace.h"
 #include "scene_text.h"
+#include "transport/aim.h"
 
 #include <string.h>
 
@@ -73,13 +74,13 @@ typedef struct flux_mean {
     double mean, error;
 } flux_mean;
 
-static flux_mean stored_flux(const scene *s, const settings *how, photon_class c,
-                             uint64_t n)
+static flux_mean stored_flux_by(const transport_plan *plan, photon_class c, uint64_t n)
 {
     enum { BATCHES = 16 };
     double sum = 0, sum2 = 0;
     for (uint32_t batch = 0; batch < BATCHES; batch++) {
-        trace_task task = task_for(s, how, c, n / BATCHES);
+        trace_task task = task_for(plan->scene, &plan->how, c, n / BATCHES);
+        task.guide = plan->guide;
         trace_result result;
         task.pass = batch;
         g_assert_true(photon_trace(&task, false, &result, NULL));
@@ -93,6 +94,13 @@ static flux_mean stored_flux(const scene *s, const settings *how, photon_class c
     double mean = sum / BATCHES;
     return (flux_mean){mean,
                        sqrt(fmax(0.0, sum2 / BATCHES - mean * mean) / (BATCHES - 1))};
+}
+
+static flux_mean stored_flux(const scene *s, const settings *how, photon_class c,
+                             uint64_t n)
+{
+    const transport_plan plan = {.scene = s, .how = *how};
+    return stored_flux_by(&plan, c, n);
 }
 
 static void test_emitted_flux_is_the_power(void)
@@ -192,6 +200,16 @@ static void test_aimed_emission_has_the_same_flux(void)
         double error = sqrt(plain.error * plain.error + aimed.error * aimed.error);
         g_test_message("light %zu: uniform %g +- %g, aimed %g +- %g", i, plain.mean,
                        plain.error, aimed.mean, aimed.error);
+        transport_plan plan = {.scene = s, .how = how};
+        plan.how.caustic_emission = EMISSION_GUIDED;
+        plan.n_photons[PHOTON_CAUSTIC] = 1;
+        g_assert_true(aim_caustics(&plan, NULL, NULL));
+        flux_mean guided = stored_flux_by(&plan, PHOTON_CAUSTIC, 1 << 17);
+        transport_plan_clear(&plan);
+        double guided_error =
+            sqrt(plain.error * plain.error + guided.error * guided.error);
+        g_test_message("guided %g +- %g", guided.mean, guided.error);
+        g_assert_cmpfloat(fabs(plain.mean - guided.mean), <, 5 * guided_error);
         g_assert_cmpfloat(plain.mean, >, 0);
         g_assert_cmpfloat(fabs(plain.mean - aimed.mean), <, 5 * error);
         g_assert_cmpfloat(error, <, 0.03 * plain.mean);
@@ -205,8 +223,8 @@ static void test_integrating_sphere(void)
     settings how = quick_settings();
     g_autoptr(scene) s =
         scene_of(CAMERA "WorldBegin LightSource \"point\" \"rgb I\" [1 1 1]\n"
-                               "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
-                               "Shape \"sphere\" \"float radius\" 3\n");
+                        "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
+                        "Shape \"sphere\" \"float radius\" 3\n");
     trace_task task = task_for(s, &how, PHOTON_INDIRECT, 200000);
     trace_result result;
     g_assert_true(photon_trace(&task, false, &result, NULL));

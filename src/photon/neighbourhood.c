@@ -66,18 +66,23 @@ bool neighbourhood_is_whole(neighbourhood *hood)
     return true;
 }
 
-/* How far one can see from the centre, along the surface, in the middle of each sector.
- */
-static void probe_sectors(neighbourhood *hood)
+/* Corners of the horizon between open directions lie so far out that its sides clear the
+ * disc. */
+#define OPEN_HORIZON 1.03f
+
+/* A straight wall between two corners is the side between them: nothing behind it is
+ * seen. */
+static void probe_horizon(neighbourhood *hood)
 {
+    float reach = OPEN_HORIZON * hood->radius;
     for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++) {
-        float angle = (2.0f * PI_F / NEIGHBOURHOOD_SECTORS) * ((float)i + 0.5f);
-        ray along = {lifted(hood, hood->p), direction_at(hood, angle), hood->radius,
-                     0.0f};
+        float angle = (2.0f * PI_F / NEIGHBOURHOOD_SECTORS) * (float)i;
+        ray along = {lifted(hood, hood->p), direction_at(hood, angle), reach, 0.0f};
         surface_hit hit;
-        bool blocked = scene_intersect(hood->scene, &along, &hit);
-        hood->clear[i] = blocked ? hit.t : hood->radius;
+        float way = scene_intersect(hood->scene, &along, &hit) ? hit.t : reach;
+        hood->horizon[i] = (vec2){way * cosf(angle), way * sinf(angle)};
     }
+    hood->horizon[NEIGHBOURHOOD_SECTORS] = hood->horizon[0];
 }
 
 bool neighbourhood_sees(const neighbourhood *hood, vec3 q)
@@ -85,9 +90,10 @@ bool neighbourhood_sees(const neighbourhood *hood, vec3 q)
     vec3 d = q - hood->p;
     float x = dot3(d, hood->frame.s), y = dot3(d, hood->frame.t);
     float turn = atan2f(y, x) * (0.5f * INV_PI_F);
-    int sector = (int)((turn < 0.0f ? turn + 1.0f : turn) * NEIGHBOURHOOD_SECTORS);
-    float clear = hood->clear[sector < NEIGHBOURHOOD_SECTORS ? sector : 0];
-    return x * x + y * y < clear * clear;
+    int i = (int)((turn < 0.0f ? turn + 1.0f : turn) * NEIGHBOURHOOD_SECTORS);
+    i = i < NEIGHBOURHOOD_SECTORS ? i : NEIGHBOURHOOD_SECTORS - 1;
+    vec2 a = hood->horizon[i], b = hood->horizon[i + 1];
+    return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x) > 0.0f;
 }
 
 /* Probes on a sunflower spiral are even in area; the kernel weighs them. */
@@ -95,7 +101,7 @@ float neighbourhood_coverage(neighbourhood *hood, const kernel *k)
 {
     const float golden_angle = 2.39996323f;
     float whole = 0.0f, found = 0.0f;
-    probe_sectors(hood);
+    probe_horizon(hood);
     for (int i = 0; i < AREA_PROBES; i++) {
         float r2 = ((float)i + 0.5f) / AREA_PROBES;
         float weight = kernel_eval(k, r2, 1.0f);

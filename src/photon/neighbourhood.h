@@ -27,7 +27,9 @@ typedef struct neighbourhood {
     vec3 p, n;    /**< centre, unit geometric normal on the side that is seen */
     float radius; /**< m */
     frame frame;  /**< turned by an angle of its own for every place */
-    float clear[NEIGHBOURHOOD_SECTORS]; /**< how far each sector is open, m */
+    /** How far one sees along the surface, in the frame's plane, m: a polygon around the
+     * centre whose first corner stands again at the end. */
+    vec2 horizon[NEIGHBOURHOOD_SECTORS + 1];
 } neighbourhood;
 
 /** Height over radius within which a surface counts as the disc's. */
@@ -36,9 +38,9 @@ typedef struct neighbourhood {
 /** @brief True if a few probes around the rim find nothing amiss. */
 bool neighbourhood_is_whole(neighbourhood *hood);
 
-/** @brief Probes all sectors, and gives the share of the kernel's area that is surface in
+/** @brief Probes the horizon, and gives the share of the kernel's area that is surface in
  * sight, in (0, 1]. After it neighbourhood_sees may be asked. */
 float neighbourhood_coverage(neighbourhood *hood, const kernel *k);
 
-/** @brief True if q, a point near the plane, lies in the open part of its sector. */
+/** @brief True if q, a point near the plane, lies within the horizon. */
 bool neighbourhood_sees(const neighbourhood *hood, vec3 q);

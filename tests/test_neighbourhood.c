@@ -1,0 +1,112 @@
+/*
+ * Edges, corners and thin walls: photons are counted, and area measured, where the
+ * surface is.
+ */
+#include "photon/estimate.h"
+#include "math/sampler.h"
+#include "scene_text.h"
+
+#define CAMERA                                                                           \
+    "Camera \"perspective\" Film \"rgb\" \"integer xresolution\" 8 \"integer "           \
+    "yresolution\" 8\n"
+#define LAMP "LightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [0 0 5]\n"
+
+/* A floor of 2 x 2 m at z = 0, and a thin wall on x = 0.2. */
+#define FLOOR                                                                            \
+    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 1 1 0 -1 1 0] \"integer "       \
+    "indices\" [0 1 2 0 2 3]\n"
+#define WALL                                                                             \
+    "Shape \"trianglemesh\" \"point3 P\" [0.2 -1 0 0.2 1 0 0.2 1 1 0.2 -1 1] \"integer " \
+    "indices\" [0 1 2 0 2 3]\n"
+
+static const float radius = 0.1f;
+
+/* An even field of photons straight down, one W/m² on the floor where x lies in [x0, x1].
+ */
+static photon_map *field(float x0, float x1)
+{
+    enum { N = 200000 };
+    photon_store store = {0};
+    g_assert_true(photon_store_reserve(&store, N, NULL));
+    for (uint32_t i = 0; i < N; i++) {
+        sampler random = sampler_make(2, i);
+        vec2 u = sampler_2d(&random);
+        photon p = {.p = vec3_make(lerpf(x0, x1, u.x), 2 * u.y - 1, 0),
+                    .wi = vec3_make(0, 0, 1),
+                    .flux = spectrum_fill((x1 - x0) * 2.0f / N)};
+        photon_store_put(&store, &p);
+    }
+    return photon_map_build(MAP_GRID, &store, radius, 1, NULL);
+}
+
+/* Irradiance found around (x, 0, 0), mean over a stretch along y. */
+static double irradiance(const scene *s, const photon_map *map, float x)
+{
+    estimate_options options = {
+        .kernel = {KERNEL_EPANECHNIKOV, 1}, .radius = radius, .flatten = 1, .scene = s};
+    estimate_scratch scratch = {0};
+    double sum = 0;
+    enum { POINTS = 200 };
+    for (int i = 0; i < POINTS; i++) {
+        vec3 p = vec3_make(x, 0.004f * (float)(i - POINTS / 2), 0);
+        sum += (double)spectrum_mean(
+            photon_irradiance(map, p, vec3_make(0, 0, 1), &options, &scratch, NULL));
+    }
+    estimate_scratch_clear(&scratch);
+    return sum / POINTS;
+}
+
+static void check_even(const scene *s, const photon_map *map, const float *x, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        double e = irradiance(s, map, x[i]);
+        g_test_message("at x = %g: %g W/m2, expected 1", (double)x[i], e);
+        g_assert_cmpfloat(fabs(e - 1), <, 0.02);
+    }
+}
+
+static void test_open_floor(void)
+{
+    g_autoptr(scene) s = scene_of(CAMERA "WorldBegin\n" LAMP FLOOR);
+    g_autoptr(photon_map) map = field(-1, 1);
+    const float x[] = {0, 0.3f, -0.5f};
+    check_even(s, map, x, G_N_ELEMENTS(x));
+}
+
+static void test_edge_is_as_bright_as_the_middle(void)
+{
+    g_autoptr(scene) s = scene_of(CAMERA "WorldBegin\n" LAMP FLOOR);
+    g_autoptr(photon_map) map = field(-1, 1);
+    const float x[] = {0.93f, 0.96f, 0.99f, -0.97f};
+    check_even(s, map, x, G_N_ELEMENTS(x));
+    g_assert_cmpfloat(irradiance(NULL, map, 0.99f), <, 0.7); /* what is corrected */
+}
+
+static void test_corner_is_as_bright_as_the_middle(void)
+{
+    g_autoptr(scene) s = scene_of(CAMERA "WorldBegin\n" LAMP FLOOR WALL);
+    g_autoptr(photon_map) map = field(-1, 1);
+    const float x[] = {0.13f, 0.16f, 0.19f, 0.21f, 0.25f};
+    check_even(s, map, x, G_N_ELEMENTS(x));
+}
+
+/* Light on one side of the wall only: none comes through, and none is lost. */
+static void test_thin_wall_does_not_leak(void)
+{
+    g_autoptr(scene) s = scene_of(CAMERA "WorldBegin\n" LAMP FLOOR WALL);
+    g_autoptr(photon_map) map = field(0.2f, 1);
+    g_assert_cmpfloat(irradiance(NULL, map, 0.19f), >, 0.3); /* what is kept out */
+    g_assert_cmpfloat(irradiance(s, map, 0.19f), <, 1e-3);
+    g_assert_cmpfloat(irradiance(s, map, 0.15f), <, 1e-3);
+    g_assert_cmpfloat(fabs(irradiance(s, map, 0.22f) - 1), <, 0.02);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/neighbourhood/open", test_open_floor);
+    g_test_add_func("/neighbourhood/edge", test_edge_is_as_bright_as_the_middle);
+    g_test_add_func("/neighbourhood/corner", test_corner_is_as_bright_as_the_middle);
+    g_test_add_func("/neighbourhood/wall", test_thin_wall_does_not_leak);
+    return g_test_run();
+}
