@@ -191,6 +191,10 @@ static void test_options(void)
         "'-1'");
     refuse("Integrator \"photonmap\" \"float radius\" [1 2]\n" WORLD,
            "%s:1:24: parameter 'radius': expected one value, found 2");
+    refuse("Camera \"perspective\"\nWorldBegin\nLightSource \"point\" \"string group\" "
+           "\"a.b\"\n",
+           "%s:3:21: parameter 'group': expected letters, digits, _ and -, found "
+           "\"a.b\"");
     refuse("Integrator \"ao\"\n" WORLD,
            "%s:1:12: expected Integrator \"photonmap\" or one of pbrt's (sppm, path, "
            "volpath, simplepath, simplevolpath, randomwalk, lightpath, bdpt, mlt), found "

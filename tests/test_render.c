@@ -125,8 +125,7 @@ static void run_until(render *r, interruption when)
 static void test_stopping_changes_nothing(void)
 {
     const char *ways[] = {"integrator=path spp=2",
-                          "photons=3000 spp=1 final_gather=on "
-                          "gather_rays=4",
+                          "photons=3000 spp=1 final_gather=on gather_rays=4",
                           "integrator=auto photons=2000 spp=1"};
     g_autoptr(scene) s =
         scene_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS GLASS_BALL);
@@ -431,6 +430,112 @@ static void test_hidden_is_seen_in_mirrors(void)
     g_assert_cmpfloat(fabs(mean_of(b, "direct") / mean_of(a, "direct") - 1.0), <, 0.05);
 }
 
+/* ---- Light groups ---- */
+
+#define GROUPED_LIGHTS                                                                   \
+    ROOM_LAMP("\"string group\" \"key\"")                                                \
+    "LightSource \"point\" \"rgb I\" [0.5 1 2] \"point3 from\" [1.5 -1 1.2] \"string "   \
+    "group\" \"fill\"\n"                                                                 \
+    "LightSource \"infinite\" \"rgb L\" [1 1 1] \"string group\" \"sky\"\n"              \
+    "LightSource \"spot\" \"rgb I\" [9 1 1] \"point3 from\" [-1 -3 1] \"point3 to\" [0 " \
+    "0 0]\n"
+
+/* A room without a ceiling, so that the sky looks in. */
+#define OPEN_ROOM                                                                        \
+    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5]\n"                           \
+    "Shape \"trianglemesh\" \"point3 P\" [-2 -4 0 2 -4 0 2 2 0 -2 2 0 -2 -4 2 2 -4 2 "   \
+    "2 2 2 -2 2 2] \"integer indices\" [0 1 2 0 2 3 0 5 1 0 4 5 3 2 6 3 6 7 0 3 7 0 7 "  \
+    "4 "                                                                                 \
+    "1 5 6 1 6 2]\n"
+
+static const char *const group_layers[] = {"light.key", "light.fill", "light.sky",
+                                           "light.default"};
+
+static const char *const grouped_ways[] = {
+    "integrator=path passes=2 spp=4",
+    "integrator=auto passes=2 spp=2 photons=5000",
+    "passes=2 spp=2 photons=5000",
+    "passes=2 spp=2 photons=5000 direct_illumination=off radius=0.3",
+    "passes=1 spp=2 photons=5000 indirect_nearest=50 caustic_nearest=20 "
+    "photon_map=kdtree",
+    "passes=1 spp=1 photons=5000 final_gather=on gather_rays=8",
+    "passes=1 spp=1 photons=5000 final_gather=on gather_rays=8 precompute_radiance=off",
+};
+
+/* Pixel by pixel and channel by channel the groups sum to the picture. */
+static void test_groups_sum_to_the_beauty(void)
+{
+    g_autoptr(scene) s =
+        scene_of(ROOM_CAMERA SIZE(12) "PixelFilter \"gaussian\"\n"
+                                      "WorldBegin\n" GROUPED_LIGHTS OPEN_ROOM GLASS_BALL);
+    for (size_t i = 0; i < G_N_ELEMENTS(grouped_ways); i++) {
+        g_autoptr(image) img = render_with(s, grouped_ways[i]);
+        double worst = 0;
+        for (int c = 0; c < 3; c++) {
+            size_t channel[4];
+            for (int k = 0; k < 4; k++) {
+                g_autofree char *name =
+                    g_strdup_printf("%s.%c", group_layers[k], "RGB"[c]);
+                channel[k] = channel_of(img, name);
+            }
+            for (size_t p = 0; p < pixels_of(img); p++) {
+                double sum = 0, beauty = at(img, p, (size_t)c);
+                for (int k = 0; k < 4; k++)
+                    sum += at(img, p, channel[k]);
+                worst = fmax(worst, fabs(sum - beauty) / (fabs(beauty) + 0.01));
+            }
+        }
+        g_test_message("%s: off by %g", grouped_ways[i], worst);
+        for (int k = 0; k < 4; k++)
+            g_assert_cmpfloat(mean_of(img, group_layers[k]), >, 0.001);
+        g_assert_cmpfloat(worst, <, 1e-4);
+    }
+}
+
+/* A group is what its lamps give alone. */
+static void test_group_is_its_light_alone(void)
+{
+    g_autoptr(scene) all =
+        scene_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" GROUPED_LIGHTS OPEN_ROOM GLASS_BALL);
+    g_autoptr(scene) key = scene_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" ROOM_LAMP(
+        "\"string group\" \"key\"") OPEN_ROOM GLASS_BALL);
+    const char *const ways[] = {
+        "integrator=path passes=4 spp=64", "passes=8 spp=4 photons=40000",
+        "passes=4 spp=4 photons=40000 final_gather=on gather_rays=8"};
+    for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
+        g_autoptr(image) a = render_with(all, ways[i]);
+        g_autoptr(image) b = render_with(key, ways[i]);
+        g_test_message("%s: %g, alone %g", ways[i], mean_of(a, "light.key"),
+                       mean_of(b, ""));
+        g_assert_cmpint(image_channel(b, "light.default.R"), ==, -1);
+        g_assert_cmpfloat(fabs(mean_of(a, "light.key") / mean_of(b, "") - 1), <, 0.04);
+    }
+}
+
+/* Groups change nothing in the picture but rounding, and threads change not even that. */
+static void test_groups_change_nothing(void)
+{
+    g_autoptr(scene) s =
+        scene_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" GROUPED_LIGHTS OPEN_ROOM GLASS_BALL);
+    g_autoptr(scene) plain =
+        scene_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" ROOM_LAMP("") OPEN_ROOM GLASS_BALL);
+    g_autoptr(scene) named = scene_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" ROOM_LAMP(
+        "\"string group\" \"a\"") OPEN_ROOM GLASS_BALL);
+    for (size_t i = 0; i < G_N_ELEMENTS(grouped_ways); i++) {
+        g_autofree char *one = g_strconcat(grouped_ways[i], " threads=1", NULL);
+        g_autofree char *three = g_strconcat(grouped_ways[i], " threads=3", NULL);
+        g_autoptr(image) a = render_with(s, one), b = render_with(s, three);
+        assert_same_bits(a, b);
+        g_autoptr(image) without = render_with(plain, one),
+                         with = render_with(named, one);
+        g_assert_cmpint(image_channel(without, "light.default.R"), ==, -1);
+        for (size_t p = 0; p < pixels_of(with); p++)
+            for (size_t c = 0; c < 3; c++)
+                g_assert_cmpfloat(fabs(at(with, p, c) - at(without, p, c)), <=,
+                                  1e-4 * (0.01 + at(with, p, c)));
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -451,5 +556,8 @@ int main(int argc, char **argv)
     g_test_add_func("/render/hidden/shadow", test_hidden_casts_shadow);
     g_test_add_func("/render/hidden/caustic", test_hidden_casts_caustic);
     g_test_add_func("/render/hidden/mirror", test_hidden_is_seen_in_mirrors);
+    g_test_add_func("/render/groups/sum", test_groups_sum_to_the_beauty);
+    g_test_add_func("/render/groups/alone", test_group_is_its_light_alone);
+    g_test_add_func("/render/groups/nothing-else", test_groups_change_nothing);
     return g_test_run();
 }

@@ -12,6 +12,7 @@
  */
 #include "photon/estimate.h"
 
+#include "base/memory.h"
 #include "photon/map_kind.h"
 #include "photon/neighbourhood.h"
 
@@ -29,11 +30,14 @@ struct gather {
     const bsdf *b;
     vec3 wo;
     float r2, inv_r2;
-    void (*weigh)(gather *g);
+    /* Of photons begin .. end - 1 of the block. */
+    spectrum (*weigh)(const gather *g, size_t begin, size_t end);
     size_t n_block; /* photons in the block below, found but not yet weighed */
     size_t index[BLOCK + LANES];
     float weight[BLOCK + LANES]; /* κ */
     spectrum sum;
+    spectrum *groups; /* the sum, apart by tags */
+    size_t n_groups;
     size_t n;                  /* weighed */
     const neighbourhood *hood; /* if set, photons out of its sight are left out */
 };
@@ -41,18 +45,18 @@ struct gather {
 /* ---- Weighing a block ---- */
 
 /* Σ κ Φ */
-static void weigh_plain(gather *g)
+static spectrum weigh_plain(const gather *g, size_t begin, size_t end)
 {
     const spectrum *flux = g->probe.store->flux;
     spectrum even = {0}, odd = {0};
-    size_t i = 0;
-    for (; i + 2 <= g->n_block; i += 2) {
+    size_t i = begin;
+    for (; i + 2 <= end; i += 2) {
         even += g->weight[i] * flux[g->index[i]];
         odd += g->weight[i + 1] * flux[g->index[i + 1]];
     }
-    if (i < g->n_block)
+    if (i < end)
         even += g->weight[i] * flux[g->index[i]];
-    g->sum += even + odd;
+    return even + odd;
 }
 
 /* |wi·n| / |wi·n_geom| */
@@ -62,28 +66,42 @@ static float cosine_ratio(const bsdf *b, vec3 wi)
 }
 
 /* Σ κ Φ |wi·n| / |wi·n_geom|, of those on the same side of both normals */
-static void weigh_bent(gather *g)
+static spectrum weigh_bent(const gather *g, size_t begin, size_t end)
 {
     const photon_store *s = g->probe.store;
-    for (size_t i = 0; i < g->n_block; i++) {
+    spectrum sum = {0};
+    for (size_t i = begin; i < end; i++) {
         vec3 wi = direction_octahedron(s->wi[g->index[i]]);
         float weight = g->weight[i] * cosine_ratio(g->b, wi);
         if (dot3(wi, g->b->shading.n) * dot3(wi, g->b->n_geom) > 0.0f)
-            g->sum += weight * s->flux[g->index[i]];
+            sum += weight * s->flux[g->index[i]];
     }
+    return sum;
 }
 
 /* Σ f κ Φ |wi·n| / |wi·n_geom| */
-static void weigh_bsdf(gather *g)
+static spectrum weigh_bsdf(const gather *g, size_t begin, size_t end)
 {
     const estimate_options *options = g->options;
-    for (size_t i = 0; i < g->n_block; i++) {
+    spectrum sum = {0};
+    for (size_t i = begin; i < end; i++) {
         photon p = photon_store_get(g->probe.store, g->index[i]);
         bool delta = p.flags & PHOTON_FROM_DELTA;
         unsigned lobes = options->lobes | (delta ? options->delta_lobes : 0);
         spectrum f = bsdf_eval(g->b, g->wo, p.wi, lobes, TRANSPORT_RADIANCE);
         if (!spectrum_is_black(f))
-            g->sum += g->weight[i] * cosine_ratio(g->b, p.wi) * f * p.flux;
+            sum += g->weight[i] * cosine_ratio(g->b, p.wi) * f * p.flux;
+    }
+    return sum;
+}
+
+/* One by one, each also into the sum of its tag. */
+static void weigh_by_tag(gather *g)
+{
+    for (size_t i = 0; i < g->n_block; i++) {
+        spectrum part = g->weigh(g, i, i + 1);
+        g->groups[g->probe.store->tag[g->index[i]]] += part;
+        g->sum += part;
     }
 }
 
@@ -106,7 +124,10 @@ static void flush(gather *g)
 {
     if (g->hood)
         leave_out_unseen(g);
-    g->weigh(g);
+    if (g->n_groups)
+        weigh_by_tag(g);
+    else
+        g->sum += g->weigh(g, 0, g->n_block);
     g->n += g->n_block;
     g->n_block = 0;
 }
@@ -216,6 +237,10 @@ static bool gather_nearest(gather *g, const photon_map *map, estimate_scratch *s
 
 static bool gather_once(gather *g, const photon_map *map, estimate_scratch *scratch)
 {
+    g->n_block = g->n = 0;
+    g->sum = (spectrum){0};
+    for (size_t i = 0; i < g->n_groups; i++)
+        g->groups[i] = (spectrum){0};
     bool done = g->options->nearest ? gather_nearest(g, map, scratch)
                                     : gather_within(g, map, scratch);
     flush(g);
@@ -235,12 +260,16 @@ static bool gather_part(gather *g, const photon_map *map, neighbourhood *hood,
     g->hood = hood;
     g->probe.flat = true;
     g->probe.inv_flatten = 1.0f / NEIGHBOURHOOD_FLATTEN;
-    g->n = 0;
-    g->sum = (spectrum){0};
     bool done = gather_once(g, map, scratch);
     g->options = options;
     g->hood = NULL;
     return done;
+}
+
+static void scale_groups(estimate_scratch *scratch, spectrum factor)
+{
+    for (size_t i = 0; i < scratch->n_groups; i++)
+        scratch->groups[i] *= factor;
 }
 
 /* Σ over the photons around the point; zero when there are none or memory is refused. */
@@ -248,6 +277,9 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
                          estimate_info *info)
 {
     const estimate_options *options = g->options;
+    g->groups = scratch->groups;
+    g->n_groups = scratch->n_groups;
+    g->hood = NULL;
     bool done = gather_once(g, map, scratch);
     float area = kernel_area(&options->kernel, g->r2);
     neighbourhood hood = {.scene = options->scene,
@@ -261,6 +293,7 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
     if (info)
         *info = (estimate_info){.n_photons = g->n, .radius = hood.radius};
     bool usable = done && g->n > 0 && area > 0.0f;
+    scale_groups(scratch, spectrum_fill(usable ? 1.0f / area : 0.0f));
     return usable ? g->sum / area : (spectrum){0};
 }
 
@@ -294,16 +327,17 @@ spectrum photon_estimate(const photon_map *map, vec3 p, const bsdf *b, vec3 wo,
     g.b = b;
     g.wo = wo;
     g.weigh = lambertian ? bent ? weigh_bent : weigh_plain : weigh_bsdf;
-    g.n_block = g.n = 0;
-    g.hood = NULL;
-    g.sum = (spectrum){0};
     if (lambertian && !(dot3(wo, b->shading.n) * dot3(wo, b->n_geom) > 0.0f)) {
         if (info)
             *info = (estimate_info){0};
+        scale_groups(scratch, (spectrum){0});
         return (spectrum){0};
     }
     spectrum sum = estimate(&g, map, scratch, info);
-    return lambertian ? sum * b->rho * INV_PI_F : sum;
+    if (!lambertian)
+        return sum;
+    scale_groups(scratch, b->rho * INV_PI_F);
+    return sum * b->rho * INV_PI_F;
 }
 
 spectrum photon_irradiance(const photon_map *map, vec3 p, vec3 n_geom,
@@ -315,13 +349,21 @@ spectrum photon_irradiance(const photon_map *map, vec3 p, vec3 n_geom,
     g.probe = photon_probe_make(&map->store, p, &filter);
     g.options = options;
     g.weigh = weigh_plain;
-    g.n_block = g.n = 0;
-    g.hood = NULL;
-    g.sum = (spectrum){0};
     return estimate(&g, map, scratch, info);
+}
+
+bool estimate_scratch_init(estimate_scratch *scratch, size_t n_groups, GError **error)
+{
+    *scratch = (estimate_scratch){.n_groups = n_groups};
+    if (n_groups > 0)
+        scratch->groups =
+            big_alloc(n_groups, sizeof *scratch->groups, "light groups", error);
+    return n_groups == 0 || scratch->groups;
 }
 
 void estimate_scratch_clear(estimate_scratch *scratch)
 {
     photon_hits_clear(&scratch->hits);
+    big_free(scratch->groups);
+    scratch->groups = NULL;
 }

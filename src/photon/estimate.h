@@ -36,8 +36,14 @@ typedef struct estimate_options {
  * the end. */
 typedef struct estimate_scratch {
     photon_hits hits;
-    bool failed; /**< memory was refused in a query, which then gave zero */
+    bool failed;      /**< memory was refused in a query, which then gave zero */
+    spectrum *groups; /**< owned, big_alloc'ed; each query leaves there what the photons
+                         of each tag gave of the result */
+    size_t n_groups;  /**< 0: not asked for; else the map's store must be tagged */
 } estimate_scratch;
+
+/** @brief Asks for results apart by tags below n, if n is not 0. */
+bool estimate_scratch_init(estimate_scratch *scratch, size_t n_groups, GError **error);
 
 void estimate_scratch_clear(estimate_scratch *scratch);
 

@@ -132,8 +132,11 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
     if (out->error ||
         (out->photons.n == out->photons.capacity && !grow(out, path->want_normals)))
         return;
-    photon p = {
-        .p = hit->p, .wi = -path->ray.direction, .flux = path->flux, .flags = flags};
+    photon p = {.p = hit->p,
+                .wi = -path->ray.direction,
+                .flux = path->flux,
+                .flags = flags,
+                .tag = (uint32_t)scene_light_group(path->task->scene, path->light)};
     if (path->want_normals)
         out->normals[out->photons.n] = direction_pack(face_forward(hit->n_geom, p.wi), 0);
     photon_store_put(&out->photons, &p);
@@ -258,6 +261,7 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
     (void)thread;
     trace_loop *loop = data;
     chunk_store *out = &loop->chunks[begin / CHUNK];
+    out->photons.tagged = loop->task->scene->n_light_groups > 0;
     for (size_t i = begin; i < end && !out->error; i++) {
         photon_path path = {.task = loop->task,
                             .index = i,
@@ -293,6 +297,8 @@ static void join_chunk(size_t i, size_t end, unsigned thread, void *data)
         memcpy(to->z + at, p->z, p->n * sizeof *p->z);
         memcpy(to->wi + at, p->wi, p->n * sizeof *p->wi);
         memcpy(to->flux + at, p->flux, p->n * sizeof *p->flux);
+        if (to->tagged)
+            memcpy(to->tag + at, p->tag, p->n * sizeof *p->tag);
         if (chunk->normals)
             memcpy(loop->result->normals + at, chunk->normals,
                    p->n * sizeof *chunk->normals);
@@ -340,7 +346,7 @@ static bool join(chunk_store *chunks, size_t n, const trace_loop *traced,
 bool photon_trace(const trace_task *task, bool want_normals, trace_result *result,
                   GError **error)
 {
-    *result = (trace_result){0};
+    *result = (trace_result){.photons.tagged = task->scene->n_light_groups > 0};
     size_t n_chunks = ((size_t)task->n_photons + CHUNK - 1) / CHUNK;
     chunk_store *chunks = big_alloc(n_chunks, sizeof *chunks, "photon chunks", error);
     if (!chunks)

@@ -15,6 +15,20 @@ static size_t n_pixels(const film *f)
     return (size_t)f->width * (size_t)f->height;
 }
 
+/* Room for light groups, where the scene has some. */
+static bool open_groups(film *f, const scene *s, GError **error)
+{
+    size_t n = 3 * (size_t)s->n_light_groups * n_pixels(f);
+    if (s->n_light_groups == 0)
+        return true;
+    f->n_groups = s->n_light_groups;
+    f->group_names = (const char *const *)s->light_groups;
+    f->pass_groups = big_alloc(n, sizeof *f->pass_groups, "the film", error);
+    if (f->pass_groups)
+        f->groups = big_alloc(n, sizeof *f->groups, "the film", error);
+    return f->groups != NULL;
+}
+
 bool film_open(film *f, const scene *s, GError **error)
 {
     const film_settings *how = &s->film;
@@ -36,13 +50,15 @@ bool film_open(film *f, const scene *s, GError **error)
     f->pass = big_alloc(n_pixels(f), sizeof *f->pass, "the film", error);
     if (f->pass)
         f->pixels = big_alloc(n_pixels(f), sizeof *f->pixels, "the film", error);
-    return f->pixels != NULL;
+    return f->pixels && open_groups(f, s, error);
 }
 
 void film_clear(film *f)
 {
     big_free(f->pass);
     big_free(f->pixels);
+    big_free(f->pass_groups);
+    big_free(f->groups);
     *f = (film){0};
 }
 
@@ -78,9 +94,27 @@ void film_add(film_sum *sum, const film_pass *pass, const radiance_sample *sampl
     sum->surface_weight += (double)weight;
 }
 
+static size_t pixel_index(const film *f, int x, int y)
+{
+    return (size_t)(y - f->y0) * (size_t)f->width + (size_t)(x - f->x0);
+}
+
+/* Index of a pixel's first number of its groups. */
+static size_t group_offset(const film *f, size_t pixel)
+{
+    return 3 * (size_t)f->n_groups * pixel;
+}
+
+void film_put_groups(film *f, const film_pass *pass, int x, int y, const spectrum *sums)
+{
+    float *xyz = f->pass_groups + group_offset(f, pixel_index(f, x, y));
+    for (int i = 0; i < f->n_groups; i++)
+        spectrum_to_xyz(pass->w, sums[i], xyz + 3 * i);
+}
+
 void film_put(film *f, int x, int y, const film_sum *sum)
 {
-    size_t i = (size_t)(y - f->y0) * (size_t)f->width + (size_t)(x - f->x0);
+    size_t i = pixel_index(f, x, y);
     const double *number = (const double *)sum;
     for (int k = 0; k < FILM_NUMBERS; k++)
         f->pass[i].number[k] = (float)number[k];
@@ -106,6 +140,8 @@ static void end_pixels(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     const film *f = data;
+    for (size_t i = group_offset(f, begin); i < group_offset(f, end); i++)
+        f->groups[i] += (double)f->pass_groups[i];
     for (size_t i = begin; i < end; i++) {
         film_pixel *pixel = &f->pixels[i];
         film_sum pass = {0};
@@ -155,8 +191,8 @@ static double mean_below(const film *f, double ceiling)
 double film_noise(const film *f)
 {
     if (f->n_passes < 2)
-        return INFINITY;
-    double dark = DARK_SHARE * mean_below(f, mean_below(f, INFINITY));
+        return (double)INFINITY;
+    double dark = DARK_SHARE * mean_below(f, mean_below(f, (double)INFINITY));
     double sum = 0.0;
     for (size_t i = 0; i < n_pixels(f); i++) {
         double y = pixel_mean(&f->pixels[i]);
@@ -188,6 +224,10 @@ static GPtrArray *channel_names(const film *f)
     g_ptr_array_add(names, g_strdup("depth.Z"));
     if (has_variance(f))
         g_ptr_array_add(names, g_strdup("variance.Y"));
+    for (int i = 0; i < f->n_groups; i++) {
+        for (const char *c = "RGB"; *c; c++)
+            g_ptr_array_add(names, g_strdup_printf("light.%s.%c", f->group_names[i], *c));
+    }
     return names;
 }
 
@@ -218,16 +258,32 @@ static void write_sum(const film *f, const film_sum *sum, float *out)
     rest[3] = (float)(sum->depth / weight);
 }
 
+static void write_groups(const film *f, size_t i, double weight, float *out)
+{
+    for (int k = 0; k < f->n_groups; k++) {
+        size_t at = group_offset(f, i) + 3 * (size_t)k;
+        double sum[3];
+        for (int c = 0; c < 3; c++)
+            sum[c] = f->n_passes ? f->groups[at + (size_t)c]
+                                 : (double)f->pass_groups[at + (size_t)c];
+        to_rgb(f, sum, weight, out + 3 * k);
+        for (int c = 0; c < 3; c++)
+            out[3 * k + c] *= f->scale;
+    }
+}
+
 static void write_pixel(const film *f, size_t i, float *out)
 {
     film_sum begun = {0};
     if (f->n_passes == 0)
         add_numbers(&begun, &f->pass[i]);
-    write_sum(f, f->n_passes ? &f->pixels[i].sum : &begun, out);
+    const film_sum *sum = f->n_passes ? &f->pixels[i].sum : &begun;
+    write_sum(f, sum, out);
+    out += 3 + 3 * FILM_COLORS + 4;
     double scale2 = (double)f->scale * (double)f->scale;
     if (has_variance(f))
-        out[3 + 3 * FILM_COLORS + 4] =
-            (float)(scale2 * pixel_variance(&f->pixels[i], f->n_passes));
+        *out++ = (float)(scale2 * pixel_variance(&f->pixels[i], f->n_passes));
+    write_groups(f, i, sum->weight, out);
 }
 
 image *film_image(const film *f, GError **error)

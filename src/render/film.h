@@ -48,8 +48,12 @@ typedef struct film {
     int x0, y0, width, height; /**< the part of the picture that is rendered, pixels */
     pass_pixel *pass;          /**< of the pass under way */
     film_pixel *pixels;        /**< of the passes done */
-    int64_t n_passes;          /**< done */
-    float scale;               /**< the sensor's: scene_imaging_ratio */
+    int n_groups;              /**< of lights; 0: none, and these are NULL */
+    float *pass_groups;        /**< XYZ of the groups, [pixel][group][3], of the pass */
+    double *groups;            /**< of the passes done */
+    const char *const *group_names; /**< the scene's */
+    int64_t n_passes;               /**< done */
+    float scale;                    /**< the sensor's: scene_imaging_ratio */
     const color_space *space;
 } film;
 
@@ -70,6 +74,8 @@ void film_add(film_sum *sum, const film_pass *pass, const radiance_sample *sampl
               float weight);
 /** @brief Pixel (x, y) of the whole picture is done in this pass. */
 void film_put(film *f, int x, int y, const film_sum *sum);
+/** @brief The same for what the light groups gave: Σ of weighed radiance, n_groups. */
+void film_put_groups(film *f, const film_pass *pass, int x, int y, const spectrum *sums);
 /** @brief Adds the pass, of which every pixel was put, to the picture. */
 void film_end_pass(film *f, unsigned threads);
 
@@ -84,5 +90,6 @@ double film_noise(const film *f);
 
 /** @brief The picture: R G B, the layers' R G B, albedo, normal, depth; linear, film's
  * space. With two passes or more also variance.Y, the square of the standard error of
- * the luminance. Before the first pass is done, what was put of it. */
+ * the luminance; with light groups their layers light.NAME. Before the first pass is
+ * done, what was put of it. */
 image *film_image(const film *f, GError **error);

@@ -4,6 +4,8 @@
 #include "render/film.h"
 #include "render/stop.h"
 
+#include <string.h>
+
 enum { TILE = 16, SAMPLES_BETWEEN_BEATS = 64 };
 
 /* The caller hears of progress no more often than this, s. */
@@ -45,10 +47,14 @@ render *render_new(const scene *s, const settings *how, GError **error)
     r->transport = transport_find(how->integrator);
     r->n_threads = parallel_threads((unsigned)how->threads);
     r->plan.how.threads = r->n_threads;
-    r->statistics.noise = INFINITY;
+    r->statistics.noise = (double)INFINITY;
     bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
     r->statistics.passes_wanted = open_end ? 0 : settings_most_passes(how);
-    if (film_open(&r->film, s, error))
+    if (s->n_light_groups > 0 && !r->transport->light_groups)
+        error_set(error, ERROR_INPUT,
+                  "the scene has light groups, which integrator '%s' does not make",
+                  r->transport->name);
+    else if (film_open(&r->film, s, error))
         return r;
     render_free(r);
     return NULL;
@@ -121,32 +127,66 @@ typedef struct camera_loop {
     uint32_t index;
     int n_tiles_x;
     transport_scratch *scratch; /* one a thread */
+    spectrum *groups; /* 2 n_groups a thread: of a sample, and their sums over a pixel */
 } camera_loop;
+
+/* What a pixel gets by light groups. */
+typedef struct group_sums {
+    size_t n;
+    spectrum *sample, *sum; /* NULL if n is 0 */
+} group_sums;
+
+/* A thread's, zeroed. */
+static group_sums groups_of(const camera_loop *loop, unsigned thread)
+{
+    size_t n = (size_t)loop->render->film.n_groups;
+    if (n == 0)
+        return (group_sums){0};
+    spectrum *own = loop->groups + 2 * n * thread;
+    memset(own, 0, 2 * n * sizeof *own);
+    return (group_sums){n, own, own + n};
+}
+
+/* One camera sample of a pixel, random already told which. */
+static void render_sample(camera_loop *loop, vec2 pixel, sampler *random, unsigned thread,
+                          film_sum *sum, const group_sums *groups)
+{
+    render *r = loop->render;
+    const scene *s = r->plan.scene;
+    float weight;
+    vec2 offset = filter_sample(&s->filter, sampler_2d(random), &weight);
+    vec2 raster = {pixel.x + 0.5f + offset.x, pixel.y + 0.5f + offset.y};
+    vec2 u_lens = sampler_2d(random);
+    ray from_eye = camera_ray(&s->camera, raster, u_lens, sampler_1d(random));
+    radiance_sample sample = {.groups = groups->sample};
+    for (size_t k = 0; k < groups->n; k++)
+        groups->sample[k] = (spectrum){0};
+    r->transport->radiance(loop->pass, &from_eye, random, &loop->scratch[thread],
+                           &sample);
+    film_add(sum, &loop->film_pass, &sample, weight);
+    for (size_t k = 0; k < groups->n; k++)
+        groups->sum[k] += weight * groups->sample[k];
+}
 
 static void render_pixel(camera_loop *loop, int x, int y, unsigned thread)
 {
     render *r = loop->render;
-    const scene *s = r->plan.scene;
     const settings *how = &r->plan.how;
-    uint64_t pixel = (uint64_t)y * (uint64_t)s->film.width + (uint64_t)x;
+    uint64_t pixel = (uint64_t)y * (uint64_t)r->plan.scene->film.width + (uint64_t)x;
     uint64_t key = hash_mix((uint64_t)how->seed, hash_mix(pixel, 0x7069786cu));
     film_sum sum = {0};
-    for (int64_t i = 0; i < how->spp && !cancelled(&r->cancel); i++) {
+    group_sums groups = groups_of(loop, thread);
+    for (int64_t i = 0; i < how->spp; i++) {
+        if (cancelled(&r->cancel))
+            return;
         if (thread == 0 && i % SAMPLES_BETWEEN_BEATS == 0)
             beat(r);
         sampler random =
             sampler_make(key, loop->index * (uint64_t)how->spp + (uint64_t)i);
-        float weight;
-        vec2 offset = filter_sample(&s->filter, sampler_2d(&random), &weight);
-        vec2 raster = {(float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y};
-        vec2 u_lens = sampler_2d(&random);
-        ray from_eye = camera_ray(&s->camera, raster, u_lens, sampler_1d(&random));
-        radiance_sample sample;
-        r->transport->radiance(loop->pass, &from_eye, &random, &loop->scratch[thread],
-                               &sample);
-        film_add(&sum, &loop->film_pass, &sample, weight);
+        render_sample(loop, (vec2){(float)x, (float)y}, &random, thread, &sum, &groups);
     }
     film_put(&r->film, x, y, &sum);
+    film_put_groups(&r->film, &loop->film_pass, x, y, groups.sum);
 }
 
 static void render_tile(size_t begin, size_t end, unsigned thread, void *data)
@@ -175,9 +215,7 @@ static bool collect(render *r, transport_scratch *scratch, GError **error)
         st->n_not_finite += scratch[i].n_not_finite;
         st->time_gather += scratch[i].time_gather / r->n_threads;
         failed |= scratch[i].estimate.failed;
-        estimate_scratch_clear(&scratch[i].estimate);
     }
-    big_free(scratch);
     if (failed)
         error_set(error, ERROR_FAILED, "out of memory for radiance estimates");
     return !failed;
@@ -197,6 +235,32 @@ static void add_counts(render_statistics *st, const transport_counts *counts)
     }
 }
 
+/* Memory of the threads. */
+static bool open_loop(camera_loop *loop, GError **error)
+{
+    const render *r = loop->render;
+    size_t n_groups = (size_t)r->film.n_groups;
+    loop->scratch =
+        big_alloc(r->n_threads, sizeof *loop->scratch, "thread scratch", error);
+    bool ok = loop->scratch != NULL;
+    for (unsigned i = 0; i < r->n_threads && ok; i++)
+        ok = transport_scratch_init(&loop->scratch[i], n_groups, error);
+    if (ok && n_groups > 0) {
+        loop->groups = big_alloc(2 * n_groups * r->n_threads, sizeof *loop->groups,
+                                 "light groups", error);
+        ok = loop->groups != NULL;
+    }
+    return ok;
+}
+
+static void close_loop(camera_loop *loop)
+{
+    for (unsigned i = 0; i < loop->render->n_threads && loop->scratch; i++)
+        transport_scratch_clear(&loop->scratch[i]);
+    big_free(loop->scratch);
+    big_free(loop->groups);
+}
+
 static bool look(render *r, const void *pass, GError **error)
 {
     const film *f = &r->film;
@@ -207,20 +271,19 @@ static bool look(render *r, const void *pass, GError **error)
         .index = r->passes_done,
         .n_tiles_x = (f->width + TILE - 1) / TILE,
     };
-    loop.scratch = big_alloc(r->n_threads, sizeof *loop.scratch, "thread scratch", error);
-    if (!loop.scratch)
-        return false;
+    bool ready = open_loop(&loop, error);
     double start = seconds();
     atomic_store(&r->tiles_done, 0);
     r->n_tiles = (size_t)loop.n_tiles_x * (size_t)((f->height + TILE - 1) / TILE);
-    bool done = parallel_for(r->n_tiles, 1, r->n_threads, &r->cancel, render_tile, &loop);
+    bool done = ready &&
+                parallel_for(r->n_tiles, 1, r->n_threads, &r->cancel, render_tile, &loop);
     r->n_tiles = 0;
     r->statistics.time_camera += seconds() - start;
-    if (!collect(r, loop.scratch, error))
-        return false;
-    if (!done)
+    bool collected = ready && collect(r, loop.scratch, error);
+    close_loop(&loop);
+    if (collected && !done)
         error_set(error, ERROR_CANCELLED, "cancelled");
-    return done;
+    return collected && done;
 }
 
 static void note_pass(render *r, double photons_done)

@@ -24,6 +24,21 @@ static const light_kind *find_kind(const char *name, bool on_shape)
     return NULL;
 }
 
+/* The name of a light's group, which becomes part of channels' names; NULL if it has none
+   or an error. */
+static char *read_group(const params *p, GError **error)
+{
+    const char *name = NULL;
+    if (!params_string(p, "group", &name, error) || !name)
+        return NULL;
+    if (*name &&
+        strspn(name, G_CSET_A_2_Z G_CSET_a_2_z G_CSET_DIGITS "_-") == strlen(name))
+        return g_strdup(name);
+    error_at(error, params_find(p, "group")->place,
+             "parameter 'group': expected letters, digits, _ and -, found \"%s\"", name);
+    return NULL;
+}
+
 light *light_new(const struct scene *s, const char *name, const params *p,
                  const transform *to_world, const shape *on, GError **error)
 {
@@ -38,12 +53,15 @@ light *light_new(const struct scene *s, const char *name, const params *p,
     if (!self)
         return NULL;
     g_autofree char *what = g_strdup_printf("light \"%s\"", name);
-    if (!params_all_used(p, what, error)) {
+    g_autofree char *group = read_group(p, error);
+    bool is_wrong = params_has(p, "group") && !group;
+    if (is_wrong || !params_all_used(p, what, error)) {
         kind->free(self);
         return NULL;
     }
     light *l = g_new0(light, 1);
-    *l = (light){.kind = kind, .self = self, .place = p->place};
+    *l = (light){
+        .kind = kind, .self = self, .place = p->place, .group = g_steal_pointer(&group)};
     return l;
 }
 

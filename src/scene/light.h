@@ -82,7 +82,8 @@ struct light {
     const light_kind *kind;
     void *self;
     source_place place;
-    char *group; /**< light group's name, NULL: the default one */
+    char *group;     /**< light group's name, NULL: the default one */
+    int group_index; /**< in scene->light_groups, if there are any */
 };
 
 light *light_new(const struct scene *s, const char *kind, const params *p,

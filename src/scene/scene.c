@@ -70,6 +70,7 @@ void scene_free(scene *s)
     distribution_clear(&s->caustic_area);
     distribution_clear(&s->caustic_power);
     g_free(s->environments);
+    g_strfreev(s->light_groups);
     g_free(s->caustic_shapes);
     g_free(s);
 }
@@ -282,6 +283,31 @@ static bool find_caustic_power(scene *s, GError **error)
     return done;
 }
 
+/* Index of a group by name, made if it is new. */
+static int group_index(GPtrArray *names, const char *name)
+{
+    guint i;
+    if (g_ptr_array_find_with_equal_func(names, name, g_str_equal, &i))
+        return (int)i;
+    g_ptr_array_add(names, g_strdup(name));
+    return (int)names->len - 1;
+}
+
+static void find_light_groups(scene *s)
+{
+    bool any = false;
+    for (guint i = 0; i < s->lights->len; i++)
+        any |= scene_light(s, (int)i)->group != NULL;
+    g_autoptr(GPtrArray) names = g_ptr_array_new();
+    for (guint i = 0; i < s->lights->len && any; i++) {
+        light *l = s->lights->pdata[i];
+        l->group_index = group_index(names, l->group ? l->group : "default");
+    }
+    s->n_light_groups = (int)names->len;
+    g_ptr_array_add(names, NULL);
+    s->light_groups = (char **)g_ptr_array_steal(names, NULL);
+}
+
 static bool find_caustic_shapes(scene *s, GError **error)
 {
     guint n = s->shapes->len;
@@ -317,6 +343,7 @@ static void forget_commit(scene *s)
     distribution_clear(&s->caustic_area);
     distribution_clear(&s->caustic_power);
     g_clear_pointer(&s->environments, g_free);
+    g_clear_pointer(&s->light_groups, g_strfreev);
     g_clear_pointer(&s->caustic_shapes, g_free);
     s->n_environments = s->n_caustic_shapes = 0;
 }
@@ -337,7 +364,9 @@ bool scene_commit(scene *s, unsigned threads, GError **error)
         s->accel =
             accel_build((shape *const *)s->shapes->pdata, s->shapes->len, threads, error);
     s->committed = s->accel != NULL;
-    if (!s->committed)
+    if (s->committed)
+        find_light_groups(s);
+    else
         forget_commit(s);
     return s->committed;
 }

@@ -53,6 +53,8 @@ typedef struct scene {
     distribution
         light_power;        /**< over lights, by power: which one a photon starts from */
     light_tree *light_tree; /**< which one a point is lit by */
+    char **light_groups;    /**< names; those of lights without one: "default" */
+    int n_light_groups;     /**< 0: no light names one */
     int *environments;      /**< indices of lights that are environments */
     int n_environments;
     int *caustic_shapes; /**< indices of shapes whose material casts caustics */
@@ -125,6 +127,12 @@ static inline bool scene_occluded(const scene *s, const ray *r)
 static inline const light *scene_light(const scene *s, int i)
 {
     return s->lights->pdata[i];
+}
+
+/** @brief Index of a light's group, if the scene has groups. */
+static inline int scene_light_group(const scene *s, int i)
+{
+    return scene_light(s, i)->group_index;
 }
 
 /** @brief Radiance that the surface itself sends from the hit to wo; zero if it does not

@@ -44,6 +44,7 @@ static const wavelengths *pass_wavelengths(const void *pass)
 
 const transport_kind transport_auto = {
     .name = "auto",
+    .light_groups = true,
     .prepare = prepare,
     .begin_pass = begin_pass,
     .radiance = path_radiance,

@@ -37,15 +37,35 @@ typedef struct camera_branch {
     vec3 from;        /* the point the ray left */
 } camera_branch;
 
-static void add(camera_tree *tree, const camera_branch *branch, radiance_layer layer,
+static bool add(camera_tree *tree, const camera_branch *branch, radiance_layer layer,
                 spectrum radiance)
 {
     spectrum value = branch->beta * radiance;
     if (!spectrum_is_finite(value)) {
         tree->scratch->n_not_finite++;
-        return;
+        return false;
     }
     tree->out->layers[branch->n_followed ? LAYER_SPECULAR : layer] += value;
+    return true;
+}
+
+/* Adds what came from one lamp. */
+static void add_from(camera_tree *tree, const camera_branch *branch, radiance_layer layer,
+                     spectrum radiance, int lamp)
+{
+    if (add(tree, branch, layer, radiance) && tree->out->groups)
+        tree->out->groups[scene_light_group(tree->pass->scene, lamp)] +=
+            branch->beta * radiance;
+}
+
+/* Adds what came from many, in parts by their groups. */
+static void add_parts(camera_tree *tree, const camera_branch *branch,
+                      radiance_layer layer, spectrum radiance, const spectrum *parts)
+{
+    if (!add(tree, branch, layer, radiance) || !tree->out->groups)
+        return;
+    for (int i = 0; i < tree->pass->scene->n_light_groups; i++)
+        tree->out->groups[i] += branch->beta * parts[i];
 }
 
 /* Weight of a lamp or sky that the branch ran into. hit NULL: sky. */
@@ -65,10 +85,16 @@ static float met_light_weight(const camera_tree *tree, const camera_branch *bran
 static void see_sky(camera_tree *tree, const camera_branch *branch)
 {
     const photonmap_pass *pass = tree->pass;
-    if (pass->scene->n_environments == 0)
+    const scene *s = pass->scene;
+    if (s->n_environments == 0)
         return;
-    spectrum radiance = scene_environment(pass->scene, branch->ray.direction, &pass->w);
-    add(tree, branch, LAYER_EMISSION, radiance * met_light_weight(tree, branch, NULL));
+    float weight = met_light_weight(tree, branch, NULL);
+    for (int i = 0; i < s->n_environments; i++) {
+        const light *l = scene_light(s, s->environments[i]);
+        spectrum radiance =
+            l->kind->environment(l->self, branch->ray.direction, &pass->w);
+        add_from(tree, branch, LAYER_EMISSION, radiance * weight, s->environments[i]);
+    }
 }
 
 static void see_lamp(camera_tree *tree, const camera_branch *branch,
@@ -79,7 +105,8 @@ static void see_lamp(camera_tree *tree, const camera_branch *branch,
     const photonmap_pass *pass = tree->pass;
     spectrum radiance = scene_emitted(pass->scene, hit, -branch->ray.direction, &pass->w);
     if (!spectrum_is_black(radiance))
-        add(tree, branch, LAYER_EMISSION, radiance * met_light_weight(tree, branch, hit));
+        add_from(tree, branch, LAYER_EMISSION,
+                 radiance * met_light_weight(tree, branch, hit), hit->light);
 }
 
 static void note_first_surface(camera_tree *tree, const camera_branch *branch,
@@ -127,8 +154,17 @@ static void shade_direct(camera_tree *tree, const camera_branch *branch,
     };
     direct_radiance found =
         direct_light(&query, tree->random, &tree->scratch->shadow_rays);
-    add(tree, branch, LAYER_DIRECT, found.diffuse);
-    add(tree, branch, LAYER_SPECULAR, found.glossy);
+    add_from(tree, branch, LAYER_DIRECT, found.diffuse, found.light);
+    add_from(tree, branch, LAYER_SPECULAR, found.glossy, found.light);
+}
+
+/* What the photons of one class give at a point. */
+static void add_gathered(camera_tree *tree, const camera_branch *branch,
+                         radiance_layer layer, photon_class c, const shading_point *at,
+                         unsigned delta)
+{
+    spectrum radiance = photonmap_gather(tree->pass, c, at, delta, tree->scratch);
+    add_parts(tree, branch, layer, radiance, tree->scratch->estimate.groups);
 }
 
 static void shade_indirect(camera_tree *tree, const camera_branch *branch,
@@ -138,11 +174,12 @@ static void shade_indirect(camera_tree *tree, const camera_branch *branch,
     if (!(at->bsdf->lobes & LOBE_DIFFUSE))
         return;
     float importance = spectrum_mean(branch->beta) * branch->eta2;
-    spectrum radiance =
-        pass->how->final_gather
-            ? final_gather(pass, at, importance, tree->random, tree->scratch)
-            : photonmap_gather(pass, PHOTON_INDIRECT, at, 0, tree->scratch);
-    add(tree, branch, LAYER_INDIRECT, radiance);
+    if (!pass->how->final_gather) {
+        add_gathered(tree, branch, LAYER_INDIRECT, PHOTON_INDIRECT, at, 0);
+        return;
+    }
+    spectrum radiance = final_gather(pass, at, importance, tree->random, tree->scratch);
+    add_parts(tree, branch, LAYER_INDIRECT, radiance, tree->scratch->gathered);
 }
 
 /* Everything that ends at this surface: direct, caustic and indirect light. */
@@ -156,11 +193,9 @@ static void shade(camera_tree *tree, const camera_branch *branch, const surface_
     if (pass->how->direct_illumination)
         shade_direct(tree, branch, hit, b, p_follow);
     else if (gathers)
-        add(tree, branch, LAYER_DIRECT,
-            photonmap_gather(pass, PHOTON_DIRECT, &at, delta, tree->scratch));
+        add_gathered(tree, branch, LAYER_DIRECT, PHOTON_DIRECT, &at, delta);
     if (gathers)
-        add(tree, branch, LAYER_CAUSTIC,
-            photonmap_gather(pass, PHOTON_CAUSTIC, &at, delta, tree->scratch));
+        add_gathered(tree, branch, LAYER_CAUSTIC, PHOTON_CAUSTIC, &at, delta);
     shade_indirect(tree, branch, &at);
 }
 
@@ -256,7 +291,7 @@ static void follow(camera_tree *tree, camera_branch branch)
 void photonmap_radiance(const void *pass, const ray *r, sampler *random,
                         transport_scratch *scratch, radiance_sample *out)
 {
-    *out = (radiance_sample){0};
+    *out = (radiance_sample){.groups = out->groups};
     camera_tree tree = {.pass = pass, .random = random, .scratch = scratch, .out = out};
     follow(&tree, (camera_branch){
                       .ray = *r,

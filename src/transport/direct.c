@@ -43,7 +43,7 @@ static spectrum weighed_lobe(const direct_query *query, const light *l,
 direct_radiance direct_light(const direct_query *query, sampler *random,
                              uint64_t *shadow_rays_traced)
 {
-    const direct_radiance none = {{0}, {0}};
+    const direct_radiance none = {0};
     light_numbers u = sampler_light(random);
     int index;
     light_sample to_light;
@@ -62,5 +62,5 @@ direct_radiance direct_light(const direct_query *query, sampler *random,
     }
     float cosine = fabsf(dot3(to_light.wi, query->bsdf->shading.n));
     spectrum arriving = to_light.radiance * (cosine / to_light.pdf);
-    return (direct_radiance){diffuse * arriving, glossy * arriving};
+    return (direct_radiance){diffuse * arriving, glossy * arriving, index};
 }

@@ -25,6 +25,7 @@ typedef struct direct_query {
 /** @brief Radiance sent to wo, by the class of lobe that sends it. */
 typedef struct direct_radiance {
     spectrum diffuse, glossy;
+    int light; /**< that it came from */
 } direct_radiance;
 
 /** @brief Light that comes straight from a lamp, by one light sample.

@@ -22,19 +22,24 @@ typedef struct irradiance_loop {
     const photon_store *points;
     const uint32_t *normals;
     photon_store *out;
+    spectrum *groups; /* of all points, by light groups; NULL: there are none */
     size_t offset;
     bool *failed;
 } irradiance_loop;
 
+/* groups, if there are any, get their parts of it. */
 static spectrum irradiance_at(const photonmap_pass *pass, vec3 p, vec3 n,
-                              estimate_scratch *scratch)
+                              estimate_scratch *scratch, spectrum *groups)
 {
     spectrum sum = {0};
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         estimate_options options = pass->estimates[c];
         options.scene = pass->how->edges ? pass->scene : NULL;
-        if (pass->maps[c])
-            sum += photon_irradiance(pass->maps[c], p, n, &options, scratch, NULL);
+        if (!pass->maps[c])
+            continue;
+        sum += photon_irradiance(pass->maps[c], p, n, &options, scratch, NULL);
+        for (size_t i = 0; i < scratch->n_groups; i++)
+            groups[i] += scratch->groups[i];
     }
     return sum;
 }
@@ -44,7 +49,9 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
     (void)thread;
     irradiance_loop *loop = data;
     estimate_scratch scratch = {0};
-    for (size_t i = begin; i < end; i++) {
+    size_t n_groups = (size_t)loop->pass->scene->n_light_groups;
+    bool ready = estimate_scratch_init(&scratch, n_groups, NULL);
+    for (size_t i = begin; i < end && ready; i++) {
         vec3 n = direction_unpack(loop->normals[i]);
         photon p = photon_store_get(loop->points, i);
         size_t at = loop->offset + i;
@@ -52,19 +59,24 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
         loop->out->y[at] = p.p[1];
         loop->out->z[at] = p.p[2];
         loop->out->wi[at] = loop->normals[i];
-        loop->out->flux[at] = irradiance_at(loop->pass, p.p, n, &scratch);
+        if (n_groups)
+            loop->out->tag[at] = (uint32_t)at;
+        loop->out->flux[at] =
+            irradiance_at(loop->pass, p.p, n, &scratch, loop->groups + at * n_groups);
     }
-    if (scratch.failed)
+    if (scratch.failed || !ready)
         loop->failed[begin / 256] = true;
     estimate_scratch_clear(&scratch);
 }
 
-static bool add_points(const photonmap_pass *pass, const trace_result *points,
+static bool add_points(photonmap_pass *pass, const trace_result *points,
                        photon_store *out, GError **error)
 {
     size_t n = points->photons.n, n_chunks = n / 256 + 1;
     g_autofree bool *failed = g_new0(bool, n_chunks);
-    irradiance_loop loop = {pass, &points->photons, points->normals, out, out->n, failed};
+    irradiance_loop loop = {pass,  &points->photons,        points->normals,
+                            out,   pass->irradiance_groups, out->n,
+                            failed};
     parallel_for(n, 256, (unsigned)pass->how->threads, NULL, irradiance_chunk, &loop);
     out->n += n;
     for (size_t i = 0; i < n_chunks; i++) {
@@ -76,14 +88,19 @@ static bool add_points(const photonmap_pass *pass, const trace_result *points,
     return true;
 }
 
-photon_map *irradiance_map_build(const photonmap_pass *pass, const trace_result *points,
+photon_map *irradiance_map_build(photonmap_pass *pass, const trace_result *points,
                                  size_t n, GError **error)
 {
-    size_t total = 0;
+    size_t total = 0, n_groups = (size_t)pass->scene->n_light_groups;
     for (size_t i = 0; i < n; i++)
         total += points[i].photons.n;
-    photon_store store = {0};
+    photon_store store = {.tagged = n_groups > 0};
     bool ok = photon_store_reserve(&store, total, error);
+    if (ok && n_groups > 0) {
+        pass->irradiance_groups = big_alloc(
+            total * n_groups, sizeof *pass->irradiance_groups, "light groups", error);
+        ok = pass->irradiance_groups != NULL;
+    }
     for (size_t i = 0; i < n && ok; i++)
         ok = add_points(pass, &points[i], &store, error);
     if (!ok) {
@@ -97,7 +114,7 @@ photon_map *irradiance_map_build(const photonmap_pass *pass, const trace_result 
 /* The nearest kept irradiance of a surface that lies alike, among the few nearest of all.
  */
 static spectrum kept_irradiance(const photonmap_pass *pass, vec3 p, vec3 n,
-                                estimate_scratch *scratch)
+                                estimate_scratch *scratch, const spectrum **groups)
 {
     const photon_filter filter = {.n = n, .one_sided = true, .flatten = 1.0f};
     photon_hits *hits = &scratch->hits;
@@ -112,6 +129,9 @@ static spectrum kept_irradiance(const photonmap_pass *pass, vec3 p, vec3 n,
         if (hits->distance2[i] * penalty < best) {
             best = hits->distance2[i] * penalty;
             irradiance = store->flux[hits->index[i]];
+            if (store->tagged)
+                *groups = pass->irradiance_groups + (size_t)pass->scene->n_light_groups *
+                                                        store->tag[hits->index[i]];
         }
     }
     return irradiance;
@@ -125,13 +145,24 @@ typedef struct gather_path {
     int lane;
 } gather_path;
 
-/* Outgoing radiance of the diffuse lobes at a point, from all that light does there. */
-static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
-                         sampler *random, transport_scratch *scratch)
+/* Adds parts by light groups to scratch->gathered; parts may be NULL: none. */
+static void collect(const photonmap_pass *pass, transport_scratch *scratch,
+                    spectrum factor, const spectrum *parts)
 {
+    for (int i = 0; i < pass->scene->n_light_groups && parts; i++)
+        scratch->gathered[i] += factor * parts[i];
+}
+
+/* Outgoing radiance of the diffuse lobes at a point, from all that light does there; beta
+   times its parts by light groups are collected. */
+static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
+                         spectrum beta, sampler *random, transport_scratch *scratch)
+{
+    const spectrum *parts = NULL;
     if (pass->irradiance && at->bsdf->lambertian) {
         vec3 n = face_forward(at->hit->n_geom, at->wo);
-        spectrum e = kept_irradiance(pass, at->hit->p, n, &scratch->estimate);
+        spectrum e = kept_irradiance(pass, at->hit->p, n, &scratch->estimate, &parts);
+        collect(pass, scratch, beta * at->bsdf->rho * INV_PI_F, parts);
         return e * at->bsdf->rho * INV_PI_F;
     }
     spectrum radiance = {0};
@@ -144,11 +175,17 @@ static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
             .wo = at->wo,
             .shadow_rays = pass->how->shadow_rays,
         };
-        radiance = direct_light(&query, random, &scratch->shadow_rays).diffuse;
+        direct_radiance found = direct_light(&query, random, &scratch->shadow_rays);
+        radiance = found.diffuse;
+        if (scratch->gathered)
+            scratch->gathered[scene_light_group(pass->scene, found.light)] +=
+                beta * radiance;
     }
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        if (c != PHOTON_DIRECT || !pass->how->direct_illumination)
-            radiance += photonmap_gather(pass, (photon_class)c, at, 0, scratch);
+        if (c == PHOTON_DIRECT && pass->how->direct_illumination)
+            continue;
+        radiance += photonmap_gather(pass, (photon_class)c, at, 0, scratch);
+        collect(pass, scratch, beta, scratch->estimate.groups);
     }
     return radiance;
 }
@@ -189,7 +226,7 @@ static spectrum gather_along(const photonmap_pass *pass, gather_path path,
         }
         const shading_point at = {&hit, &b, -path.ray.direction};
         if (b.lobes & LOBE_DIFFUSE)
-            sum += path.beta * outgoing(pass, &at, random, scratch);
+            sum += path.beta * outgoing(pass, &at, path.beta, random, scratch);
         if (!gather_on(&path, &hit, &b, random))
             break;
     }
@@ -204,6 +241,9 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
     sampler own = sampler_split(random, 0x6761u);
     uint64_t key = hash_mix(own.key, own.index);
     spectrum sum = {0};
+    int n_groups = pass->scene->n_light_groups;
+    for (int i = 0; i < n_groups; i++)
+        scratch->gathered[i] = (spectrum){0};
     for (uint32_t i = 0; i < n; i++) {
         sampler stream = sampler_make(key, i);
         float u_lobe = sampler_1d(&stream);
@@ -215,5 +255,7 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
         gather_path path = {hit_ray(at->hit, first.wi), first.weight, first.lane};
         sum += gather_along(pass, path, &stream, scratch);
     }
+    for (int i = 0; i < n_groups; i++)
+        scratch->gathered[i] /= (float)n;
     return sum / (float)n;
 }

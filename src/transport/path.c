@@ -61,13 +61,23 @@ static bool left_to_caustics(const path_walk *walk, const camera_path *path)
     return walk->pass->caustics && path->n_diffuse > 0 && path->n_after > 0;
 }
 
-static void add(path_walk *walk, const camera_path *path, spectrum radiance)
+static bool add(path_walk *walk, const camera_path *path, spectrum radiance)
 {
     spectrum value = path->beta * radiance;
-    if (spectrum_is_finite(value))
-        walk->out->layers[layer_of(path)] += value;
-    else
+    if (!spectrum_is_finite(value)) {
         walk->scratch->n_not_finite++;
+        return false;
+    }
+    walk->out->layers[layer_of(path)] += value;
+    return true;
+}
+
+/* Adds what came from one lamp. */
+static void add_from(path_walk *walk, const camera_path *path, spectrum radiance,
+                     int lamp)
+{
+    if (add(walk, path, radiance) && walk->out->groups)
+        walk->out->groups[scene_light_group(walk->scene, lamp)] += path->beta * radiance;
 }
 
 static float met_light_weight(const path_walk *walk, const camera_path *path,
@@ -81,15 +91,26 @@ static float met_light_weight(const path_walk *walk, const camera_path *path,
     return followed_weight(path->pdf, pdf);
 }
 
-/* The path ran into a lamp (hit) or the sky (NULL). */
-static void meet_light(path_walk *walk, const camera_path *path, const surface_hit *hit)
+static void meet_lamp(path_walk *walk, const camera_path *path, const surface_hit *hit)
 {
-    const wavelengths *w = &walk->pass->w;
-    vec3 d = path->ray.direction;
-    spectrum radiance = hit ? scene_emitted(walk->scene, hit, -d, w)
-                            : scene_environment(walk->scene, d, w);
+    spectrum radiance =
+        scene_emitted(walk->scene, hit, -path->ray.direction, &walk->pass->w);
     if (!spectrum_is_black(radiance) && !left_to_caustics(walk, path))
-        add(walk, path, radiance * met_light_weight(walk, path, hit));
+        add_from(walk, path, radiance * met_light_weight(walk, path, hit), hit->light);
+}
+
+static void meet_sky(path_walk *walk, const camera_path *path)
+{
+    const scene *s = walk->scene;
+    if (s->n_environments == 0 || left_to_caustics(walk, path))
+        return;
+    float weight = met_light_weight(walk, path, NULL);
+    for (int i = 0; i < s->n_environments; i++) {
+        const light *l = scene_light(s, s->environments[i]);
+        spectrum radiance =
+            l->kind->environment(l->self, path->ray.direction, &walk->pass->w);
+        add_from(walk, path, radiance * weight, s->environments[i]);
+    }
 }
 
 static void sample_lights(path_walk *walk, const camera_path *path,
@@ -111,9 +132,9 @@ static void sample_lights(path_walk *walk, const camera_path *path,
     camera_path by_diffuse = *path, by_glossy = *path;
     count_bounce(&by_diffuse, LOBE_DIFFUSE);
     count_bounce(&by_glossy, LOBE_GLOSSY);
-    add(walk, &by_diffuse, found.diffuse);
+    add_from(walk, &by_diffuse, found.diffuse, found.light);
     if (!left_to_caustics(walk, &by_glossy))
-        add(walk, &by_glossy, found.glossy);
+        add_from(walk, &by_glossy, found.glossy, found.light);
 }
 
 /* What the caustic map says of this surface. Light that a lobe of n_diffuse > 0 would
@@ -130,8 +151,12 @@ static void gather_caustics(path_walk *walk, const camera_path *path,
     count_bounce(&seen, LOBE_DIFFUSE);
     seen.n_after = 1;
     const shading_point at = {hit, b, -path->ray.direction};
-    add(walk, &seen,
-        photonmap_gather(photons, PHOTON_CAUSTIC, &at, delta, walk->scratch));
+    spectrum radiance =
+        photonmap_gather(photons, PHOTON_CAUSTIC, &at, delta, walk->scratch);
+    if (!add(walk, &seen, radiance) || !walk->out->groups)
+        return;
+    for (int i = 0; i < walk->scene->n_light_groups; i++)
+        walk->out->groups[i] += path->beta * walk->scratch->estimate.groups[i];
 }
 
 static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
@@ -170,7 +195,7 @@ void path_radiance(const void *data, const ray *r, sampler *random,
                    transport_scratch *scratch, radiance_sample *out)
 {
     const path_pass *pass = data;
-    *out = (radiance_sample){0};
+    *out = (radiance_sample){.groups = out->groups};
     path_walk walk = {pass, pass->plan->scene, &pass->plan->how, random, scratch, out};
     camera_path path = {.ray = *r,
                         .beta = spectrum_fill(1.0f),
@@ -184,10 +209,10 @@ void path_radiance(const void *data, const ray *r, sampler *random,
         bool met = path.bounces == 0 ? scene_see(walk.scene, &path.ray, &hit)
                                      : scene_intersect(walk.scene, &path.ray, &hit);
         if (!met) {
-            meet_light(&walk, &path, NULL);
+            meet_sky(&walk, &path);
             return;
         }
-        meet_light(&walk, &path, &hit);
+        meet_lamp(&walk, &path, &hit);
         bsdf b;
         if (!scene_bsdf(walk.scene, &hit, &pass->w, path.lane, &pass->options, &b)) {
             path.ray = hit_ray(&hit, path.ray.direction);
@@ -239,6 +264,7 @@ static void end_pass(void *pass)
 
 const transport_kind transport_path = {
     .name = "path",
+    .light_groups = true,
     .prepare = prepare,
     .begin_pass = begin_pass,
     .radiance = path_radiance,

@@ -187,6 +187,7 @@ static void end_pass(void *data)
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         photon_map_free(pass->maps[c]);
     photon_map_free(pass->irradiance);
+    big_free(pass->irradiance_groups);
     g_aligned_free(pass);
 }
 
@@ -244,8 +245,11 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
                           const shading_point *at, unsigned delta_lobes,
                           transport_scratch *scratch)
 {
-    if (!pass->maps[c])
+    if (!pass->maps[c]) {
+        for (size_t i = 0; i < scratch->estimate.n_groups; i++)
+            scratch->estimate.groups[i] = (spectrum){0};
         return (spectrum){0};
+    }
     estimate_options options = pass->estimates[c];
     options.radius = local_radius(pass, c, at->hit->p, &scratch->estimate.hits);
     options.scene = pass->how->edges ? pass->scene : NULL;
@@ -261,6 +265,7 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
 
 const transport_kind transport_photonmap = {
     .name = "photonmap",
+    .light_groups = true,
     .prepare = prepare,
     .begin_pass = begin_pass,
     .radiance = photonmap_radiance,

@@ -22,6 +22,8 @@ typedef struct photonmap_pass {
     photon_map
         *irradiance; /**< for final gathering: "photons" whose wi is a surface normal and
                           whose flux is the irradiance there; NULL if not asked for */
+    spectrum *irradiance_groups; /**< [tag * n_light_groups + group], of the photons of
+                                    that map; owned; NULL without groups */
     estimate_options estimates[N_PHOTON_CLASSES];
     bool has_delta_lights;
 } photonmap_pass;
@@ -43,14 +45,16 @@ void photonmap_radiance(const void *pass, const ray *r, sampler *random,
                         transport_scratch *scratch, radiance_sample *out);
 
 /** @brief Indirect radiance toward wo by M rays over the diffuse lobes (final gathering).
+ *  scratch->gathered gets the parts of the light groups.
  *  @param importance share of the pixel that this is, 0..1: fewer rays where little */
 spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
                       float importance, sampler *random, transport_scratch *scratch);
 
 /** @brief Irradiance at some of the photons, as a map to look the nearest up in
  * (Christensen, "Faster Photon Map Global Illumination", 1999).
+ *  Also fills pass->irradiance_groups.
  *  @param points photons stored, with normals[i] the surface's; every fourth is used */
-photon_map *irradiance_map_build(const photonmap_pass *pass, const trace_result *points,
+photon_map *irradiance_map_build(photonmap_pass *pass, const trace_result *points,
                                  size_t n, GError **error);
 
 /** @brief Chooses plan->radius of each class that is needed. */

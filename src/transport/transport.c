@@ -1,5 +1,6 @@
 #include "transport/transport.h"
 
+#include "base/memory.h"
 #include "transport/auto.h"
 #include "transport/path.h"
 #include "transport/photonmap.h"
@@ -14,6 +15,23 @@ static const transport_kind *const kinds[] = {
 const transport_kind *transport_find(int integrator)
 {
     return kinds[integrator];
+}
+
+bool transport_scratch_init(transport_scratch *scratch, size_t n_groups, GError **error)
+{
+    if (!estimate_scratch_init(&scratch->estimate, n_groups, error))
+        return false;
+    if (n_groups > 0)
+        scratch->gathered =
+            big_alloc(n_groups, sizeof *scratch->gathered, "light groups", error);
+    return n_groups == 0 || scratch->gathered;
+}
+
+void transport_scratch_clear(transport_scratch *scratch)
+{
+    estimate_scratch_clear(&scratch->estimate);
+    big_free(scratch->gathered);
+    scratch->gathered = NULL;
 }
 
 void transport_plan_clear(transport_plan *plan)

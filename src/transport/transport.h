@@ -29,6 +29,8 @@ typedef enum radiance_layer {
 /** @brief What one camera ray found. */
 typedef struct radiance_sample {
     spectrum layers[N_LAYERS]; /**< radiance */
+    spectrum *groups;          /**< the same light, apart by the group of the lamp it came
+                                  from: the caller's, zeroed; NULL: not asked for */
     spectrum albedo;           /**< of the first surface */
     vec3 normal;               /**< shading normal of the first surface, toward the eye */
     float depth;               /**< distance to it, m; 0: none */
@@ -71,10 +73,16 @@ typedef struct transport_scratch {
     estimate_scratch estimate;
     uint64_t camera_rays, shadow_rays, n_gathers, n_not_finite;
     double time_gather; /**< s, estimated from a sample of the gathers */
+    spectrum *gathered; /**< final_gather's result by light groups; owned */
 } transport_scratch;
 
+/** @brief Makes zeroed scratch usable for a scene with so many light groups. */
+bool transport_scratch_init(transport_scratch *scratch, size_t n_groups, GError **error);
+void transport_scratch_clear(transport_scratch *scratch);
+
 typedef struct transport_kind {
-    const char *name; /**< as the setting `integrator` says it */
+    const char *name;  /**< as the setting `integrator` says it */
+    bool light_groups; /**< fills radiance_sample.groups */
     /** Fills the plan's budgets and radii. */
     bool (*prepare)(transport_plan *plan, const cancel_flag *cancel, GError **error);
     /** Makes pass number `index`; counts are added to. */
