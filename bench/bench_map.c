@@ -164,7 +164,7 @@ static void answer(bench *b, const photon_map *map, const task *t, place at)
 static double time_task(bench *b, answerer who, const task *t, size_t n)
 {
     enum { BATCHES = 10 };
-    double best = (double)INFINITY;
+    double best = HUGE_VAL;
     for (size_t batch = 0; batch < BATCHES; batch++) {
         size_t first = n * batch / BATCHES, end = n * (batch + 1) / BATCHES;
         double begin = now();

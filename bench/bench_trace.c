@@ -145,7 +145,7 @@ static void bench_photons(const scene *s, uint64_t n)
     for (uint64_t i = 0; i < n; i++)
         photon_tell(&task, i, note_ray, rays);
     bare b = bare_new(s);
-    double embree = INFINITY, ours = INFINITY, trace = INFINITY;
+    double embree = HUGE_VAL, ours = HUGE_VAL, trace = HUGE_VAL;
     for (int round = 0; round < ROUNDS; round++) {
         embree = MIN(embree, bare_time(&b, rays));
         ours = MIN(ours, intersect_time(s, rays));
@@ -169,7 +169,7 @@ static void bench_camera(const scene *s, const char *name, integrator_choice int
     how.spp = 1;
     how.threads = 1;
     how.photons = 100000;
-    double best = INFINITY;
+    double best = HUGE_VAL;
     render_statistics st = {0};
     for (int round = 0; round < ROUNDS; round++) {
         g_autoptr(render) r = render_new(s, &how, NULL);

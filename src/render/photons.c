@@ -15,11 +15,12 @@ static double seconds(void)
 /* All three classes, sharing `photons` where they have no budget of their own. */
 static uint64_t budget(const settings *how, photon_class c)
 {
-    int n_sharing = 0;
+    if (how->class_photons[c] > 0)
+        return (uint64_t)how->class_photons[c];
+    int n_sharing = 1;
     for (int i = 0; i < N_PHOTON_CLASSES; i++)
-        n_sharing += how->class_photons[i] == 0;
-    int64_t own = how->class_photons[c];
-    return (uint64_t)MAX(own > 0 ? own : how->photons / n_sharing, 1);
+        n_sharing += i != (int)c && how->class_photons[i] == 0;
+    return (uint64_t)MAX(how->photons / n_sharing, 1);
 }
 
 /* What a render would plan, without the radii. */
