@@ -191,13 +191,8 @@ static double mean_below(const film *f, double ceiling)
 double film_noise(const film *f)
 {
     if (f->n_passes < 2)
-<<<<<<< HEAD
         return (double)INFINITY;
     double dark = DARK_SHARE * mean_below(f, mean_below(f, (double)INFINITY));
-=======
-        return HUGE_VAL;
-    double dark = DARK_SHARE * mean_below(f, mean_below(f, HUGE_VAL));
->>>>>>> 852335a (all: builds with clang again without warnings)
     double sum = 0.0;
     for (size_t i = 0; i < n_pixels(f); i++) {
         double y = pixel_mean(&f->pixels[i]);

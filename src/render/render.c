@@ -47,11 +47,7 @@ render *render_new(const scene *s, const settings *how, GError **error)
     r->transport = transport_find(how->integrator);
     r->n_threads = parallel_threads((unsigned)how->threads);
     r->plan.how.threads = r->n_threads;
-<<<<<<< HEAD
     r->statistics.noise = (double)INFINITY;
-=======
-    r->statistics.noise = HUGE_VAL;
->>>>>>> 852335a (all: builds with clang again without warnings)
     bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
     r->statistics.passes_wanted = open_end ? 0 : settings_most_passes(how);
     if (s->n_light_groups > 0 && !r->transport->light_groups)
