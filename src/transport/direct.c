@@ -25,6 +25,16 @@ static float density_of_following(const direct_query *query, vec3 wi)
     return p * bsdf_pdf(query->bsdf, query->wo, wi, lobes, TRANSPORT_RADIANCE);
 }
 
+/* The density with which the lights are sampled in a direction: following that meets the
+   sky meets all of it. */
+static float density_of_sampling(const direct_query *query, const light *l,
+                                 const light_sample *to_light)
+{
+    if (!l->kind->is_environment)
+        return to_light->pdf;
+    return scene_light_pdf(query->scene, query->hit->p, to_light->wi, NULL);
+}
+
 /* f of one class of lobes, weighed against following where that is done too. */
 static spectrum weighed_lobe(const direct_query *query, const light *l,
                              const light_sample *to_light, unsigned lobe)
@@ -37,7 +47,7 @@ static spectrum weighed_lobe(const direct_query *query, const light *l,
     if (!shared || spectrum_is_black(f))
         return f;
     float pdf = density_of_following(query, to_light->wi);
-    return f * (1.0f - followed_weight(pdf, to_light->pdf));
+    return f * (1.0f - followed_weight(pdf, density_of_sampling(query, l, to_light)));
 }
 
 direct_radiance direct_light(const direct_query *query, sampler *random,
