@@ -120,6 +120,45 @@ void film_put(film *f, int x, int y, const film_sum *sum)
         f->pass[i].number[k] = (float)number[k];
 }
 
+/* A pixel's sums are still to be divided by its weight, so a splat is multiplied by it.
+ */
+static void add_splat_to(pass_pixel *pixel, const float xyz[3], radiance_layer layer,
+                         float share)
+{
+    float weight = pixel->number[offsetof(film_sum, weight) / sizeof(double)];
+    float *color =
+        &pixel->number[offsetof(film_sum, color) / sizeof(double) + 3 * (size_t)layer];
+    for (int i = 0; i < 3; i++)
+        color[i] += xyz[i] * share * weight;
+}
+
+static void add_splat(film *f, const film_pass *pass, const pixel_filter *filter,
+                      const splat *s)
+{
+    float xyz[3];
+    spectrum_to_xyz(pass->w, s->value, xyz);
+    /* Pixels whose centres are within the filter's radius. */
+    vec2 at = {s->raster.x - 0.5f, s->raster.y - 0.5f};
+    int x0 = MAX((int)ceilf(at.x - filter->x_radius), f->x0);
+    int x1 = MIN((int)floorf(at.x + filter->x_radius), f->x0 + f->width - 1);
+    int y0 = MAX((int)ceilf(at.y - filter->y_radius), f->y0);
+    int y1 = MIN((int)floorf(at.y + filter->y_radius), f->y0 + f->height - 1);
+    for (int y = y0; y <= y1; y++) {
+        for (int x = x0; x <= x1; x++) {
+            size_t i = (size_t)(y - f->y0) * (size_t)f->width + (size_t)(x - f->x0);
+            vec2 offset = {at.x - (float)x, at.y - (float)y};
+            add_splat_to(&f->pass[i], xyz, s->layer, filter_density(filter, offset));
+        }
+    }
+}
+
+void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
+                     splat_list splats)
+{
+    for (size_t i = 0; i < splats.n; i++)
+        add_splat(f, pass, filter, &splats.splats[i]);
+}
+
 static void add_numbers(film_sum *sum, const pass_pixel *pass)
 {
     double *number = (double *)sum;

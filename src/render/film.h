@@ -76,6 +76,10 @@ void film_add(film_sum *sum, const film_pass *pass, const radiance_sample *sampl
 void film_put(film *f, int x, int y, const film_sum *sum);
 /** @brief The same for what the light groups gave: Σ of weighed radiance, n_groups. */
 void film_put_groups(film *f, const film_pass *pass, int x, int y, const spectrum *sums);
+/** @brief Adds what the pass brought from the lamps to pixels that are all put, splat by
+ * splat in their order, by the pixel filter. */
+void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
+                     splat_list splats);
 /** @brief Adds the pass, of which every pixel was put, to the picture. */
 void film_end_pass(film *f, unsigned threads);
 

@@ -286,6 +286,15 @@ static bool look(render *r, const void *pass, GError **error)
     return collected && done;
 }
 
+static void add_splats(render *r, const void *pass)
+{
+    if (!r->transport->splats)
+        return;
+    film_pass colors = film_pass_for(r->transport->pass_wavelengths(pass));
+    film_add_splats(&r->film, &colors, &r->plan.scene->filter,
+                    r->transport->splats(pass));
+}
+
 static void note_pass(render *r, double photons_done)
 {
     render_statistics *st = &r->statistics;
@@ -308,6 +317,8 @@ static bool run_pass(render *r, GError **error)
     double photons_done = seconds() - r->pass_start;
     add_counts(&r->statistics, &counts);
     bool ok = look(r, pass, error);
+    if (ok)
+        add_splats(r, pass);
     r->transport->end_pass(pass);
     if (!ok)
         return false;

@@ -137,3 +137,46 @@ bool camera_project(const camera *c, vec3 p, vec2 *raster)
     raster->y = (s[3] - q[1] / q[2]) / (s[3] - s[2]) * (float)c->height;
     return true;
 }
+
+/* ---- connections ---- */
+
+/* A direction v = M d with d = (x, y, 1) in camera space turns by dω = |det M| dx
+   dy/|v|³. The lens does not change that: its rays of equal d meet in a point of the
+   plane in focus. */
+float camera_pdf_direction(const camera *c, vec3 direction)
+{
+    const float *s = c->screen;
+    transform to_camera = transform_inverse(&c->to_world);
+    const double(*m)[4] = c->to_world.m;
+    vec3 d = transform_vector(&to_camera, direction);
+    if (!(d[2] > 0.0f))
+        return 0.0f;
+    double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                 m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                 m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    float pixel = (s[1] - s[0]) * (s[3] - s[2]) / ((float)c->width * (float)c->height);
+    float length = 1.0f / d[2];
+    return length * length * length / ((float)fabs(det) * pixel);
+}
+
+bool camera_connect(const camera *c, vec3 p, vec2 u_lens, camera_connection *out)
+{
+    const float *s = c->screen;
+    transform to_camera = transform_inverse(&c->to_world);
+    vec3 q = transform_point(&to_camera, p), origin = {0};
+    if (!(q[2] > 0.0f))
+        return false;
+    if (c->lens_radius > 0.0f) {
+        vec2 lens = warp_disk(u_lens);
+        origin = vec3_make(c->lens_radius * lens.x, c->lens_radius * lens.y, 0.0f);
+    }
+    /* Where the ray from the lens crosses z = 1, if the lens were a pinhole. */
+    vec3 d = (q - origin) / q[2] + origin / c->focal_distance;
+    vec3 to = transform_point(&c->to_world, origin) - p;
+    out->distance = length3(to);
+    out->direction = to / out->distance;
+    out->raster.x = (d[0] - s[0]) / (s[1] - s[0]) * (float)c->width;
+    out->raster.y = (s[3] - d[1]) / (s[3] - s[2]) * (float)c->height;
+    out->pdf = camera_pdf_direction(c, -out->direction);
+    return out->distance > 0.0f && out->pdf > 0.0f;
+}

@@ -40,3 +40,19 @@ ray camera_ray(const camera *c, vec2 raster, vec2 u_lens, float u_time);
 float camera_pixel_area(const camera *c, float z);
 /** @brief Raster position of a world point; false if behind the camera. */
 bool camera_project(const camera *c, vec3 p, vec2 *raster);
+
+/** @brief A point seen by the camera: what connects light to the eye. */
+typedef struct camera_connection {
+    vec3 direction; /**< from the point to the place on the lens, unit */
+    float distance; /**< m */
+    vec2 raster;    /**< where the film sees it, also outside the film */
+    float pdf;      /**< as camera_pdf_direction */
+} camera_connection;
+
+/** @brief Connects a point to the place on the lens that u_lens chooses, as camera_ray
+ * does; false if it is behind the camera. */
+bool camera_connect(const camera *c, vec3 p, vec2 u_lens, camera_connection *out);
+/** @brief Pixels per solid angle around a ray's direction (world, unit), from any place
+ * on the lens; 0 behind the camera. With places on the film chosen uniformly, one a
+ * pixel, it is the pdf_solid_angle of camera_ray. */
+float camera_pdf_direction(const camera *c, vec3 direction);

@@ -252,3 +252,17 @@ float filter_eval(const pixel_filter *f, vec2 offset)
 {
     return eval(&f->table->x.f, offset.x) * eval(&f->table->y.f, offset.y);
 }
+
+float filter_density(const pixel_filter *f, vec2 offset)
+{
+    double integral = f->table->x.integral * f->table->y.integral;
+    return (float)((double)filter_eval(f, offset) / integral);
+}
+
+bool filter_reaches(const pixel_filter *f, vec2 raster, int width, int height)
+{
+    /* The centre of a pixel lies half a pixel inside of the film. */
+    float x = f->x_radius - 0.5f, y = f->y_radius - 0.5f;
+    return raster.x >= -x && raster.x <= (float)width + x && raster.y >= -y &&
+           raster.y <= (float)height + y;
+}

@@ -24,3 +24,8 @@ bool filter_init_default(pixel_filter *f, GError **error);
 vec2 filter_sample(const pixel_filter *f, vec2 u, float *weight);
 /** @brief f(x, y), not normalised. */
 float filter_eval(const pixel_filter *f, vec2 offset);
+/** @brief f(x, y) over its integral, per pixel area: what a place on the film gives to a
+ * pixel. */
+float filter_density(const pixel_filter *f, vec2 offset);
+/** @brief True if a place on the raster gives to some pixel of a film of that size. */
+bool filter_reaches(const pixel_filter *f, vec2 raster, int width, int height);

@@ -26,6 +26,7 @@ typedef struct light_emission {
                       / N is the light's power */
     float pdf_position;  /**< m⁻² (1 for a point light) */
     float pdf_direction; /**< sr⁻¹ (1 for a distant light) */
+    uint32_t primitive;  /**< of an area light's mesh, where it left */
 } light_emission;
 
 /** @brief Light arriving at a point from one direction. */
@@ -34,6 +35,7 @@ typedef struct light_sample {
     float distance;    /**< m, INFINITY for distant and infinite lights */
     spectrum radiance; /**< Li; for delta lights the irradiance on a plane facing wi */
     float pdf;         /**< pdf_solid_angle; 1 for delta lights */
+    vec3 n;            /**< geometric normal of an area light there; else -wi */
 } light_sample;
 
 typedef struct light_kind {

@@ -72,6 +72,7 @@ static void leave(const area_light *l, const shape_sample *at, vec3 direction,
                      .direction = direction,
                      .t_max = INFINITY};
     out->n = at->n;
+    out->primitive = at->primitive;
     out->pdf_position = at->pdf;
     out->pdf_direction = direction_pdf(l, dot3(at->n, direction));
 }
@@ -126,7 +127,8 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     *out = (light_sample){.wi = to / distance,
                           .distance = distance,
                           .radiance = emitter_eval(&l->radiance, w),
-                          .pdf = at.pdf};
+                          .pdf = at.pdf,
+                          .n = at.n};
     return true;
 }
 

@@ -105,7 +105,8 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     *out = (light_sample){.wi = -l->direction,
                           .distance = INFINITY,
                           .radiance = emitter_eval(&l->irradiance, w),
-                          .pdf = 1.0f};
+                          .pdf = 1.0f,
+                          .n = l->direction};
     return true;
 }
 

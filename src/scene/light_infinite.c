@@ -97,10 +97,12 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
 {
     (void)ref, (void)u_primitive;
     const infinite_light *l = self;
-    *out = (light_sample){.wi = warp_sphere(u),
+    vec3 wi = warp_sphere(u);
+    *out = (light_sample){.wi = wi,
                           .distance = INFINITY,
                           .radiance = emitter_eval(&l->radiance, w),
-                          .pdf = 1.0f / all_around};
+                          .pdf = 1.0f / all_around,
+                          .n = -wi};
     return true;
 }
 

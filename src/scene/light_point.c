@@ -92,7 +92,8 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     *out = (light_sample){.wi = to / distance,
                           .distance = distance,
                           .radiance = emitter_eval(&l->intensity, w) / square(distance),
-                          .pdf = 1.0f};
+                          .pdf = 1.0f,
+                          .n = -to / distance};
     return distance > 0.0f;
 }
 

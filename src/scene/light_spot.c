@@ -191,7 +191,8 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     *out = (light_sample){.wi = wi,
                           .distance = distance,
                           .radiance = share * emitter_eval(&l->intensity, w),
-                          .pdf = 1.0f};
+                          .pdf = 1.0f,
+                          .n = -wi};
     return true;
 }
 

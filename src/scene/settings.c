@@ -12,19 +12,21 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const integrator_words[] = {"photonmap", "path", "auto", "sppm", NULL};
+static const char *const integrator_words[] = {"photonmap", "path", "auto",
+                                               "vcm",       "sppm", NULL};
 static const char *const kernel_words[] = {"constant", "cone", "gaussian", "epanechnikov",
                                            NULL};
 static const char *const map_words[] = {"list", "kdtree", "grid", NULL};
 static const char *const roulette_words[] = {"mean", "max", NULL};
 static const char *const emission_words[] = {"uniform", "specular-area", "guided", NULL};
+static const char *const vcm_words[] = {"all", "bpt", "bpm", "ppm", "light", NULL};
 
 enum { MOST_PASSES = 1000000000, USUAL_PASSES = 16 };
 
 #define AT(field) offsetof(settings, field)
 
 static const setting_row table[] = {
-    {"integrator", SETTING_CHOICE, AT(integrator), "", 0, 2, INTEGRATOR_PHOTONMAP,
+    {"integrator", SETTING_CHOICE, AT(integrator), "", 0, 3, INTEGRATOR_PHOTONMAP,
      integrator_words, "", "all",
      "The algorithm that carries light from the lamps to the eye. sppm is photonmap with "
      "spp = 1, all nearest = 0, final_gather off and alpha = 2/3: set it first."},
@@ -66,7 +68,7 @@ static const setting_row table[] = {
      "photonmap path",
      "Tests whether sampled lights are hidden; off: direct light casts no shadows."},
     {"photons", SETTING_COUNT, AT(photons), "photons/pass", 1, 1e12, 400000, NULL,
-     "numEmitted photonsperiteration photons_per_pass", "photonmap",
+     "numEmitted photonsperiteration photons_per_pass", "photonmap vcm",
      "Photons emitted a pass, shared among the classes that have no number of their "
      "own."},
     {"direct_photons", SETTING_COUNT, AT(class_photons[0]), "photons/pass", 0, 1e12, 0,
@@ -91,7 +93,7 @@ static const setting_row table[] = {
      "CAUSTIC_NEARBY_PHOTONS", "photonmap",
      "Nearest caustic photons in an estimate; 0: all within the radius."},
     {"radius", SETTING_REAL, AT(radius), "m", 0, 1e12, 0, NULL,
-     "photonRadius gather_radius", "photonmap",
+     "photonRadius gather_radius", "photonmap vcm",
      "Radius of the estimate in the first pass, or its bound for nearest photons; 0: "
      "chosen from the photons and the pixels."},
     {"direct_kernel", SETTING_CHOICE, AT(class_kernel[0]), "", 0, 3, KERNEL_EPANECHNIKOV,
@@ -114,8 +116,9 @@ static const setting_row table[] = {
      "Slope of the caustic cone kernel 1 - d/(k r). The alias also chooses the kernel: "
      "below 1 constant, else cone."},
     {"photon_map", SETTING_CHOICE, AT(photon_map), "", 0, 2, MAP_GRID, map_words, "",
-     "photonmap", "The structure photons are looked up in; all give the same answers."},
-    {"flatten", SETTING_REAL, AT(flatten), "", 0.001, 1, 1, NULL, "", "photonmap",
+     "photonmap vcm",
+     "The structure photons are looked up in; all give the same answers."},
+    {"flatten", SETTING_REAL, AT(flatten), "", 0.001, 1, 1, NULL, "", "photonmap vcm",
      "Height of the neighbourhood along the normal over its radius; below 1 it leaks "
      "less light through corners."},
     {"edges", SETTING_BOOL, AT(edges), "", 0, 1, 1, NULL, "", "photonmap auto",
@@ -133,7 +136,11 @@ static const setting_row table[] = {
      "MULTIPLE_SAMPLES", "photonmap path",
      "Samples roughness and Fresnel's split; off: one deterministic path, without "
      "either."},
-    {"alpha", SETTING_REAL, AT(alpha), "", 0.01, 1, 2.0 / 3.0, NULL, "", "photonmap",
+    {"vcm_strategies", SETTING_CHOICE, AT(vcm_strategies), "", 0, 4, VCM_ALL, vcm_words,
+     "", "vcm",
+     "How vcm finds light: by all strategies, connections only (bpt), merging at every "
+     "vertex (bpm) or at the first (ppm), or light paths that reach the eye (light)."},
+    {"alpha", SETTING_REAL, AT(alpha), "", 0.01, 1, 2.0 / 3.0, NULL, "", "photonmap vcm",
      "How slowly the radius shrinks from pass to pass; 1: not at all (Knaus & Zwicker "
      "2011)."},
     {"seed", SETTING_COUNT, AT(seed), "", 0, 9007199254740992.0, 0, NULL, "", "all",

@@ -29,8 +29,11 @@ typedef enum emission_choice {
 typedef enum integrator_choice {
     INTEGRATOR_PHOTONMAP,
     INTEGRATOR_PATH,
-    INTEGRATOR_AUTO
+    INTEGRATOR_AUTO,
+    INTEGRATOR_VCM
 } integrator_choice;
+/** Which strategies vertex connection and merging uses: see transport/vcm.h. */
+typedef enum vcm_choice { VCM_ALL, VCM_BPT, VCM_BPM, VCM_PPM, VCM_LIGHT } vcm_choice;
 
 /** @brief Every knob. Arrays are indexed by photon class. A plain value: copy it. */
 typedef struct settings {
@@ -57,7 +60,8 @@ typedef struct settings {
     int roulette;   /**< roulette_choice */
     int caustic_emission; /**< emission_choice */
     bool multiple_samples;
-    double alpha; /**< Knaus & Zwicker 2011 */
+    int vcm_strategies; /**< vcm_choice */
+    double alpha;       /**< Knaus & Zwicker 2011 */
     int64_t seed;
     int64_t threads; /**< 0: one per processor */
 } settings;

@@ -4,12 +4,14 @@
 #include "transport/auto.h"
 #include "transport/path.h"
 #include "transport/photonmap.h"
+#include "transport/vcm.h"
 
 /* In the order of integrator_choice. */
 static const transport_kind *const kinds[] = {
     [INTEGRATOR_PHOTONMAP] = &transport_photonmap,
     [INTEGRATOR_PATH] = &transport_path,
     [INTEGRATOR_AUTO] = &transport_auto,
+    [INTEGRATOR_VCM] = &transport_vcm,
 };
 
 const transport_kind *transport_find(int integrator)

@@ -36,6 +36,20 @@ typedef struct radiance_sample {
     float depth;               /**< distance to it, m; 0: none */
 } radiance_sample;
 
+/** @brief Light that a pass found on its way from the lamps, at a place of the film. */
+typedef struct splat {
+    spectrum value; /**< a pass' splats on an area of the film, in pixels, sum up to the
+                       integral of radiance over it */
+    vec2 raster;
+    radiance_layer layer;
+} splat;
+
+/** @brief The splats of a pass, in an order that does not depend on threads. Borrowed. */
+typedef struct splat_list {
+    const splat *splats;
+    size_t n;
+} splat_list;
+
 /** @brief A surface point as a camera path meets it. */
 typedef struct shading_point {
     const surface_hit *hit;
@@ -93,6 +107,8 @@ typedef struct transport_kind {
     void (*radiance)(const void *pass, const ray *r, sampler *random,
                      transport_scratch *scratch, radiance_sample *out);
     const wavelengths *(*pass_wavelengths)(const void *pass);
+    /** What is added to the radiance of camera rays; NULL: nothing. */
+    splat_list (*splats)(const void *pass);
     void (*end_pass)(void *pass);
 } transport_kind;
 

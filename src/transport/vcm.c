@@ -1,0 +1,151 @@
+#include "transport/vcm.h"
+
+#include "base/memory.h"
+#include "transport/photonmap.h"
+
+/* The automatic radius over that of photon mapping's indirect light: merging is for what
+   connections do not find, and a smaller disc blurs less. */
+#define RADIUS_SHARE 0.25
+
+vcm_strategies vcm_strategies_of(int choice)
+{
+    static const vcm_strategies all[] = {
+        [VCM_ALL] = {.connect = true, .merge = true, .splat = true},
+        [VCM_BPT] = {.connect = true, .splat = true},
+        [VCM_BPM] = {.merge = true},
+        [VCM_PPM] = {.merge = true, .end_here = true},
+        [VCM_LIGHT] = {.splat = true},
+    };
+    return all[choice];
+}
+
+/* ---- Planning ---- */
+
+/* The radius that suits indirect light, but no more than suits caustics. */
+static bool choose_radius(transport_plan *plan, const cancel_flag *cancel, GError **error)
+{
+    int emission = plan->how.caustic_emission;
+    if (plan->scene->n_caustic_shapes > 0)
+        plan->n_photons[PHOTON_CAUSTIC] = plan->n_photons[PHOTON_INDIRECT];
+    plan->how.caustic_emission = EMISSION_UNIFORM;
+    bool ok = photonmap_choose_radii(plan, cancel, error);
+    plan->how.caustic_emission = emission;
+    double *radius = &plan->radius[PHOTON_INDIRECT];
+    if (!(plan->how.radius > 0.0))
+        *radius *= RADIUS_SHARE;
+    if (plan->n_photons[PHOTON_CAUSTIC] > 0)
+        *radius = fmin(*radius, plan->radius[PHOTON_CAUSTIC]);
+    plan->n_photons[PHOTON_CAUSTIC] = 0;
+    return ok;
+}
+
+static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
+{
+    plan->n_photons[PHOTON_INDIRECT] = (uint64_t)MAX(plan->how.photons, 1);
+    return !vcm_strategies_of(plan->how.vcm_strategies).merge ||
+           choose_radius(plan, cancel, error);
+}
+
+/* ---- A pass ---- */
+
+static double seconds(void)
+{
+    return (double)g_get_monotonic_time() * 1e-6;
+}
+
+static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
+{
+    const settings *how = &pass->plan->how;
+    const light_paths *paths = &pass->light;
+    photon_store store = {0};
+    double start = seconds();
+    if (!photon_store_reserve(&store, paths->n_vertices, error))
+        return false;
+    for (size_t i = 0; i < paths->n_vertices; i++) {
+        const light_vertex *v = &paths->vertices[i];
+        photon p = {.p = v->hit.p, .wi = v->wi, .flux = vcm_payload(i)};
+        photon_store_put(&store, &p);
+    }
+    pass->map = photon_map_build((map_choice)how->photon_map, &store, pass->radius,
+                                 (unsigned)how->threads, error);
+    counts->time_build += seconds() - start;
+    if (pass->map)
+        counts->memory_photons += photon_map_bytes(pass->map);
+    return pass->map != NULL;
+}
+
+static bool make_light(vcm_pass *pass, const cancel_flag *cancel,
+                       transport_counts *counts, GError **error)
+{
+    double start = seconds();
+    if (!vcm_trace_light(pass, cancel, counts, error))
+        return false;
+    counts->time_trace += seconds() - start;
+    counts->emitted[PHOTON_INDIRECT] += pass->light.n;
+    counts->stored[PHOTON_INDIRECT] += pass->light.n_vertices;
+    counts->radius[PHOTON_INDIRECT] = (double)pass->radius;
+    counts->memory_photons += pass->light.n_vertices * sizeof *pass->light.vertices +
+                              pass->light.n_splats * sizeof *pass->light.splats;
+    return !pass->strategies.merge || build_map(pass, counts, error);
+}
+
+static void end_pass(void *data)
+{
+    vcm_pass *pass = data;
+    photon_map_free(pass->map);
+    light_paths_clear(&pass->light);
+    g_aligned_free(pass);
+}
+
+static void *begin_pass(const transport_plan *plan, uint32_t index,
+                        const cancel_flag *cancel, transport_counts *counts,
+                        GError **error)
+{
+    vcm_pass *pass = g_aligned_alloc0(1, sizeof *pass, 64);
+    const settings *how = &plan->how;
+    double n = (double)plan->n_photons[PHOTON_INDIRECT];
+    *pass = (vcm_pass){
+        .plan = plan,
+        .scene = plan->scene,
+        .w = wavelengths_for_pass((uint64_t)how->seed, index),
+        .index = index,
+        .strategies = vcm_strategies_of(how->vcm_strategies),
+        .camera_per_light = (float)((double)how->spp / n),
+        .light.n = plan->n_photons[PHOTON_INDIRECT],
+    };
+    double radius = photonmap_radius(plan->radius[PHOTON_INDIRECT], how->alpha, index);
+    double discs = G_PI * radius * radius * n;
+    pass->radius = (float)radius;
+    for (guint i = 0; i < plan->scene->shapes->len; i++)
+        pass->camera_hides |=
+            ((const shape *)plan->scene->shapes->pdata[i])->camera_hidden;
+    if (pass->strategies.merge)
+        pass->ratios.merge = (float)discs;
+    if (pass->strategies.connect && pass->strategies.merge)
+        pass->ratios.connect = (float)(1.0 / discs);
+    if (make_light(pass, cancel, counts, error))
+        return pass;
+    end_pass(pass);
+    return NULL;
+}
+
+static const wavelengths *pass_wavelengths(const void *pass)
+{
+    return &((const vcm_pass *)pass)->w;
+}
+
+static splat_list splats(const void *data)
+{
+    const vcm_pass *pass = data;
+    return (splat_list){pass->light.splats, pass->light.n_splats};
+}
+
+const transport_kind transport_vcm = {
+    .name = "vcm",
+    .prepare = prepare,
+    .begin_pass = begin_pass,
+    .radiance = vcm_radiance,
+    .pass_wavelengths = pass_wavelengths,
+    .splats = splats,
+    .end_pass = end_pass,
+};

@@ -1,0 +1,360 @@
+/* Camera subpaths: each vertex meets lamps, is connected, and merges. */
+#include "transport/vcm.h"
+
+enum { ROULETTE_BOUNCES = 4 };
+#define MOST_SURVIVAL 0.99f
+
+/* One camera subpath on its way. */
+typedef struct camera_walk {
+    vcm_walk walk;
+    const vcm_pass *pass;
+    sampler *random;
+    transport_scratch *scratch;
+    radiance_sample *out;
+    size_t first_light, end_light; /* the light subpath that it connects to */
+} camera_walk;
+
+static void add(camera_walk *c, scattering_counts counts, spectrum radiance)
+{
+    spectrum value = c->walk.carried * radiance;
+    if (spectrum_is_finite(value))
+        c->out->layers[vcm_layer(counts)] += value;
+    else
+        c->scratch->n_not_finite++;
+}
+
+/* Adds what this surface scatters by its two classes of lobes, f, of light that itself
+   came by a light subpath. */
+static void add_scattered(camera_walk *c, const lobe_pair *f, scattering_counts lamp,
+                          spectrum arriving)
+{
+    for (int i = 0; i < 2; i++) {
+        scattering_counts seen = vcm_count(c->walk.counts, i == 0);
+        if (!spectrum_is_black(f->value[i]))
+            add(c, vcm_join(seen, lamp), f->value[i] * arriving);
+    }
+}
+
+/* ---- The camera path runs into a lamp ---- */
+
+/* True if lamps that this path meets are counted, and by it alone. */
+static bool meets_alone(const camera_walk *c, bool *counted)
+{
+    const vcm_strategies *how = &c->pass->strategies;
+    bool seen_directly = c->walk.counts.n == 0;
+    *counted = how->connect || seen_directly || (how->merge && c->walk.mirrors_only);
+    return !how->connect || seen_directly;
+}
+
+static float met_weight(const camera_walk *c, int index, const surface_hit *hit)
+{
+    const scene *s = c->pass->scene;
+    const light *l = scene_light(s, index);
+    vec3 d = c->walk.ray.direction;
+    float connected = light_tree_probability(s->light_tree, c->walk.from, index) *
+                      l->kind->pdf(l->self, c->walk.from, d, hit);
+    if (hit)
+        connected *= fabsf(dot3(d, hit->n_geom)) / length3_2(hit->p - c->walk.from);
+    float position, direction;
+    l->kind->emit_pdf(l->self, hit ? hit->p : c->walk.from, hit ? hit->n_geom : -d, -d,
+                      &position, &direction);
+    float p_traced = distribution_pdf(&s->light_power, (size_t)index);
+    return weights_met(&c->walk.weights, connected, p_traced * position * direction);
+}
+
+static void meet_light(camera_walk *c, int index, const surface_hit *hit,
+                       spectrum radiance)
+{
+    bool counted, alone = meets_alone(c, &counted);
+    if (!counted || spectrum_is_black(radiance))
+        return;
+    add(c, c->walk.counts, alone ? radiance : radiance * met_weight(c, index, hit));
+}
+
+static void meet_lamp(camera_walk *c, const surface_hit *hit, vec3 wo)
+{
+    const partial_weights before = c->walk.weights;
+    weights_arrive(&c->walk.weights, length3_2(hit->p - c->walk.from),
+                   fabsf(dot3(wo, hit->n_geom)));
+    meet_light(c, hit->light, hit, scene_emitted(c->pass->scene, hit, wo, &c->pass->w));
+    c->walk.weights = before;
+}
+
+static void meet_sky(camera_walk *c)
+{
+    const scene *s = c->pass->scene;
+    vec3 d = c->walk.ray.direction;
+    for (int i = 0; i < s->n_environments; i++) {
+        const light *l = scene_light(s, s->environments[i]);
+        meet_light(c, s->environments[i], NULL,
+                   l->kind->environment(l->self, d, &c->pass->w));
+    }
+}
+
+/* ---- Connections ---- */
+
+static float lamp_weight(const camera_walk *c, const vcm_vertex *v, int index,
+                         const light_sample *to_light)
+{
+    const scene *s = c->pass->scene;
+    const light *l = scene_light(s, index);
+    bool far = isinf(to_light->distance);
+    const light_start start = {
+        .light = l,
+        .p_traced = distribution_pdf(&s->light_power, (size_t)index),
+        .p = far ? v->hit->p : v->hit->p + to_light->wi * to_light->distance,
+        .n = to_light->n,
+        .direction = -to_light->wi,
+        .distance2 = square(to_light->distance),
+        .pdf = to_light->pdf,
+        .cosine = fabsf(dot3(to_light->wi, v->hit->n_geom)),
+    };
+    float met = l->kind->is_delta
+                    ? 0.0f
+                    : vcm_pdf(v, to_light->wi, TRANSPORT_RADIANCE) / to_light->pdf;
+    float reverse = vcm_pdf_reverse(v, to_light->wi, TRANSPORT_RADIANCE);
+    float traced =
+        weights_connected(&c->walk.weights, light_start_traced_over_connected(&start),
+                          reverse, &c->pass->ratios);
+    return 1.0f / (met + 1.0f + traced);
+}
+
+static void connect_to_lamp(camera_walk *c, const vcm_vertex *v)
+{
+    float u_light = sampler_1d(c->random), u_primitive = sampler_1d(c->random);
+    vec2 u = sampler_2d(c->random);
+    int index;
+    light_sample to_light;
+    if (!scene_sample_light(c->pass->scene, &c->pass->w, v->hit->p, u_light, u_primitive,
+                            u, &index, &to_light))
+        return;
+    lobe_pair f = vcm_scatter(v, to_light.wi, TRANSPORT_RADIANCE);
+    if (lobe_pair_is_black(&f))
+        return;
+    c->scratch->shadow_rays++;
+    if (!vcm_visible(c->pass->scene, v->hit, to_light.wi, to_light.distance))
+        return;
+    float weight = lamp_weight(c, v, index, &to_light);
+    add_scattered(c, &f, (scattering_counts){0},
+                  to_light.radiance * (weight / to_light.pdf));
+}
+
+/* Where a camera vertex and a light vertex face one another. */
+typedef struct vertex_pair {
+    const vcm_vertex *eye, *lamp;
+    const light_vertex *light;
+    vec3 direction; /* from eye to lamp */
+    float distance2;
+} vertex_pair;
+
+static float pair_weight(const camera_walk *c, const vertex_pair *p)
+{
+    vec3 d = p->direction;
+    float eye_area = fabsf(dot3(d, p->eye->hit->n_geom)) / p->distance2;
+    float lamp_area = fabsf(dot3(d, p->lamp->hit->n_geom)) / p->distance2;
+    float lamp_side = weights_connected(
+        &p->light->weights, lamp_area * vcm_pdf(p->eye, d, TRANSPORT_RADIANCE),
+        vcm_pdf_reverse(p->lamp, -d, TRANSPORT_IMPORTANCE), &c->pass->ratios);
+    float eye_side = weights_connected(
+        &c->walk.weights, eye_area * vcm_pdf(p->lamp, -d, TRANSPORT_IMPORTANCE),
+        vcm_pdf_reverse(p->eye, d, TRANSPORT_RADIANCE), &c->pass->ratios);
+    return 1.0f / (lamp_side + 1.0f + eye_side);
+}
+
+static void add_pair(camera_walk *c, const vertex_pair *p)
+{
+    lobe_pair f = vcm_scatter(p->eye, p->direction, TRANSPORT_RADIANCE);
+    lobe_pair g = vcm_scatter(p->lamp, -p->direction, TRANSPORT_IMPORTANCE);
+    if (lobe_pair_is_black(&f) || lobe_pair_is_black(&g))
+        return;
+    c->scratch->shadow_rays++;
+    if (!vcm_visible(c->pass->scene, p->eye->hit, p->direction, sqrtf(p->distance2)))
+        return;
+    float scale = pair_weight(c, p) / p->distance2;
+    for (int i = 0; i < 2; i++) {
+        scattering_counts before = p->light->before;
+        before.n++;
+        before.n_diffuse += i == 0;
+        if (!spectrum_is_black(g.value[i]))
+            add_scattered(c, &f, before, p->light->flux * g.value[i] * scale);
+    }
+}
+
+static void connect_to_vertex(camera_walk *c, const vcm_vertex *v, const light_vertex *l)
+{
+    static const bsdf_options options = {0};
+    const vcm_pass *pass = c->pass;
+    vec3 to = l->hit.p - v->hit->p;
+    float distance2 = length3_2(to);
+    if (!vcm_length_allowed(pass, c->walk.counts.n + l->before.n + 2) ||
+        !(distance2 > 0.0f))
+        return;
+    vcm_vertex lamp = {.hit = &l->hit, .wo = l->wi};
+    scene_bsdf(pass->scene, &l->hit, &pass->w, ALL_LANES, &options, &lamp.bsdf);
+    const vertex_pair p = {v, &lamp, l, to / sqrtf(distance2), distance2};
+    add_pair(c, &p);
+}
+
+static void connect(camera_walk *c, const vcm_vertex *v)
+{
+    connect_to_lamp(c, v);
+    for (size_t i = c->first_light; i < c->end_light; i++)
+        connect_to_vertex(c, v, &c->pass->light.vertices[i]);
+}
+
+/* ---- Merging ---- */
+
+static float merge_weight(const camera_walk *c, const vcm_vertex *v,
+                          const light_vertex *l)
+{
+    if (c->pass->strategies.end_here)
+        return 1.0f;
+    float lamp_side = weights_merged(&l->weights, vcm_pdf(v, l->wi, TRANSPORT_RADIANCE),
+                                     &c->pass->ratios);
+    float eye_side =
+        weights_merged(&c->walk.weights, vcm_pdf_reverse(v, l->wi, TRANSPORT_RADIANCE),
+                       &c->pass->ratios);
+    return 1.0f / (lamp_side + 1.0f + eye_side);
+}
+
+/* Light vertices are a density over the true surface; light sees the shading normal by
+   the cosine that is in f. */
+static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *l)
+{
+    float cosine = fabsf(dot3(l->wi, v->hit->n_geom));
+    if (!(cosine > 0.0f) ||
+        !vcm_length_allowed(c->pass, c->walk.counts.n + l->before.n + 1))
+        return;
+    lobe_pair f = vcm_scatter(v, l->wi, TRANSPORT_RADIANCE);
+    if (lobe_pair_is_black(&f))
+        return;
+    float area = PI_F * square(c->pass->radius) * (float)c->pass->light.n;
+    add_scattered(c, &f, l->before, l->flux * (merge_weight(c, v, l) / (area * cosine)));
+}
+
+static void merge(camera_walk *c, const vcm_vertex *v)
+{
+    const vcm_pass *pass = c->pass;
+    photon_hits *hits = &c->scratch->estimate.hits;
+    const photon_filter filter = {
+        .n = face_forward(v->hit->n_geom, v->wo),
+        .one_sided = !(v->bsdf.lobes & LOBE_TRANSMISSION),
+        .flatten = (float)pass->plan->how.flatten,
+    };
+    c->scratch->n_gathers++;
+    if (!photon_map_within(pass->map, v->hit->p, pass->radius, &filter, hits)) {
+        c->scratch->estimate.failed = true;
+        return;
+    }
+    const photon_store *store = photon_map_store(pass->map);
+    for (size_t i = 0; i < hits->n; i++) {
+        size_t vertex = vcm_payload_vertex(store->flux[hits->index[i]]);
+        merge_with(c, v, &pass->light.vertices[vertex]);
+    }
+}
+
+/* ---- The path ---- */
+
+static bool survives(camera_walk *c)
+{
+    if (c->walk.counts.n < ROULETTE_BOUNCES)
+        return true;
+    float p = fminf(MOST_SURVIVAL, spectrum_mean(c->walk.carried) * c->walk.eta2);
+    c->walk.carried /= p;
+    return sampler_1d(c->random) < p;
+}
+
+static void note_first_surface(camera_walk *c, const vcm_vertex *v)
+{
+    c->out->depth = length3(v->hit->p - c->walk.from);
+    c->out->normal = face_forward(v->hit->n, v->wo);
+    c->out->albedo = bsdf_albedo(&v->bsdf, v->wo, LOBE_ALL);
+}
+
+/* All that ends at v. */
+static void shade(camera_walk *c, const vcm_vertex *v)
+{
+    const vcm_strategies *how = &c->pass->strategies;
+    if (!(v->bsdf.lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)))
+        return;
+    if (how->connect)
+        connect(c, v);
+    if (how->merge)
+        merge(c, v);
+}
+
+/* Goes on from v, by mirrors only if all else has been merged. */
+static bool go_on(camera_walk *c, const vcm_vertex *v)
+{
+    const vcm_strategies *how = &c->pass->strategies;
+    unsigned lobes = how->end_here ? LOBE_SPECULAR | LOBE_ANY_SIDE : LOBE_ALL;
+    return (how->connect || how->merge) &&
+           vcm_bounce(c->pass, &c->walk, v, lobes, c->random) && survives(c);
+}
+
+static void follow(camera_walk *c)
+{
+    static const bsdf_options options = {0};
+    const vcm_pass *pass = c->pass;
+    vcm_walk *walk = &c->walk;
+    for (;;) {
+        surface_hit hit;
+        c->scratch->camera_rays++;
+        bool met = walk->counts.n == 0 ? scene_see(pass->scene, &walk->ray, &hit)
+                                       : scene_intersect(pass->scene, &walk->ray, &hit);
+        if (!met) {
+            meet_sky(c);
+            return;
+        }
+        vcm_vertex v = {.hit = &hit, .wo = -walk->ray.direction};
+        float cosine = fabsf(dot3(v.wo, hit.n_geom));
+        bool surface =
+            scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf);
+        if (hit.light != NO_INDEX)
+            meet_lamp(c, &hit, v.wo);
+        if (!surface) {
+            walk->ray = hit_ray(&hit, walk->ray.direction);
+            continue;
+        }
+        if (walk->counts.n == 0)
+            note_first_surface(c, &v);
+        if (!vcm_length_allowed(pass, walk->counts.n + 1) || !(cosine > 0.0f))
+            return;
+        weights_arrive(&walk->weights, length3_2(hit.p - walk->from), cosine);
+        shade(c, &v);
+        if (!go_on(c, &v))
+            return;
+    }
+}
+
+/* The light subpath that this camera path connects to. */
+static void choose_light_path(camera_walk *c)
+{
+    const light_paths *paths = &c->pass->light;
+    size_t i =
+        hash_mix(hash_mix(c->random->key, c->random->index), c->pass->index) % paths->n;
+    c->first_light = i > 0 ? paths->end[i - 1] : 0;
+    c->end_light = paths->end[i];
+}
+
+void vcm_radiance(const void *data, const ray *r, sampler *random,
+                  transport_scratch *scratch, radiance_sample *out)
+{
+    const vcm_pass *pass = data;
+    *out = (radiance_sample){0};
+    camera_walk c = {.pass = pass, .random = random, .scratch = scratch, .out = out};
+    c.walk = (vcm_walk){.ray = *r,
+                        .from = r->origin,
+                        .carried = spectrum_fill(1.0f),
+                        .lane = ALL_LANES,
+                        .eta2 = 1.0f,
+                        .mirrors_only = true,
+                        .mode = TRANSPORT_RADIANCE};
+    if (pass->strategies.splat) {
+        float pdf = camera_pdf_direction(&pass->scene->camera, r->direction);
+        c.walk.weights.vcm = 1.0f / (pdf * pass->camera_per_light);
+    }
+    if (pass->strategies.connect)
+        choose_light_path(&c);
+    follow(&c);
+}
