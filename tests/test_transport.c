@@ -28,6 +28,9 @@ static void test_furnace_by_final_gather(void)
         "precompute_radiance=off");
     check_furnace(
         "passes=2 spp=2 photons=100000 radius=0.1 final_gather=on gather_rays=64");
+    /* so few photons in reach that one counted at its own place would be 10 % of them */
+    check_furnace("passes=32 spp=2 photons=50000 radius=0.05 alpha=1 final_gather=on "
+                  "gather_rays=16");
 }
 
 static void test_furnace_by_path(void)

@@ -142,18 +142,30 @@ static bool build_irradiance(photonmap_pass *pass, const trace_result *points,
     return pass->irradiance != NULL;
 }
 
-static bool keep_points(const trace_result *from, trace_result *to, GError **error)
+/* Every fourth photon becomes a place to keep irradiance at; the others make the map and
+   carry the light of all. Places that were photons of the map would find themselves
+   there, and the estimate be too bright by one photon in so many. */
+static bool set_points_apart(trace_result *from, trace_result *points, GError **error)
 {
-    size_t n = (from->photons.n + 3) / 4;
-    if (!photon_store_reserve(&to->photons, n, error))
+    photon_store *photons = &from->photons;
+    size_t n = photons->n, n_points = n / 4;
+    if (!photon_store_reserve(&points->photons, n_points, error))
         return false;
-    to->normals = big_alloc(n, sizeof *to->normals, "irradiance points", error);
-    if (!to->normals)
+    points->normals =
+        big_alloc(n_points, sizeof *points->normals, "irradiance points", error);
+    if (!points->normals)
         return false;
-    for (size_t i = 0; i < from->photons.n; i += 4) {
-        photon p = photon_store_get(&from->photons, i);
-        to->normals[to->photons.n] = from->normals[i];
-        photon_store_put(&to->photons, &p);
+    float share = (float)n / (float)MAX(n - n_points, 1);
+    photons->n = 0;
+    for (size_t i = 0; i < n; i++) {
+        photon p = photon_store_get(photons, i);
+        if (i % 4 == 3) {
+            points->normals[points->photons.n] = from->normals[i];
+            photon_store_put(&points->photons, &p);
+        } else {
+            p.flux *= share;
+            photon_store_put(photons, &p);
+        }
     }
     return true;
 }
@@ -170,7 +182,7 @@ static bool make_maps(photonmap_pass *pass, uint32_t index, const cancel_flag *c
             continue;
         ok = trace_class(pass, index, (photon_class)c, cancel, &result, counts, error);
         if (ok && precompute && c != PHOTON_CAUSTIC)
-            ok = keep_points(&result, &points[c], error);
+            ok = set_points_apart(&result, &points[c], error);
         ok = ok && build_class(pass, (photon_class)c, &result, counts, error);
         trace_result_clear(&result);
     }
