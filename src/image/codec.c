@@ -112,6 +112,23 @@ static void name_file(const char *path, GError **error)
         g_prefix_error(error, "%s: ", path);
 }
 
+static image *read_source(const image_source *source, const image_read_options *options,
+                          GError **error)
+{
+    const image_codec *codec = codec_of_content(source);
+    if (!codec) {
+        error_set(error, ERROR_INPUT,
+                  "%s: not an image in a format that is known (OpenEXR, PNG, JPEG, "
+                  "Radiance HDR, PFM)",
+                  source->path);
+        return NULL;
+    }
+    image *img = codec->read(source, options, error);
+    if (!img)
+        name_file(source->path, error);
+    return img;
+}
+
 image *image_read(const char *path, const image_read_options *options, GError **error)
 {
     size_t size = 0;
@@ -119,18 +136,21 @@ image *image_read(const char *path, const image_read_options *options, GError **
     if (!bytes)
         return NULL;
     image_source source = {path, (const uint8_t *)bytes, size};
-    const image_codec *codec = codec_of_content(&source);
-    if (!codec) {
-        error_set(error, ERROR_INPUT,
-                  "%s: not an image in a format that is known (OpenEXR, PNG, JPEG, "
-                  "Radiance HDR, PFM)",
-                  path);
-        return NULL;
-    }
-    image *img = codec->read(&source, options, error);
-    if (!img)
-        name_file(path, error);
-    return img;
+    return read_source(&source, options, error);
+}
+
+/* Codecs may read the zero behind the bytes. */
+image *image_read_bytes(const char *name, GBytes *bytes,
+                        const image_read_options *options, GError **error)
+{
+    gsize size;
+    const uint8_t *data = g_bytes_get_data(bytes, &size);
+    g_autofree uint8_t *copy = g_malloc(size + 1);
+    if (size)
+        memcpy(copy, data, size);
+    copy[size] = 0;
+    image_source source = {name, copy, size};
+    return read_source(&source, options, error);
 }
 
 /* ---- writing ---- */

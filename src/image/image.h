@@ -60,6 +60,10 @@ void image_header_set(image *img, const char *key, const char *value);
  *  @param options NULL = automatic. @return NULL with ERROR_INPUT naming the file when it
  *  cannot be read, is damaged or claims a size it cannot hold. */
 image *image_read(const char *path, const image_read_options *options, GError **error);
+/** @brief The same for a file that is in memory (part of a .glb, say).
+ *  @param name for messages */
+image *image_read_bytes(const char *name, GBytes *bytes, const image_read_options *options,
+                        GError **error);
 
 /** @brief Writes by the name's extension (.exr, .png, .jpg, .hdr, .pfm): to a temporary
  * name beside it, synced and renamed, so that no partial file is ever seen under the

@@ -31,6 +31,11 @@ static void free_light(void *data)
     light_free(data);
 }
 
+static void unref_bytes(void *data)
+{
+    g_bytes_unref(data);
+}
+
 static GHashTable *texture_table(void)
 {
     return g_hash_table_new_full(g_str_hash, g_str_equal, g_free, free_texture);
@@ -45,6 +50,7 @@ scene *scene_new(const log_sink *log)
     s->float_textures = texture_table();
     s->spectrum_textures = texture_table();
     s->material_names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    s->files = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, unref_bytes);
     s->film = film_default();
     s->settings = settings_default();
     if (log)
@@ -61,6 +67,7 @@ void scene_free(scene *s)
     g_ptr_array_unref(s->shapes);
     g_ptr_array_unref(s->materials);
     g_hash_table_unref(s->material_names);
+    g_hash_table_unref(s->files);
     g_hash_table_unref(s->float_textures);
     g_hash_table_unref(s->spectrum_textures);
     filter_clear(&s->filter);
@@ -83,6 +90,19 @@ static bool is_open(const scene *s, GError **error)
 }
 
 /* ---- Adding ---- */
+
+void scene_add_file(scene *s, const char *path, GBytes *bytes)
+{
+    g_hash_table_insert(s->files, g_strdup(path), g_bytes_ref(bytes));
+}
+
+image *scene_read_image(const scene *s, const char *path,
+                        const image_read_options *options, GError **error)
+{
+    GBytes *bytes = s && s->files ? g_hash_table_lookup(s->files, path) : NULL;
+    return bytes ? image_read_bytes(path, bytes, options, error)
+                 : image_read(path, options, error);
+}
 
 bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spectrum,
                        const params *p, GError **error)
@@ -364,10 +384,12 @@ bool scene_commit(scene *s, unsigned threads, GError **error)
         s->accel =
             accel_build((shape *const *)s->shapes->pdata, s->shapes->len, threads, error);
     s->committed = s->accel != NULL;
-    if (s->committed)
+    if (s->committed) {
         find_light_groups(s);
-    else
+        g_hash_table_remove_all(s->files);
+    } else {
         forget_commit(s);
+    }
     return s->committed;
 }
 

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "base/log.h"
+#include "image/image.h"
 #include "scene/accel.h"
 #include "scene/camera.h"
 #include "scene/filter.h"
@@ -37,6 +38,7 @@ typedef struct scene {
     GPtrArray *lights;                              /**< light* */
     GHashTable *float_textures, *spectrum_textures; /**< name -> texture* */
     GHashTable *material_names;                     /**< name -> index + 1 */
+    GHashTable *files; /**< path -> GBytes*: images that came within another file */
     camera camera;
     bool has_camera;
     film_settings film;
@@ -70,6 +72,12 @@ scene *scene_new(const log_sink *log);
 void scene_free(scene *s);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(scene, scene_free)
 
+/** @brief Makes bytes known as a file: an image that came within the scene's file. A
+ * parameter that names the path finds them, as long as the scene is being built. */
+void scene_add_file(scene *s, const char *path, GBytes *bytes);
+/** @brief image_read of a file on the disk or one that was added (s may be NULL). */
+image *scene_read_image(const scene *s, const char *path,
+                        const image_read_options *options, GError **error);
 bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spectrum,
                        const params *p, GError **error);
 /** @brief name may be NULL. @return index, or NO_INDEX. */

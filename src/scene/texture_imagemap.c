@@ -5,9 +5,8 @@
  * Texels are mixed as RGB and the mixture is made a spectrum: coefficients of smooth
  * spectra must not be mixed, they are not linear.
  */
+#include "scene/scene.h"
 #include "scene/texture_kinds.h"
-
-#include "image/image.h"
 
 #include <string.h>
 
@@ -133,7 +132,8 @@ static bool alpha_matters(const imagemap *m)
     return false;
 }
 
-static bool read_image(imagemap *m, const params *p, GError **error)
+static bool read_image(imagemap *m, const struct scene *s, const params *p,
+                       GError **error)
 {
     g_autofree char *path = NULL;
     image_read_options options;
@@ -145,7 +145,7 @@ static bool read_image(imagemap *m, const params *p, GError **error)
     }
     source_place place = params_find(p, "filename")->place;
     g_autoptr(GError) inner = NULL;
-    m->img = image_read(path, &options, &inner);
+    m->img = scene_read_image(s, path, &options, &inner);
     if (!m->img) {
         error_at(error, place, "%s", inner->message);
         return false;
@@ -164,9 +164,8 @@ static bool read_image(imagemap *m, const params *p, GError **error)
 static void *imagemap_create(const struct scene *s, bool is_spectrum, const params *p,
                              GError **error)
 {
-    (void)s;
     imagemap *m = g_new0(imagemap, 1);
-    if (!read_mapping(m, p, error) || !read_image(m, p, error)) {
+    if (!read_mapping(m, p, error) || !read_image(m, s, p, error)) {
         imagemap_free(m);
         return NULL;
     }
