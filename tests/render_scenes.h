@@ -6,10 +6,11 @@
 #include "render/render.h"
 #include "scene_text.h"
 
-/** Settings as "name=value" words. */
+/** Settings as "name=value" words; photon mapping where they say nothing else. */
 static inline settings settings_with(const scene *s, const char *words)
 {
     settings how = s->settings;
+    how.integrator = INTEGRATOR_PHOTONMAP;
     g_auto(GStrv) list = g_strsplit(words, " ", -1);
     for (char **word = list; *word; word++) {
         g_auto(GStrv) pair = g_strsplit(*word, "=", 2);

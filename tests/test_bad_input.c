@@ -195,10 +195,11 @@ static void test_options(void)
            "\"a.b\"\n",
            "%s:3:21: parameter 'group': expected letters, digits, _ and -, found "
            "\"a.b\"");
-    refuse("Integrator \"ao\"\n" WORLD,
-           "%s:1:12: expected Integrator \"photonmap\" or one of pbrt's (sppm, path, "
-           "volpath, simplepath, simplevolpath, randomwalk, lightpath, bdpt, mlt), found "
-           "\"ao\"");
+    refuse(
+        "Integrator \"ao\"\n" WORLD,
+        "%s:1:12: expected Integrator \"photonmap\", \"auto\", \"vcm\" or one of pbrt's "
+        "(sppm, path, volpath, simplepath, simplevolpath, randomwalk, lightpath, "
+        "bdpt, mlt), found \"ao\"");
     refuse("Integrator \"path\" \"integer maxdepht\" 3\n" WORLD,
            "%s:1:19: unknown parameter 'maxdepht' of Integrator \"path\"");
     refuse("Sampler \"random\"\n" WORLD,

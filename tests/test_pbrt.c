@@ -311,15 +311,29 @@ static void test_sppm_becomes_photonmap(void)
     g_assert_cmpint(s.max_backward_bounces, ==, 5);
 }
 
-static void test_path_becomes_photonmap(void)
+static void test_paths_become_auto_or_vcm(void)
 {
-    static const char *const kinds[] = {"path", "volpath", "bdpt", "simplepath", "mlt"};
+    static const struct {
+        const char *name;
+        int integrator, strategies;
+    } kinds[] = {
+        {"path", INTEGRATOR_AUTO, VCM_ALL},
+        {"volpath", INTEGRATOR_AUTO, VCM_ALL},
+        {"simplepath", INTEGRATOR_AUTO, VCM_ALL},
+        {"simplevolpath", INTEGRATOR_AUTO, VCM_ALL},
+        {"randomwalk", INTEGRATOR_AUTO, VCM_ALL},
+        {"bdpt", INTEGRATOR_VCM, VCM_BPT},
+        {"lightpath", INTEGRATOR_VCM, VCM_LIGHT},
+        {"mlt", INTEGRATOR_VCM, VCM_ALL},
+    };
     for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {
         g_autofree char *text =
             g_strdup_printf("Integrator \"%s\" \"integer maxdepth\" 65\n"
                             "Sampler \"sobol\" \"integer pixelsamples\" 64\n",
-                            kinds[i]);
+                            kinds[i].name);
         settings s = settings_of(text);
+        g_assert_cmpint(s.integrator, ==, kinds[i].integrator);
+        g_assert_cmpint(s.vcm_strategies, ==, kinds[i].strategies);
         g_assert_cmpint(s.passes, ==, 16);
         g_assert_cmpint(s.spp, ==, 4);
         g_assert_cmpint(s.max_backward_bounces, ==, 65);
@@ -332,11 +346,22 @@ static void test_path_becomes_photonmap(void)
     g_assert_cmpint(s.spp, ==, 3);
 }
 
+static void test_own_integrators_keep_their_names(void)
+{
+    settings s = settings_of("Integrator \"vcm\" \"string vcm_strategies\" \"bpm\"\n");
+    g_assert_cmpint(s.integrator, ==, INTEGRATOR_VCM);
+    g_assert_cmpint(s.vcm_strategies, ==, VCM_BPM);
+    s = settings_of("Integrator \"auto\" \"integer caustic_photons\" 5000\n");
+    g_assert_cmpint(s.integrator, ==, INTEGRATOR_AUTO);
+    g_assert_cmpint(s.class_photons[2], ==, 5000);
+}
+
 static void test_no_integrator_is_the_default(void)
 {
     settings s = settings_of("Option \"integer seed\" 11 \"bool wavefront\" true\n"
                              "Accelerator \"bvh\" \"integer maxnodeprims\" 4\n");
     settings d = settings_default();
+    g_assert_cmpint(s.integrator, ==, INTEGRATOR_AUTO);
     g_assert_cmpint(s.passes, ==, d.passes);
     g_assert_cmpint(s.spp, ==, d.spp);
     g_assert_cmpint(s.seed, ==, 11);
@@ -356,11 +381,10 @@ static void test_notes_say_what_was_chosen(void)
                                        "WorldBegin\n" LIGHT);
     g_autoptr(scene) s = format_load(f.main, 1, &sink, NULL);
     g_assert_nonnull(s);
-    g_autofree char *want =
-        g_strdup_printf("%s:2:12: integrator 'path' becomes photonmap with 16 passes of "
-                        "4 samples a pixel "
-                        "and maxdepth 3\n",
-                        f.main);
+    g_autofree char *want = g_strdup_printf(
+        "%s:2:12: integrator 'path' becomes auto with 16 passes of 4 "
+        "samples a pixel and maxdepth 3; paths alone: --integrator path\n",
+        f.main);
     g_assert_cmpstr(notes->str, ==, want);
     folder_remove(&f);
 }
@@ -421,7 +445,8 @@ int main(int argc, char **argv)
     g_test_add_func("/pbrt/gzip", test_gzip_is_read);
     g_test_add_func("/pbrt/photonmap", test_photonmap_takes_settings);
     g_test_add_func("/pbrt/sppm", test_sppm_becomes_photonmap);
-    g_test_add_func("/pbrt/path", test_path_becomes_photonmap);
+    g_test_add_func("/pbrt/path", test_paths_become_auto_or_vcm);
+    g_test_add_func("/pbrt/own-integrators", test_own_integrators_keep_their_names);
     g_test_add_func("/pbrt/no-integrator", test_no_integrator_is_the_default);
     g_test_add_func("/pbrt/notes", test_notes_say_what_was_chosen);
     g_test_add_func("/pbrt/published-scenes", test_published_scenes_load_unchanged);

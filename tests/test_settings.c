@@ -87,6 +87,7 @@ static void test_text_round_trip(void)
 static void test_default_is_the_table(void)
 {
     settings s = settings_default();
+    g_assert_cmpint(s.integrator, ==, INTEGRATOR_AUTO);
     g_assert_cmpint(settings_most_passes(&s), ==, 16);
     g_assert_cmpint(s.spp, ==, 4);
     g_assert_cmpint(s.max_forward_bounces, ==, -1);
@@ -105,6 +106,7 @@ static void test_sppm_is_a_preset(void)
     set(&s, "integrator", "path");
     set(&s, "radius", "0.5");
     set(&s, "integrator", "sppm");
+    expected.integrator = INTEGRATOR_PHOTONMAP;
     expected.spp = 1;
     expected.radius = 0.5;
     g_assert_cmpmem(&s, sizeof s, &expected, sizeof expected);

@@ -1,7 +1,8 @@
 /*
- * Integrators and samplers as settings. "photonmap" takes the settings' own names; pbrt's
- * own integrators, which all converge to the same image, become the photon mapping that
- * costs about as much.
+ * Integrators and samplers as settings. Ours take the settings' own names. Those of pbrt
+ * that trace paths from the eye become auto: many a file says "volpath" only because its
+ * exporter always does, and auto is that path tracer where paths find the light. The
+ * bidirectional ones become strategies of vcm.
  */
 #include "format/pbrt_parser.h"
 
@@ -15,24 +16,34 @@ typedef struct sampling {
     const param *where; /**< that said so */
 } sampling;
 
-/** pbrt's other integrators, and what else they accept. */
+/** pbrt's integrators of paths: what they become, and what else they accept. */
 typedef struct path_integrator {
     const char *name;
+    const char *integrator, *strategies; /**< settings; strategies NULL: not vcm */
+    const char *hint;                    /**< behind the note */
     const char *accepted[8];
 } path_integrator;
 
+#define PLAIN_PATHS "; paths alone: --integrator path"
+
 static const path_integrator path_integrators[] = {
-    {"path", {"regularize", "lightsampler"}},
-    {"volpath", {"regularize", "lightsampler"}},
-    {"simplepath", {"samplebsdf", "samplelights"}},
-    {"simplevolpath", {NULL}},
-    {"randomwalk", {NULL}},
-    {"lightpath", {NULL}},
-    {"bdpt", {"regularize"}},
+    {"path", "auto", NULL, PLAIN_PATHS, {"regularize", "lightsampler"}},
+    {"volpath", "auto", NULL, PLAIN_PATHS, {"regularize", "lightsampler"}},
+    {"simplepath", "auto", NULL, PLAIN_PATHS, {"samplebsdf", "samplelights"}},
+    {"simplevolpath", "auto", NULL, PLAIN_PATHS, {NULL}},
+    {"randomwalk", "auto", NULL, PLAIN_PATHS, {NULL}},
+    {"lightpath", "vcm", "light", ", light paths alone", {NULL}},
+    {"bdpt", "vcm", "bpt", ", connections alone", {"regularize"}},
     {"mlt",
+     "vcm",
+     "all",
+     ", without mutations",
      {"regularize", "bootstrapsamples", "chains", "mutationsperpixel",
       "largestepprobability", "sigma"}},
 };
+
+/** Our own, which take every setting as a parameter. */
+static const char *const own_integrators[] = {"photonmap", "auto", "vcm", NULL};
 
 static void note(const pbrt_parser *parser, source_place place, const char *format, ...)
     G_GNUC_PRINTF(3, 4);
@@ -180,9 +191,10 @@ static sampling read_sampler(pbrt_parser *parser)
     return out;
 }
 
-static void apply_photonmap(pbrt_parser *parser, const sampling *samples)
+static void apply_own(pbrt_parser *parser, const sampling *samples)
 {
     const params *p = parser->integrator.p;
+    set(parser, parser->integrator.place, "integrator", parser->integrator.kind);
     if (samples->where)
         set_count(parser, samples->where->place, "spp", samples->pixel_samples);
     for (guint i = 0; i < p->list->len; i++) {
@@ -250,17 +262,21 @@ static void apply_path(pbrt_parser *parser, const path_integrator *kind,
     const pending *in = &parser->integrator;
     const settings *s = &parser->scene->settings;
     int depth = apply_depth(parser);
+    set(parser, in->place, "integrator", kind->integrator);
+    if (kind->strategies)
+        set(parser, in->place, "vcm_strategies", kind->strategies);
     apply_samples(parser, samples);
-    for (int i = 0; kind->accepted[i]; i++) {
+    for (int i = 0; i < (int)G_N_ELEMENTS(kind->accepted) && kind->accepted[i]; i++) {
         const param *q = params_find(in->p, kind->accepted[i]);
         if (q)
-            note(parser, q->place, "'%s' of integrator '%s' has no meaning for photons",
-                 q->name, kind->name);
+            note(parser, q->place, "'%s' of integrator '%s' has no meaning here", q->name,
+                 kind->name);
     }
     note(parser, in->place,
-         "integrator '%s' becomes photonmap with %" G_GINT64_FORMAT
-         " passes of %" G_GINT64_FORMAT " samples a pixel and maxdepth %d",
-         kind->name, settings_planned_passes(s), s->spp, depth);
+         "integrator '%s' becomes %s with %" G_GINT64_FORMAT
+         " passes of %" G_GINT64_FORMAT " samples a pixel and maxdepth %d%s",
+         kind->name, kind->integrator, settings_planned_passes(s), s->spp, depth,
+         kind->hint);
 }
 
 void pbrt_apply_integrator(pbrt_parser *parser)
@@ -272,17 +288,17 @@ void pbrt_apply_integrator(pbrt_parser *parser)
         return;
     }
     const path_integrator *path = find_path_integrator(in->kind);
-    if (strcmp(in->kind, "photonmap") == 0) {
-        apply_photonmap(parser, &samples);
+    if (g_strv_contains(own_integrators, in->kind)) {
+        apply_own(parser, &samples);
     } else if (strcmp(in->kind, "sppm") == 0) {
         apply_sppm(parser, &samples);
     } else if (path) {
         apply_path(parser, path, &samples);
     } else {
         pbrt_error(parser, in->place,
-                   "expected Integrator \"photonmap\" or one of pbrt's (sppm, path, "
-                   "volpath, simplepath, simplevolpath, randomwalk, lightpath, bdpt, "
-                   "mlt), found \"%s\"",
+                   "expected Integrator \"photonmap\", \"auto\", \"vcm\" or one of "
+                   "pbrt's (sppm, path, volpath, simplepath, simplevolpath, randomwalk, "
+                   "lightpath, bdpt, mlt), found \"%s\"",
                    in->kind);
         return;
     }

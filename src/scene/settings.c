@@ -26,7 +26,7 @@ enum { MOST_PASSES = 1000000000, USUAL_PASSES = 16 };
 #define AT(field) offsetof(settings, field)
 
 static const setting_row table[] = {
-    {"integrator", SETTING_CHOICE, AT(integrator), "", 0, 3, INTEGRATOR_PHOTONMAP,
+    {"integrator", SETTING_CHOICE, AT(integrator), "", 0, 3, INTEGRATOR_AUTO,
      integrator_words, "", "all",
      "The algorithm that carries light from the lamps to the eye. sppm is photonmap with "
      "spp = 1, all nearest = 0, final_gather off and alpha = 2/3: set it first."},
