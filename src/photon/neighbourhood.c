@@ -48,7 +48,7 @@ static vec3 lifted(const neighbourhood *hood, vec3 p)
 static bool is_surface(const neighbourhood *hood, vec3 q)
 {
     float slab = NEIGHBOURHOOD_FLATTEN * hood->radius, height = LIFT * hood->radius;
-    ray down = {lifted(hood, q), -hood->n, height + slab, 0.0f};
+    ray down = {lifted(hood, q), -hood->n, height + slab, 0.0f, NULL};
     surface_hit hit;
     return scene_intersect(hood->scene, &down, &hit) && hit.t > height - slab;
 }
@@ -59,7 +59,7 @@ bool neighbourhood_is_whole(neighbourhood *hood)
     for (int i = 0; i < RIM_PROBES; i++) {
         vec3 d = direction_at(hood, (2.0f * PI_F / RIM_PROBES) * (float)i);
         float rim = RIM * hood->radius;
-        ray along = {lifted(hood, hood->p), d, rim, 0.0f};
+        ray along = {lifted(hood, hood->p), d, rim, 0.0f, NULL};
         if (scene_occluded(hood->scene, &along) || !is_surface(hood, hood->p + rim * d))
             return false;
     }
@@ -77,7 +77,7 @@ static void probe_horizon(neighbourhood *hood)
     float reach = OPEN_HORIZON * hood->radius;
     for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++) {
         float angle = (2.0f * PI_F / NEIGHBOURHOOD_SECTORS) * (float)i;
-        ray along = {lifted(hood, hood->p), direction_at(hood, angle), reach, 0.0f};
+        ray along = {lifted(hood, hood->p), direction_at(hood, angle), reach, 0.0f, NULL};
         surface_hit hit;
         float way = scene_intersect(hood->scene, &along, &hit) ? hit.t : reach;
         hood->horizon[i] = (vec2){way * cosf(angle), way * sinf(angle)};

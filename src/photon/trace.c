@@ -218,6 +218,7 @@ static void follow(photon_path *path)
             tell(path, PHOTON_LEFT, NULL, 0);
             return;
         }
+        path->flux *= hit_transmittance(&hit, &task->w);
         bsdf b;
         if (!scene_bsdf(task->scene, &hit, &task->w, path->lane, &options, &b)) {
             path->ray = hit_ray(&hit, path->ray.direction);

@@ -6,6 +6,7 @@
 #include "math/frame.h"
 #include "math/vec.h"
 
+#include <stddef.h>
 #include <stdint.h>
 
 /** @brief A half line; points are origin + t * direction, 0 < t < t_max. */
@@ -14,7 +15,10 @@ typedef struct ray {
     vec3 direction; /**< unit */
     float t_max;
     float time; /**< shutter time in 0..1, for moving scenes */
+    const struct medium *medium; /**< that it travels in; NULL: none (medium.h) */
 } ray;
+
+struct medium;
 
 enum { NO_INDEX = -1 };
 
@@ -34,6 +38,9 @@ typedef struct surface_hit {
     uint32_t primitive; /**< triangle of a mesh, else 0 */
     int material; /**< index in scene->materials, or NO_INDEX: an invisible interface */
     int light;    /**< index in scene->lights of the area light here, or NO_INDEX */
+    const struct medium *medium;   /**< that the ray came through; NULL: none */
+    const struct medium *interior; /**< behind the surface, against n_geom; NULL: it
+                                      bounds none */
 } surface_hit;
 
 /** @brief Where a ray that leaves p in the given direction must start so as not to meet
@@ -55,5 +62,8 @@ static inline vec3 hit_offset(const surface_hit *hit, vec3 direction)
 /** @brief The ray that leaves a hit. */
 static inline ray hit_ray(const surface_hit *hit, vec3 direction)
 {
-    return (ray){hit_offset(hit, direction), direction, INFINITY, hit->time};
+    const struct medium *in = hit->medium;
+    if (hit->interior)
+        in = dot3(direction, hit->n_geom) < 0.0f ? hit->interior : NULL;
+    return (ray){hit_offset(hit, direction), direction, INFINITY, hit->time, in};
 }

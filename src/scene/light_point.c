@@ -42,7 +42,7 @@ static spectrum power(const void *self, const wavelengths *w)
 
 static light_emission leave(const point_light *l, vec3 direction, spectrum flux)
 {
-    return (light_emission){.ray = {l->p, direction, INFINITY, 0.0f},
+    return (light_emission){.ray = {l->p, direction, INFINITY, 0.0f, NULL},
                             .n = direction,
                             .flux = flux,
                             .pdf_position = 1.0f,

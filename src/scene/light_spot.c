@@ -133,7 +133,7 @@ static vec3 sample_cone(const spot_light *l, vec2 u)
 
 static light_emission leave(const spot_light *l, vec3 direction, spectrum flux)
 {
-    return (light_emission){.ray = {l->p, direction, INFINITY, 0.0f},
+    return (light_emission){.ray = {l->p, direction, INFINITY, 0.0f, NULL},
                             .n = direction,
                             .flux = flux,
                             .pdf_position = 1.0f,

@@ -75,3 +75,8 @@ bool material_casts_caustics(const material *m)
 {
     return m->kind->possible_lobes(m->self) & (LOBE_SPECULAR | LOBE_GLOSSY);
 }
+
+const struct medium *material_interior(const material *m)
+{
+    return m->kind->interior ? m->kind->interior(m->self) : NULL;
+}

@@ -26,6 +26,8 @@ typedef struct material_kind {
     /** Lobe classes and sides that may occur anywhere on it: SPECULAR or GLOSSY ones cast
      *  caustics. */
     unsigned (*possible_lobes)(const void *self);
+    /** What fills a solid made of it; NULL: none. May be NULL. */
+    const struct medium *(*interior)(const void *self);
 } material_kind;
 
 typedef struct material {
@@ -42,6 +44,9 @@ void material_free(material *m);
  *  @param lane ALL_LANES, or the lane a dispersed path has kept */
 void material_bsdf(const material *m, const surface_hit *hit, const wavelengths *w,
                    int lane, const bsdf_options *options, bsdf *out);
+
+/** @brief What fills a solid made of it; NULL: none. */
+const struct medium *material_interior(const material *m);
 
 /** @brief True if light may leave a surface of it by a specular or glossy lobe. */
 bool material_casts_caustics(const material *m);

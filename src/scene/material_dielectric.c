@@ -1,20 +1,24 @@
 /*
  * "dielectric": glass, water and the like, smooth or rough, and "thindielectric": a pane.
  * eta is a number or a spectrum; light disperses where it differs between wavelengths.
+ * Solid glass may be coloured (see medium.h), which pbrt-v4 has media for.
  */
 #include "scene/bsdf_models.h"
 #include "scene/material_inputs.h"
 #include "scene/material_kinds.h"
+#include "scene/medium.h"
 
 typedef struct glass {
     curve *eta;
     roughness_input roughness;
+    medium *interior; /* NULL: clear */
 } glass;
 
 static void glass_free(void *self)
 {
     glass *g = self;
     curve_unref(g->eta);
+    medium_free(g->interior);
     g_free(g);
 }
 
@@ -22,7 +26,8 @@ static void *glass_create(const struct scene *s, const params *p, GError **error
 {
     glass *g = g_new0(glass, 1);
     g->eta = eta_input(p, error);
-    if (g->eta && roughness_input_init(&g->roughness, s, p, error))
+    if (g->eta && roughness_input_init(&g->roughness, s, p, error) &&
+        medium_read(p, &g->interior, error))
         return g;
     glass_free(g);
     return NULL;
@@ -45,6 +50,12 @@ static unsigned glass_lobes(const void *self)
 {
     const glass *g = self;
     return roughness_input_classes(&g->roughness) | LOBE_ANY_SIDE;
+}
+
+static const medium *glass_interior(const void *self)
+{
+    const glass *g = self;
+    return g->interior;
 }
 
 static void *pane_create(const struct scene *s, const params *p, GError **error)
@@ -81,6 +92,7 @@ const material_kind material_dielectric = {
     .free = glass_free,
     .make_bsdf = glass_bsdf,
     .possible_lobes = glass_lobes,
+    .interior = glass_interior,
 };
 
 const material_kind material_thin_dielectric = {

@@ -328,6 +328,15 @@ static void find_light_groups(scene *s)
     s->light_groups = (char **)g_ptr_array_steal(names, NULL);
 }
 
+static void find_interiors(scene *s)
+{
+    for (guint i = 0; i < s->shapes->len; i++) {
+        shape *on = s->shapes->pdata[i];
+        if (on->material != NO_INDEX)
+            on->interior = material_interior(s->materials->pdata[on->material]);
+    }
+}
+
 static bool find_caustic_shapes(scene *s, GError **error)
 {
     guint n = s->shapes->len;
@@ -386,6 +395,7 @@ bool scene_commit(scene *s, unsigned threads, GError **error)
     s->committed = s->accel != NULL;
     if (s->committed) {
         find_light_groups(s);
+        find_interiors(s);
         g_hash_table_remove_all(s->files);
     } else {
         forget_commit(s);

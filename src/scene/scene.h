@@ -17,6 +17,7 @@
 #include "scene/filter.h"
 #include "scene/light.h"
 #include "scene/material.h"
+#include "scene/medium.h"
 #include "scene/settings.h"
 #include "scene/texture.h"
 
@@ -119,6 +120,8 @@ static inline bool scene_intersect(const scene *s, const ray *r, surface_hit *hi
     const shape *on = s->shapes->pdata[hit->shape];
     hit->material = on->material;
     hit->light = on->light;
+    hit->medium = r->medium;
+    hit->interior = on->interior;
     return true;
 }
 

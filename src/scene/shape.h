@@ -73,6 +73,7 @@ struct shape {
     int material;
     int light; /**< index in scene->lights or NO_INDEX */
     bool camera_hidden;
+    const struct medium *interior; /**< its material's, once the scene is committed */
     float area;
     source_place place;
 };

@@ -271,6 +271,7 @@ static void follow(camera_tree *tree, camera_branch branch)
             see_sky(tree, &branch);
             return;
         }
+        branch.beta *= hit_transmittance(&hit, &pass->w);
         see_lamp(tree, &branch, &hit);
         bsdf b;
         if (!scene_bsdf(pass->scene, &hit, &pass->w, branch.lane, &pass->options, &b)) {

@@ -71,6 +71,8 @@ direct_radiance direct_light(const direct_query *query, sampler *random,
             return none;
     }
     float cosine = fabsf(dot3(to_light.wi, query->bsdf->shading.n));
-    spectrum arriving = to_light.radiance * (cosine / to_light.pdf);
+    spectrum arriving =
+        to_light.radiance * (cosine / to_light.pdf) *
+        hit_transmittance_to(query->hit, to_light.wi, to_light.distance, query->w);
     return (direct_radiance){diffuse * arriving, glossy * arriving, index};
 }

@@ -219,6 +219,7 @@ static spectrum gather_along(const photonmap_pass *pass, gather_path path,
         scratch->camera_rays++;
         if (!scene_intersect(pass->scene, &path.ray, &hit))
             break;
+        path.beta *= hit_transmittance(&hit, &pass->w);
         bsdf b;
         if (!scene_bsdf(pass->scene, &hit, &pass->w, path.lane, &pass->options, &b)) {
             path.ray = hit_ray(&hit, path.ray.direction);

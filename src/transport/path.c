@@ -212,6 +212,7 @@ void path_radiance(const void *data, const ray *r, sampler *random,
             meet_sky(&walk, &path);
             return;
         }
+        path.beta *= hit_transmittance(&hit, &pass->w);
         meet_lamp(&walk, &path, &hit);
         bsdf b;
         if (!scene_bsdf(walk.scene, &hit, &pass->w, path.lane, &pass->options, &b)) {

@@ -135,8 +135,10 @@ static void connect_to_lamp(camera_walk *c, const vcm_vertex *v)
     if (!vcm_visible(c->pass->scene, v->hit, to_light.wi, to_light.distance))
         return;
     float weight = lamp_weight(c, v, index, &to_light);
-    add_scattered(c, &f, (scattering_counts){0},
-                  to_light.radiance * (weight / to_light.pdf));
+    add_scattered(
+        c, &f, (scattering_counts){0},
+        to_light.radiance * (weight / to_light.pdf) *
+            hit_transmittance_to(v->hit, to_light.wi, to_light.distance, &c->pass->w));
 }
 
 /* Where a camera vertex and a light vertex face one another. */
@@ -170,7 +172,9 @@ static void add_pair(camera_walk *c, const vertex_pair *p)
     c->scratch->shadow_rays++;
     if (!vcm_visible(c->pass->scene, p->eye->hit, p->direction, sqrtf(p->distance2)))
         return;
-    float scale = pair_weight(c, p) / p->distance2;
+    spectrum scale = hit_transmittance_to(p->eye->hit, p->direction, sqrtf(p->distance2),
+                                          &c->pass->w) *
+                     (pair_weight(c, p) / p->distance2);
     for (int i = 0; i < 2; i++) {
         scattering_counts before = p->light->before;
         before.n++;
@@ -306,6 +310,7 @@ static void follow(camera_walk *c)
             meet_sky(c);
             return;
         }
+        walk->carried *= hit_transmittance(&hit, &pass->w);
         vcm_vertex v = {.hit = &hit, .wo = -walk->ray.direction};
         float cosine = fabsf(dot3(v.wo, hit.n_geom));
         bool surface =

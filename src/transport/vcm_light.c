@@ -146,14 +146,15 @@ static void connect_to_eye(light_walk *l, const vcm_vertex *v)
     l->out->n_shadow_rays++;
     if (!seen(pass, v->hit, &eye))
         return;
+    spectrum left = hit_transmittance_to(v->hit, eye.direction, eye.distance, &pass->w);
     float density = eye.pdf / square(eye.distance);
     float cosine = fabsf(dot3(eye.direction, v->hit->n_geom));
     float weight = weight_to_eye(l, v, &eye, density * cosine);
     for (int i = 0; i < 2; i++) {
         scattering_counts scattered = vcm_count((scattering_counts){0}, i == 0);
         splat s = {
-            .value =
-                l->walk.carried * f.value[i] * (weight * density / (float)pass->light.n),
+            .value = l->walk.carried * left * f.value[i] *
+                     (weight * density / (float)pass->light.n),
             .raster = eye.raster,
             .layer = vcm_layer(vcm_join(scattered, l->walk.counts)),
         };
@@ -252,6 +253,7 @@ static void follow(light_walk *l)
         l->out->n_rays++;
         if (!scene_intersect(pass->scene, &l->walk.ray, &hit))
             return;
+        l->walk.carried *= hit_transmittance(&hit, &pass->w);
         vcm_vertex v = {.hit = &hit, .wo = -l->walk.ray.direction};
         if (!scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf)) {
             l->walk.ray = hit_ray(&hit, l->walk.ray.direction);
