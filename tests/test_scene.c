@@ -165,22 +165,23 @@ static void test_sampling_agrees_with_density(void)
             continue;
         }
         if (l->kind->is_environment) {
-            g_assert_cmpfloat(fabsf(scene_light_pdf(s, ref, to.wi, NULL) / to.pdf - 1), <,
-                              1e-5);
+            g_assert_cmpfloat(
+                fabsf(scene_light_pdf(s, index, ref, to.wi, NULL) / to.pdf - 1), <, 1e-5);
             continue;
         }
         ray r = {ref, to.wi, INFINITY, 0, NULL};
         surface_hit hit;
         if (!scene_intersect(s, &r, &hit) || hit.light != index)
             continue; /* grazing */
-        g_assert_cmpfloat(fabsf(scene_light_pdf(s, ref, to.wi, &hit) / to.pdf - 1), <,
-                          1e-4);
+        g_assert_cmpfloat(fabsf(scene_light_pdf(s, index, ref, to.wi, &hit) / to.pdf - 1),
+                          <, 1e-4);
     }
     for (int i = 0; i < 4; i++)
         g_assert_cmpuint(seen[i], >, 50);
 }
 
-/* Many lights of all kinds: picks come as often as is told, and probabilities sum to one. */
+/* Many lights of all kinds: picks come as often as is told, and probabilities sum to one.
+ */
 static void test_light_tree(void)
 {
     enum { LIGHTS = 40, DRAWS = 1 << 16 };
@@ -188,10 +189,11 @@ static void test_light_tree(void)
     for (int i = 0; i < LIGHTS; i++) {
         sampler random = sampler_make(8, (uint64_t)i);
         vec3 p = vec3_make(sampler_1d(&random), sampler_1d(&random), sampler_1d(&random));
-        bounds[i] = i % 7 == 3 ? (light_bound){.irradiance = 0.1f * sampler_1d(&random)}
-                               : (light_bound){.is_local = true,
-                                               .box = {p, p + 0.05f * sampler_1d(&random)},
-                                               .power = sampler_1d(&random)};
+        bounds[i] = i % 7 == 3
+                        ? (light_bound){.irradiance = 0.1f * sampler_1d(&random)}
+                        : (light_bound){.is_local = true,
+                                        .box = {p, p + 0.05f * sampler_1d(&random)},
+                                        .power = sampler_1d(&random)};
     }
     light_tree *tree = light_tree_new(bounds, LIGHTS);
     const vec3 ref = vec3_make(0.2f, 0.7f, 0.4f);

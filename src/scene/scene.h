@@ -155,13 +155,19 @@ spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w);
 /** @brief The bsdf at a hit. @return false if the hit has no material (an interface). */
 bool scene_bsdf(const scene *s, const surface_hit *hit, const wavelengths *w, int lane,
                 const bsdf_options *options, bsdf *out);
+/** @brief A direction from ref to light i. @return false if none reaches ref that way. */
+bool scene_sample_one_light(const scene *s, int i, const wavelengths *w, vec3 ref,
+                            float u_primitive, vec2 u, light_sample *out);
 /** @brief One light, by about what it sends to ref, and a direction to it. *light gets
  * its index; out->pdf includes the probability of the choice. @return false if no light
  * reaches ref that way.
  */
 bool scene_sample_light(const scene *s, const wavelengths *w, vec3 ref, float u_light,
                         float u_primitive, vec2 u, int *light, light_sample *out);
-/** @brief pdf_solid_angle with which scene_sample_light gives direction wi, which hits
- * `hit` (an area light) or, with hit NULL, leaves the scene (environments). Includes the
- * choice. */
-float scene_light_pdf(const scene *s, vec3 ref, vec3 wi, const surface_hit *hit);
+/** @brief pdf_solid_angle with which scene_sample_one_light gives direction wi for light
+ * i, which wi meets at `hit` (an area light) or, with hit NULL, beyond the scene (an
+ * environment). */
+float scene_one_light_pdf(const scene *s, int i, vec3 ref, vec3 wi,
+                          const surface_hit *hit);
+/** @brief The same for scene_sample_light: includes the choice of light i. */
+float scene_light_pdf(const scene *s, int i, vec3 ref, vec3 wi, const surface_hit *hit);

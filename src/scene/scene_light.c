@@ -23,33 +23,33 @@ spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w)
     return sum;
 }
 
+bool scene_sample_one_light(const scene *s, int i, const wavelengths *w, vec3 ref,
+                            float u_primitive, vec2 u, light_sample *out)
+{
+    const light *l = scene_light(s, i);
+    return l->kind->sample(l->self, w, ref, u_primitive, u, out) && out->pdf > 0.0f;
+}
+
 bool scene_sample_light(const scene *s, const wavelengths *w, vec3 ref, float u_light,
                         float u_primitive, vec2 u, int *index, light_sample *out)
 {
     float p;
     *index = light_tree_sample(s->light_tree, ref, u_light, &p);
-    if (*index < 0)
-        return false;
-    const light *l = scene_light(s, *index);
-    if (!l->kind->sample(l->self, w, ref, u_primitive, u, out))
+    if (*index < 0 || !scene_sample_one_light(s, *index, w, ref, u_primitive, u, out))
         return false;
     out->pdf *= p;
     return out->pdf > 0.0f;
 }
 
-static float light_pdf(const scene *s, int i, vec3 ref, vec3 wi, const surface_hit *hit)
+float scene_one_light_pdf(const scene *s, int i, vec3 ref, vec3 wi,
+                          const surface_hit *hit)
 {
     const light *l = scene_light(s, i);
-    return light_tree_probability(s->light_tree, ref, i) *
-           l->kind->pdf(l->self, ref, wi, hit);
+    return l->kind->pdf(l->self, ref, wi, hit);
 }
 
-float scene_light_pdf(const scene *s, vec3 ref, vec3 wi, const surface_hit *hit)
+float scene_light_pdf(const scene *s, int i, vec3 ref, vec3 wi, const surface_hit *hit)
 {
-    if (hit)
-        return hit->light == NO_INDEX ? 0.0f : light_pdf(s, hit->light, ref, wi, hit);
-    float sum = 0.0f;
-    for (int i = 0; i < s->n_environments; i++)
-        sum += light_pdf(s, s->environments[i], ref, wi, NULL);
-    return sum;
+    return light_tree_probability(s->light_tree, ref, i) *
+           scene_one_light_pdf(s, i, ref, wi, hit);
 }

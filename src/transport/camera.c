@@ -68,17 +68,17 @@ static void add_parts(camera_tree *tree, const camera_branch *branch,
         tree->out->groups[i] += branch->beta * parts[i];
 }
 
-/* Weight of a lamp or sky that the branch ran into. hit NULL: sky. */
+/* Weight of a light that the branch ran into. hit NULL: an environment. */
 static float met_light_weight(const camera_tree *tree, const camera_branch *branch,
-                              const surface_hit *hit)
+                              int lamp, const surface_hit *hit)
 {
     const settings *how = tree->pass->how;
     if (!(branch->glossy_pdf > 0.0f) || !how->direct_illumination)
         return 1.0f;
     if (!how->shadow_rays)
         return 0.0f;
-    float pdf =
-        scene_light_pdf(tree->pass->scene, branch->from, branch->ray.direction, hit);
+    float pdf = direct_light_pdf(tree->pass->scene, true, lamp, branch->from,
+                                 branch->ray.direction, hit);
     return followed_weight(branch->glossy_pdf, pdf);
 }
 
@@ -86,14 +86,13 @@ static void see_sky(camera_tree *tree, const camera_branch *branch)
 {
     const photonmap_pass *pass = tree->pass;
     const scene *s = pass->scene;
-    if (s->n_environments == 0)
-        return;
-    float weight = met_light_weight(tree, branch, NULL);
     for (int i = 0; i < s->n_environments; i++) {
-        const light *l = scene_light(s, s->environments[i]);
+        int index = s->environments[i];
+        const light *l = scene_light(s, index);
         spectrum radiance =
             l->kind->environment(l->self, branch->ray.direction, &pass->w);
-        add_from(tree, branch, LAYER_EMISSION, radiance * weight, s->environments[i]);
+        float weight = met_light_weight(tree, branch, index, NULL);
+        add_from(tree, branch, LAYER_EMISSION, radiance * weight, index);
     }
 }
 
@@ -106,7 +105,7 @@ static void see_lamp(camera_tree *tree, const camera_branch *branch,
     spectrum radiance = scene_emitted(pass->scene, hit, -branch->ray.direction, &pass->w);
     if (!spectrum_is_black(radiance))
         add_from(tree, branch, LAYER_EMISSION,
-                 radiance * met_light_weight(tree, branch, hit), hit->light);
+                 radiance * met_light_weight(tree, branch, hit->light, hit), hit->light);
 }
 
 static void note_first_surface(camera_tree *tree, const camera_branch *branch,
@@ -147,15 +146,18 @@ static void shade_direct(camera_tree *tree, const camera_branch *branch,
         .hit = hit,
         .bsdf = b,
         .wo = -branch->ray.direction,
+        .every_light = true,
         .shadow_rays = pass->how->shadow_rays,
         .followed = LOBE_FOLLOWED,
         .by_side = true,
         .p_side = {p_follow[0], p_follow[1]},
     };
-    direct_radiance found =
-        direct_light(&query, tree->random, &tree->scratch->shadow_rays);
-    add_from(tree, branch, LAYER_DIRECT, found.diffuse, found.light);
-    add_from(tree, branch, LAYER_SPECULAR, found.glossy, found.light);
+    direct_radiance found[FEW_LIGHTS];
+    int n = direct_light(&query, tree->random, found, &tree->scratch->shadow_rays);
+    for (int i = 0; i < n; i++) {
+        add_from(tree, branch, LAYER_DIRECT, found[i].diffuse, found[i].light);
+        add_from(tree, branch, LAYER_SPECULAR, found[i].glossy, found[i].light);
+    }
 }
 
 /* What the photons of one class give at a point. */

@@ -25,54 +25,76 @@ static float density_of_following(const direct_query *query, vec3 wi)
     return p * bsdf_pdf(query->bsdf, query->wo, wi, lobes, TRANSPORT_RADIANCE);
 }
 
-/* The density with which the lights are sampled in a direction: following that meets the
-   sky meets all of it. */
-static float density_of_sampling(const direct_query *query, const light *l,
-                                 const light_sample *to_light)
-{
-    if (!l->kind->is_environment)
-        return to_light->pdf;
-    return scene_light_pdf(query->scene, query->hit->p, to_light->wi, NULL);
-}
-
 /* f of one class of lobes, weighed against following where that is done too. */
-static spectrum weighed_lobe(const direct_query *query, const light *l,
-                             const light_sample *to_light, unsigned lobe)
+static spectrum weighed_lobe(const direct_query *query, const light_sample *to_light,
+                             bool is_delta, unsigned lobe)
 {
     if (!(query->bsdf->lobes & lobe))
         return (spectrum){0};
     spectrum f = bsdf_eval(query->bsdf, query->wo, to_light->wi, lobe | LOBE_ANY_SIDE,
                            TRANSPORT_RADIANCE);
-    bool shared = (query->followed & lobe) && !l->kind->is_delta && query->shadow_rays;
+    bool shared = (query->followed & lobe) && !is_delta && query->shadow_rays;
     if (!shared || spectrum_is_black(f))
         return f;
     float pdf = density_of_following(query, to_light->wi);
-    return f * (1.0f - followed_weight(pdf, density_of_sampling(query, l, to_light)));
+    return f * (1.0f - followed_weight(pdf, to_light->pdf));
 }
 
-direct_radiance direct_light(const direct_query *query, sampler *random,
-                             uint64_t *shadow_rays_traced)
+/* What a light sample gives. @return false if that is nothing. */
+static bool radiance_of(const direct_query *query, const light_sample *to_light,
+                        bool is_delta, direct_radiance *found,
+                        uint64_t *shadow_rays_traced)
 {
-    const direct_radiance none = {0};
-    light_numbers u = sampler_light(random);
-    int index;
-    light_sample to_light;
-    if (!scene_sample_light(query->scene, query->w, query->hit->p, u.light, u.primitive,
-                            u.place, &index, &to_light))
-        return none;
-    const light *l = scene_light(query->scene, index);
-    spectrum diffuse = weighed_lobe(query, l, &to_light, LOBE_DIFFUSE);
-    spectrum glossy = weighed_lobe(query, l, &to_light, LOBE_GLOSSY);
+    spectrum diffuse = weighed_lobe(query, to_light, is_delta, LOBE_DIFFUSE);
+    spectrum glossy = weighed_lobe(query, to_light, is_delta, LOBE_GLOSSY);
     if (spectrum_is_black(diffuse + glossy))
-        return none;
+        return false;
     if (query->shadow_rays) {
         ++*shadow_rays_traced;
-        if (!visible(query, &to_light))
-            return none;
+        if (!visible(query, to_light))
+            return false;
     }
-    float cosine = fabsf(dot3(to_light.wi, query->bsdf->shading.n));
+    float cosine = fabsf(dot3(to_light->wi, query->bsdf->shading.n));
     spectrum arriving =
-        to_light.radiance * (cosine / to_light.pdf) *
-        hit_transmittance_to(query->hit, to_light.wi, to_light.distance, query->w);
-    return (direct_radiance){diffuse * arriving, glossy * arriving, index};
+        to_light->radiance * (cosine / to_light->pdf) *
+        hit_transmittance_to(query->hit, to_light->wi, to_light->distance, query->w);
+    found->diffuse = diffuse * arriving;
+    found->glossy = glossy * arriving;
+    return true;
+}
+
+static bool samples_each(const scene *s, bool every_light)
+{
+    return every_light && s->lights->len <= FEW_LIGHTS;
+}
+
+int direct_light(const direct_query *query, sampler *random,
+                 direct_radiance found[FEW_LIGHTS], uint64_t *shadow_rays_traced)
+{
+    const scene *s = query->scene;
+    bool each = samples_each(s, query->every_light);
+    int n_samples = each ? (int)s->lights->len : 1, n_found = 0;
+    for (int i = 0; i < n_samples; i++) {
+        light_numbers u = sampler_light(random);
+        light_sample to_light;
+        int index = i;
+        bool reached = each ? scene_sample_one_light(s, i, query->w, query->hit->p,
+                                                     u.primitive, u.place, &to_light)
+                            : scene_sample_light(s, query->w, query->hit->p, u.light,
+                                                 u.primitive, u.place, &index, &to_light);
+        if (!reached)
+            continue;
+        bool is_delta = scene_light(s, index)->kind->is_delta;
+        found[n_found].light = index;
+        n_found +=
+            radiance_of(query, &to_light, is_delta, &found[n_found], shadow_rays_traced);
+    }
+    return n_found;
+}
+
+float direct_light_pdf(const scene *s, bool every_light, int lamp, vec3 from, vec3 wi,
+                       const surface_hit *hit)
+{
+    return samples_each(s, every_light) ? scene_one_light_pdf(s, lamp, from, wi, hit)
+                                        : scene_light_pdf(s, lamp, from, wi, hit);
 }

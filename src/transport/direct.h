@@ -15,6 +15,8 @@ typedef struct direct_query {
     const surface_hit *hit;
     const bsdf *bsdf;
     vec3 wo;
+    bool every_light;  /**< sample each light, where they are few, instead of one: where
+                          grain shows */
     bool shadow_rays;  /**< false: light passes through everything */
     unsigned followed; /**< the mask that the path goes on with: those classes share the
                           work with light sampling, for the others it is the only way */
@@ -22,16 +24,27 @@ typedef struct direct_query {
     float p_side[2];   /**< ... with this probability: reflection, transmission */
 } direct_query;
 
-/** @brief Radiance sent to wo, by the class of lobe that sends it. */
+/** @brief Up to so many lights are few. */
+enum { FEW_LIGHTS = 4 };
+
+/** @brief Radiance sent to wo from one light, by the class of lobe that sends it. */
 typedef struct direct_radiance {
     spectrum diffuse, glossy;
     int light; /**< that it came from */
 } direct_radiance;
 
-/** @brief Light that comes straight from a lamp, by one light sample.
- *  @param shadow_rays_traced is increased */
-direct_radiance direct_light(const direct_query *query, sampler *random,
-                             uint64_t *shadow_rays_traced);
+/** @brief Light that comes straight from lamps, by a sample of one or of each.
+ *  @param shadow_rays_traced is increased
+ *  @return how many lights gave something; found holds that many */
+int direct_light(const direct_query *query, sampler *random,
+                 direct_radiance found[FEW_LIGHTS], uint64_t *shadow_rays_traced);
+
+/** @brief pdf_solid_angle with which direct_light at point `from` samples a light in
+ *  direction wi.
+ *  @param every_light as in the query
+ *  @param hit on the light; NULL for environments */
+float direct_light_pdf(const scene *s, bool every_light, int lamp, vec3 from, vec3 wi,
+                       const surface_hit *hit);
 
 /** @brief Weight of a followed direction of density pdf_bsdf that hit a light which light
  * sampling would have found with density pdf_light. */

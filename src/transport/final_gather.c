@@ -175,11 +175,13 @@ static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
             .wo = at->wo,
             .shadow_rays = pass->how->shadow_rays,
         };
-        direct_radiance found = direct_light(&query, random, &scratch->shadow_rays);
-        radiance = found.diffuse;
-        if (scratch->gathered)
-            scratch->gathered[scene_light_group(pass->scene, found.light)] +=
-                beta * radiance;
+        direct_radiance found[FEW_LIGHTS];
+        if (direct_light(&query, random, found, &scratch->shadow_rays) > 0) {
+            radiance = found[0].diffuse;
+            if (scratch->gathered)
+                scratch->gathered[scene_light_group(pass->scene, found[0].light)] +=
+                    beta * radiance;
+        }
     }
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         if (c == PHOTON_DIRECT && pass->how->direct_illumination)

@@ -17,6 +17,7 @@ typedef struct camera_path {
     float eta2;         /* takes refraction's scale of radiance out of roulette */
     float pdf; /* pdf_solid_angle of the direction; 0: specular or from the camera */
     vec3 from;
+    bool every_light; /* how lights were sampled there */
 } camera_path;
 
 /* What one camera ray's path is traced with. */
@@ -80,14 +81,16 @@ static void add_from(path_walk *walk, const camera_path *path, spectrum radiance
         walk->out->groups[scene_light_group(walk->scene, lamp)] += path->beta * radiance;
 }
 
-static float met_light_weight(const path_walk *walk, const camera_path *path,
+/* Weight of a light that the path ran into. hit NULL: an environment. */
+static float met_light_weight(const path_walk *walk, const camera_path *path, int lamp,
                               const surface_hit *hit)
 {
     if (!(path->pdf > 0.0f) || !walk->how->direct_illumination)
         return 1.0f;
     if (!walk->how->shadow_rays)
         return 0.0f;
-    float pdf = scene_light_pdf(walk->scene, path->from, path->ray.direction, hit);
+    float pdf = direct_light_pdf(walk->scene, path->every_light, lamp, path->from,
+                                 path->ray.direction, hit);
     return followed_weight(path->pdf, pdf);
 }
 
@@ -96,21 +99,29 @@ static void meet_lamp(path_walk *walk, const camera_path *path, const surface_hi
     spectrum radiance =
         scene_emitted(walk->scene, hit, -path->ray.direction, &walk->pass->w);
     if (!spectrum_is_black(radiance) && !left_to_caustics(walk, path))
-        add_from(walk, path, radiance * met_light_weight(walk, path, hit), hit->light);
+        add_from(walk, path, radiance * met_light_weight(walk, path, hit->light, hit),
+                 hit->light);
 }
 
 static void meet_sky(path_walk *walk, const camera_path *path)
 {
     const scene *s = walk->scene;
-    if (s->n_environments == 0 || left_to_caustics(walk, path))
+    if (left_to_caustics(walk, path))
         return;
-    float weight = met_light_weight(walk, path, NULL);
     for (int i = 0; i < s->n_environments; i++) {
-        const light *l = scene_light(s, s->environments[i]);
+        int index = s->environments[i];
+        const light *l = scene_light(s, index);
         spectrum radiance =
             l->kind->environment(l->self, path->ray.direction, &walk->pass->w);
-        add_from(walk, path, radiance * weight, s->environments[i]);
+        float weight = met_light_weight(walk, path, index, NULL);
+        add_from(walk, path, radiance * weight, index);
     }
+}
+
+/* Grain shows on what is seen straight or in a mirror. */
+static bool samples_every_light(const camera_path *path)
+{
+    return path->n_diffuse == 0;
 }
 
 static void sample_lights(path_walk *walk, const camera_path *path,
@@ -124,17 +135,20 @@ static void sample_lights(path_walk *walk, const camera_path *path,
         .hit = hit,
         .bsdf = b,
         .wo = -path->ray.direction,
+        .every_light = samples_every_light(path),
         .shadow_rays = walk->how->shadow_rays,
         .followed = LOBE_ALL,
     };
-    direct_radiance found =
-        direct_light(&query, walk->random, &walk->scratch->shadow_rays);
+    direct_radiance found[FEW_LIGHTS];
+    int n = direct_light(&query, walk->random, found, &walk->scratch->shadow_rays);
     camera_path by_diffuse = *path, by_glossy = *path;
     count_bounce(&by_diffuse, LOBE_DIFFUSE);
     count_bounce(&by_glossy, LOBE_GLOSSY);
-    add_from(walk, &by_diffuse, found.diffuse, found.light);
-    if (!left_to_caustics(walk, &by_glossy))
-        add_from(walk, &by_glossy, found.glossy, found.light);
+    for (int i = 0; i < n; i++) {
+        add_from(walk, &by_diffuse, found[i].diffuse, found[i].light);
+        if (!left_to_caustics(walk, &by_glossy))
+            add_from(walk, &by_glossy, found[i].glossy, found[i].light);
+    }
 }
 
 /* What the caustic map says of this surface. Light that a lobe of n_diffuse > 0 would
@@ -173,6 +187,7 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     path->eta2 *= next.eta * next.eta;
     path->pdf = (next.lobe & LOBE_SPECULAR) ? 0.0f : next.pdf;
     path->from = hit->p;
+    path->every_light = samples_every_light(path);
     path->ray = hit_ray(hit, next.wi);
     count_bounce(path, next.lobe);
     if (path->bounces < ROULETTE_BOUNCES)
