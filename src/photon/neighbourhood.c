@@ -14,6 +14,9 @@ enum {
 #define LIFT 0.06f
 #define RIM 0.9f
 
+/* A surface that is met near the rim under a greater angle is a wall (cosine). */
+#define LEAST_SAME_NORMAL 0.8f
+
 /* Even where no probe passes, the centre itself is surface. */
 #define LEAST_COVERAGE (0.5f / AREA_PROBES)
 
@@ -27,15 +30,30 @@ static float angle_at(vec3 p)
     return 2.0f * PI_F * (float)(h >> 40) * 0x1p-24f;
 }
 
-static vec3 direction_at(const neighbourhood *hood, float angle)
+/* A direction of the frame's plane, as cosine and sine. */
+typedef struct turn {
+    float c, s;
+} turn;
+
+static turn turn_by(float angle)
 {
-    return hood->frame.s * cosf(angle) + hood->frame.t * sinf(angle);
+    return (turn){cosf(angle), sinf(angle)};
+}
+
+static turn turn_further(turn a, turn by)
+{
+    return (turn){a.c * by.c - a.s * by.s, a.s * by.c + a.c * by.s};
+}
+
+static vec3 direction_at(const neighbourhood *hood, turn a)
+{
+    return hood->frame.s * a.c + hood->frame.t * a.s;
 }
 
 static void turn_frame(neighbourhood *hood)
 {
     hood->frame = frame_from_normal(hood->n);
-    vec3 s = direction_at(hood, angle_at(hood->p));
+    vec3 s = direction_at(hood, turn_by(angle_at(hood->p)));
     hood->frame = (frame){s, cross3(hood->n, s), hood->n};
 }
 
@@ -53,14 +71,30 @@ static bool is_surface(const neighbourhood *hood, vec3 q)
     return scene_intersect(hood->scene, &down, &hit) && hit.t > height - slab;
 }
 
+/* True if what a ray from the lifted centre meets near the rim, in direction d, is the
+ * disc's own surface: in its plane, and no wall across the way. */
+static bool rim_is_surface(const neighbourhood *hood, vec3 d)
+{
+    float height = LIFT * hood->radius, rim = RIM * hood->radius;
+    float slope = 1.0f / sqrtf(rim * rim + height * height);
+    vec3 across = (d * rim - hood->n * height) * slope;
+    float down = height * slope; /* per metre of the way */
+    float slab = NEIGHBOURHOOD_FLATTEN * hood->radius;
+    ray r = {.origin = lifted(hood, hood->p),
+             .direction = across,
+             .t_max = (height + slab) / down};
+    surface_hit hit;
+    return scene_intersect(hood->scene, &r, &hit) && hit.t * down > height - slab &&
+           fabsf(dot3(hit.n_geom, hood->n)) > LEAST_SAME_NORMAL;
+}
+
 bool neighbourhood_is_whole(neighbourhood *hood)
 {
+    const turn sixth = {0.5f, 0.86602540f};
+    turn a = {1.0f, 0.0f};
     turn_frame(hood);
-    for (int i = 0; i < RIM_PROBES; i++) {
-        vec3 d = direction_at(hood, (2.0f * PI_F / RIM_PROBES) * (float)i);
-        float rim = RIM * hood->radius;
-        ray along = {lifted(hood, hood->p), d, rim, 0.0f, NULL};
-        if (scene_occluded(hood->scene, &along) || !is_surface(hood, hood->p + rim * d))
+    for (int i = 0; i < RIM_PROBES; i++, a = turn_further(a, sixth)) {
+        if (!rim_is_surface(hood, direction_at(hood, a)))
             return false;
     }
     return true;
@@ -74,38 +108,35 @@ bool neighbourhood_is_whole(neighbourhood *hood)
  * seen. */
 static void probe_horizon(neighbourhood *hood)
 {
+    const turn sector = {0.92387953f, 0.38268343f}; /* a sixteenth */
     float reach = OPEN_HORIZON * hood->radius;
-    for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++) {
-        float angle = (2.0f * PI_F / NEIGHBOURHOOD_SECTORS) * (float)i;
-        ray along = {lifted(hood, hood->p), direction_at(hood, angle), reach, 0.0f, NULL};
+    turn a = {1.0f, 0.0f};
+    vec2 corner[NEIGHBOURHOOD_SECTORS];
+    for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++, a = turn_further(a, sector)) {
+        ray along = {.origin = lifted(hood, hood->p),
+                     .direction = direction_at(hood, a),
+                     .t_max = reach};
         surface_hit hit;
         float way = scene_intersect(hood->scene, &along, &hit) ? hit.t : reach;
-        hood->horizon[i] = (vec2){way * cosf(angle), way * sinf(angle)};
+        corner[i] = (vec2){way * a.c, way * a.s};
     }
-    hood->horizon[NEIGHBOURHOOD_SECTORS] = hood->horizon[0];
-}
-
-bool neighbourhood_sees(const neighbourhood *hood, vec3 q)
-{
-    vec3 d = q - hood->p;
-    float x = dot3(d, hood->frame.s), y = dot3(d, hood->frame.t);
-    float turn = atan2f(y, x) * (0.5f * INV_PI_F);
-    int i = (int)((turn < 0.0f ? turn + 1.0f : turn) * NEIGHBOURHOOD_SECTORS);
-    i = i < NEIGHBOURHOOD_SECTORS ? i : NEIGHBOURHOOD_SECTORS - 1;
-    vec2 a = hood->horizon[i], b = hood->horizon[i + 1];
-    return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x) > 0.0f;
+    for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++) {
+        vec2 p = corner[i], q = corner[(i + 1) % NEIGHBOURHOOD_SECTORS];
+        hood->side[i] = (horizon_side){p.y - q.y, q.x - p.x, p.y * q.x - p.x * q.y};
+    }
 }
 
 /* Probes on a sunflower spiral are even in area; the kernel weighs them. */
 float neighbourhood_coverage(neighbourhood *hood, const kernel *k)
 {
-    const float golden_angle = 2.39996323f;
+    const turn golden = {-0.73736888f, 0.67549029f}; /* the golden angle */
+    turn a = {1.0f, 0.0f};
     float whole = 0.0f, found = 0.0f;
     probe_horizon(hood);
-    for (int i = 0; i < AREA_PROBES; i++) {
+    for (int i = 0; i < AREA_PROBES; i++, a = turn_further(a, golden)) {
         float r2 = ((float)i + 0.5f) / AREA_PROBES;
         float weight = kernel_eval(k, r2, 1.0f);
-        vec3 d = direction_at(hood, golden_angle * (float)i);
+        vec3 d = direction_at(hood, a);
         vec3 q = hood->p + hood->radius * sqrtf(r2) * d;
         whole += weight;
         if (neighbourhood_sees(hood, q) && is_surface(hood, q))

@@ -21,15 +21,20 @@
 
 enum { NEIGHBOURHOOD_SECTORS = 16 };
 
+/** @brief A side of the horizon: points with x nx + y ny > c lie within. */
+typedef struct horizon_side {
+    float nx, ny, c;
+} horizon_side;
+
 /** @brief A disc to be probed. The first three are the caller's; thread-safe. */
 typedef struct neighbourhood {
     const scene *scene;
     vec3 p, n;    /**< centre, unit geometric normal on the side that is seen */
     float radius; /**< m */
     frame frame;  /**< turned by an angle of its own for every place */
-    /** How far one sees along the surface, in the frame's plane, m: a polygon around the
-     * centre whose first corner stands again at the end. */
-    vec2 horizon[NEIGHBOURHOOD_SECTORS + 1];
+    /** How far one sees along the surface, in the frame's plane: the sides of a polygon
+     * around the centre, one a sector. */
+    horizon_side side[NEIGHBOURHOOD_SECTORS];
 } neighbourhood;
 
 /** Height over radius within which a surface counts as the disc's. */
@@ -42,5 +47,22 @@ bool neighbourhood_is_whole(neighbourhood *hood);
  * sight, in (0, 1]. After it neighbourhood_sees may be asked. */
 float neighbourhood_coverage(neighbourhood *hood, const kernel *k);
 
+/** @brief The sector, a sixteenth of the circle, that (x, y) lies in: its quadrant, and
+ * there between the tangents of the sectors. */
+static inline int neighbourhood_sector(float x, float y)
+{
+    const float tangent = 0.41421356f; /* of a sixteenth */
+    int left = x < 0.0f, below = y < 0.0f, odd = left ^ below;
+    float across = odd ? fabsf(y) : fabsf(x), up = odd ? fabsf(x) : fabsf(y);
+    int within = (up > tangent * across) + (up > across) + (tangent * up > across);
+    return 8 * below + 4 * odd + within;
+}
+
 /** @brief True if q, a point near the plane, lies within the horizon. */
-bool neighbourhood_sees(const neighbourhood *hood, vec3 q);
+static inline bool neighbourhood_sees(const neighbourhood *hood, vec3 q)
+{
+    vec3 d = q - hood->p;
+    float x = dot3(d, hood->frame.s), y = dot3(d, hood->frame.t);
+    const horizon_side *side = &hood->side[neighbourhood_sector(x, y)];
+    return x * side->nx + y * side->ny > side->c;
+}
