@@ -12,10 +12,11 @@
     "Film \"rgb\" \"integer xresolution\" " #n " \"integer yresolution\" " #n            \
     "\nPixelFilter \"box\"\n"
 
-/* Settings as "name=value" words. */
+/* Settings as "name=value" words; photon mapping where they say nothing else. */
 static inline settings settings_with(const scene *s, const char *words)
 {
     settings how = s->settings;
+    how.integrator = INTEGRATOR_PHOTONMAP;
     g_auto(GStrv) list = g_strsplit(words, " ", -1);
     for (char **word = list; *word; word++) {
         g_auto(GStrv) pair = g_strsplit(*word, "=", 2);
