@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include "scene/bsdf_gltf.h"
 #include "scene/bsdf_models.h"
 
 /* A bsdf to be tested. */
@@ -154,6 +155,57 @@ static void make_broad_phong(bsdf *b)
     bsdf_make_phong(b, spectrum_fill(0.2f), RAMP, 6.0f);
 }
 
+static void make_tinted_glass(bsdf *b)
+{
+    bsdf_make_tinted_dielectric(b, FLINT, true, ggx_make(0.2f, 0.2f), RAMP);
+}
+
+static void make_gltf_satin(bsdf *b)
+{
+    bsdf_make_gltf(b, &(gltf_surface){.f0 = spectrum_fill(0.04f),
+                                      .f90 = 1.0f,
+                                      .plain_f0 = 0.04f,
+                                      .plain_f90 = 1.0f,
+                                      .diffuse = RAMP,
+                                      .roughness = ggx_make(0.15f, 0.15f)});
+}
+
+/* Half metal, with all layers there are. */
+static void make_gltf_all(bsdf *b)
+{
+    bsdf_make_gltf(b, &(gltf_surface){.f0 = 0.5f * RAMP + 0.02f,
+                                      .f90 = 1.0f,
+                                      .plain_f0 = 0.04f,
+                                      .plain_f90 = 1.0f,
+                                      .diffuse = 0.2f * RAMP,
+                                      .through = 0.3f * RAMP,
+                                      .coat = 0.5f,
+                                      .roughness = ggx_make(0.4f, 0.4f),
+                                      .coat_roughness = ggx_make(0.1f, 0.1f)});
+}
+
+static void make_gltf_smooth(bsdf *b)
+{
+    bsdf_make_gltf(b, &(gltf_surface){.f0 = spectrum_fill(0.04f),
+                                      .f90 = 1.0f,
+                                      .plain_f0 = 0.04f,
+                                      .plain_f90 = 1.0f,
+                                      .diffuse = 0.5f * RAMP,
+                                      .through = 0.5f * RAMP,
+                                      .coat = 1.0f});
+}
+
+/* White under white: all light comes back. */
+static void make_gltf_white(bsdf *b)
+{
+    bsdf_make_gltf(b, &(gltf_surface){.f0 = spectrum_fill(0.04f),
+                                      .f90 = 1.0f,
+                                      .plain_f0 = 0.04f,
+                                      .plain_f90 = 1.0f,
+                                      .diffuse = spectrum_fill(1.0f),
+                                      .roughness = ggx_make(0.3f, 0.3f)});
+}
+
 static const model MODELS[] = {
     {"diffuse", make_diffuse, 0.2},
     {"mirror", make_mirror, 0.3},
@@ -175,4 +227,9 @@ static const model MODELS[] = {
     {"brushed plastic", make_brushed_plastic, 0.15},
     {"phong", make_phong, 0.25},
     {"broad phong", make_broad_phong, 0.2},
+    {"tinted glass", make_tinted_glass, 0.2},
+    {"glTF satin", make_gltf_satin, 0.2},
+    {"glTF all layers", make_gltf_all, 0.2},
+    {"glTF smooth", make_gltf_smooth, 0.15},
+    {"glTF white", make_gltf_white, 0.97},
 };

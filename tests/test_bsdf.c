@@ -203,8 +203,9 @@ static void test_reciprocity(void)
             spectrum back = bsdf_eval(&b, y, x, LOBE_ALL, TRANSPORT_RADIANCE);
             spectrum eta = spectrum_fill(1.0f);
             if ((b.lobes & LOBE_TRANSMISSION) &&
+                !g_str_has_prefix(MODELS[m].name, "glTF") &&
                 dot3(x, b.shading.n) * dot3(y, b.shading.n) < 0.0f)
-                memcpy(&eta, b.data, sizeof eta); /* all that transmit begin with it */
+                memcpy(&eta, b.data, sizeof eta); /* all that refract begin with it */
             if (dot3(x, b.shading.n) < 0.0f)
                 eta = 1.0f / eta;
             assert_near(there * eta * eta, back, 1e-3f, MODELS[m].name);

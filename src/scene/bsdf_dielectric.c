@@ -98,7 +98,7 @@ static bool smooth_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned
     float scale = mode == TRANSPORT_RADIANCE ? 1.0f / square(eta[lane]) : 1.0f;
     if (!(r < 1.0f))
         return false;
-    out->weight = spectrum_fill((1.0f - r) / pdf * scale);
+    out->weight = data_of(b)->tint * ((1.0f - r) / pdf * scale);
     return sample_refraction(b, wo, eta[lane], lane, pdf, out);
 }
 
@@ -108,7 +108,7 @@ static spectrum smooth_albedo(const bsdf *b, vec3 wo, unsigned lobes)
     if (lobe_wanted(lobes, LOBE_SPECULAR | LOBE_REFLECTION))
         sum += r;
     if (lobe_wanted(lobes, LOBE_SPECULAR | LOBE_TRANSMISSION))
-        sum += 1.0f - r;
+        sum += data_of(b)->tint * (1.0f - r);
     return sum;
 }
 
@@ -137,14 +137,25 @@ static void make(bsdf *b, const dielectric *d)
     b->lambertian = false;
 }
 
-void bsdf_make_dielectric(bsdf *b, spectrum eta, bool disperses, ggx roughness)
+void bsdf_make_tinted_dielectric(bsdf *b, spectrum eta, bool disperses, ggx roughness,
+                                 spectrum tint)
 {
     if (bends_nothing(eta))
         roughness = (ggx){0.0f, 0.0f};
-    make(b, &(dielectric){.eta = eta, .roughness = roughness, .disperses = disperses});
+    make(b,
+         &(dielectric){
+             .eta = eta, .tint = tint, .roughness = roughness, .disperses = disperses});
+}
+
+void bsdf_make_dielectric(bsdf *b, spectrum eta, bool disperses, ggx roughness)
+{
+    bsdf_make_tinted_dielectric(b, eta, disperses, roughness, spectrum_fill(1.0f));
 }
 
 void bsdf_make_refractor(bsdf *b, spectrum eta, bool disperses)
 {
-    make(b, &(dielectric){.eta = eta, .disperses = disperses, .lossless = true});
+    make(b, &(dielectric){.eta = eta,
+                          .tint = spectrum_fill(1.0f),
+                          .disperses = disperses,
+                          .lossless = true});
 }

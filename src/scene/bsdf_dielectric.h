@@ -7,7 +7,8 @@
 #include "scene/fresnel.h"
 
 typedef struct dielectric {
-    spectrum eta; /**< index below over that above the surface */
+    spectrum eta;  /**< index below over that above the surface */
+    spectrum tint; /**< times the light that passes, 0..1 */
     ggx roughness;
     bool disperses;
     bool lossless; /**< no Fresnel reflection, only total */

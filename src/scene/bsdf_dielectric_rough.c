@@ -82,6 +82,7 @@ static scattering transmission(const rough_pair *p)
     return out;
 }
 
+/* What all lanes share stands in the first looked at; the tint is each lane's own. */
 static scattering scatter(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
                           transport_mode mode)
 {
@@ -107,6 +108,8 @@ static scattering scatter(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
     scattering s = same_side ? reflection(&p) : transmission(&p);
     if (!per_lane)
         s.f = spectrum_fill(s.f[lane]);
+    if (!same_side)
+        s.f *= d->tint;
     return s;
 }
 
@@ -177,16 +180,18 @@ static spectrum rough_albedo(const bsdf *b, vec3 wo, unsigned lobes)
 {
     unsigned kind = b->lobes & ~(unsigned)LOBE_ANY_SIDE;
     const dielectric *d = (const void *)b->data;
-    spectrum eta = dielectric_eta(b, wo), out = {0};
+    spectrum eta = dielectric_eta(b, wo), reflected = {0}, passed = {0};
     vec3 o = flip_z(wo, wo[2] < 0.0f);
     int n = d->disperses ? N_LANES : 1;
     for (int i = 0; i < n; i++) {
         float r, t;
         facet_shares(d->roughness, o, eta[i], &r, &t);
-        out[i] = (lobe_wanted(lobes, kind | LOBE_REFLECTION) ? r : 0.0f) +
-                 (lobe_wanted(lobes, kind | LOBE_TRANSMISSION) ? t : 0.0f);
+        reflected[i] = lobe_wanted(lobes, kind | LOBE_REFLECTION) ? r : 0.0f;
+        passed[i] = lobe_wanted(lobes, kind | LOBE_TRANSMISSION) ? t : 0.0f;
     }
-    return d->disperses ? out : spectrum_fill(out[0]);
+    if (d->disperses)
+        return reflected + passed * d->tint;
+    return spectrum_fill(reflected[0]) + passed[0] * d->tint;
 }
 
 const bsdf_ops dielectric_rough_ops = {

@@ -54,6 +54,10 @@ void bsdf_make_conductor(bsdf *b, spectrum eta, spectrum k, ggx roughness);
  *  @param disperses eta differs between lanes: a refracted ray keeps one of them */
 void bsdf_make_dielectric(bsdf *b, spectrum eta, bool disperses, ggx roughness);
 
+/** @brief The same, with the light that passes multiplied by a tint in 0..1. */
+void bsdf_make_tinted_dielectric(bsdf *b, spectrum eta, bool disperses, ggx roughness,
+                                 spectrum tint);
+
 /** @brief A smooth boundary that only refracts, without loss, or reflects totally: the
  * one deterministic path of Whitted's tracer without splitting. */
 void bsdf_make_refractor(bsdf *b, spectrum eta, bool disperses);

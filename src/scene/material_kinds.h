@@ -11,3 +11,4 @@ extern const material_kind material_dielectric;
 extern const material_kind material_thin_dielectric;
 extern const material_kind material_coated_diffuse;
 extern const material_kind material_phong;
+extern const material_kind material_gltf;
