@@ -96,8 +96,8 @@ bool photon_emit(const scene *s, const wavelengths *w, sampler *random, photon_s
 }
 
 /* Parallel light through the disc of the sphere around what casts caustics. */
-static bool emit_at_sphere(const scene *s, const light *l, const wavelengths *w,
-                           const float u[EMISSION_DIMENSIONS], light_emission *out)
+static bool emit_at_disc(const scene *s, const light *l, const wavelengths *w,
+                         const float u[EMISSION_DIMENSIONS], light_emission *out)
 {
     vec2 u_direction = {u[4], u[5]}, disk = warp_disk((vec2){u[2], u[3]});
     if (!l->kind->emit_toward(l->self, w, u[1], u_direction, s->caustic_center, out))
@@ -105,6 +105,34 @@ static bool emit_at_sphere(const scene *s, const light *l, const wavelengths *w,
     frame f = frame_from_normal(out->ray.direction);
     out->ray.origin += s->caustic_radius * (disk.x * f.s + disk.y * f.t);
     out->flux *= PI_F * s->caustic_radius * s->caustic_radius;
+    return true;
+}
+
+/* A direction, uniform in the cone in which p sees the sphere, and its density. */
+static vec3 direction_to_sphere(const scene *s, vec3 p, vec2 u, float *density)
+{
+    vec3 to = s->caustic_center - p;
+    float sine2 = minf(1.0f, square(s->caustic_radius) / length3_2(to));
+    float one_minus_cos = sine2 / (1.0f + sqrtf(1.0f - sine2));
+    frame f = frame_from_normal(normalize3(to));
+    *density = warp_cone_pdf(one_minus_cos);
+    return frame_to_world(&f, warp_cone(u, one_minus_cos));
+}
+
+/* From a lamp apart: the place is drawn by the lamp, the direction in the cone. The lamp
+   is asked twice, since the cone depends on the place. */
+static bool emit_in_cone(const scene *s, const light *l, const wavelengths *w,
+                         const float u[EMISSION_DIMENSIONS], light_emission *out)
+{
+    vec2 u_place = {u[2], u[3]};
+    float density;
+    *out = (light_emission){0};
+    l->kind->emit_toward(l->self, w, u[1], u_place, s->caustic_center, out);
+    vec3 d = direction_to_sphere(s, out->ray.origin, (vec2){u[4], u[5]}, &density);
+    vec3 target = out->ray.origin + s->caustic_radius * d;
+    if (!l->kind->emit_toward(l->self, w, u[1], u_place, target, out))
+        return false;
+    out->flux /= density;
     return true;
 }
 
@@ -117,9 +145,9 @@ bool photon_emit_caustic(const scene *s, const wavelengths *w,
         return false;
     float density = emission_guide_draw(guide, random, u);
     const light *l = choose_light(s, &s->caustic_power, &u[0], out);
-    bool emitted = l->kind->is_parallel
-                       ? emit_at_sphere(s, l, w, u, &emission)
-                       : l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]},
-                                       (vec2){u[4], u[5]}, &emission);
+    bool emitted = l->kind->is_parallel ? emit_at_disc(s, l, w, u, &emission)
+                   : l->is_apart        ? emit_in_cone(s, l, w, u, &emission)
+                                 : l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]},
+                                                 (vec2){u[4], u[5]}, &emission);
     return emitted && finish(&emission, density, out);
 }

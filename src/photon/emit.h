@@ -30,8 +30,8 @@ typedef struct photon_start {
 bool photon_emit(const scene *s, const wavelengths *w, sampler *random,
                  photon_start *out);
 
-/** @brief Emits one caustic photon: by the guide's numbers (NULL: uniform ones), parallel
- * light only where it may meet what casts caustics. As above. */
+/** @brief Emits one caustic photon by the guide's numbers, only into the sphere around
+ * what casts caustics. As above. */
 bool photon_emit_caustic(const scene *s, const wavelengths *w,
                          const emission_guide *guide, sampler *random, photon_start *out);
 

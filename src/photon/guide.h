@@ -30,7 +30,8 @@ typedef struct emission_guide emission_guide;
 /** @brief A photon that arrived usefully: where it started, and what it was worth. */
 typedef struct emission_record {
     float u[EMISSION_DIMENSIONS];
-    float value; /**< useful flux, already over the density it was drawn with; >= 0 */
+    float value;   /**< useful flux, already over the density it was drawn with; >= 0 */
+    float density; /**< that density */
 } emission_record;
 
 /** @brief A guide that draws uniformly. */

@@ -75,7 +75,8 @@ float photon_start_point(const trace_task *task, uint64_t index,
 
 static bool start(const trace_task *task, sampler *random, photon_start *out)
 {
-    if (task->photon_class != PHOTON_CAUSTIC)
+    if (task->photon_class != PHOTON_CAUSTIC ||
+        task->how->caustic_emission == EMISSION_UNIFORM)
         return photon_emit(task->scene, &task->w, random, out);
     if (task->how->caustic_emission == EMISSION_SPECULAR_AREA)
         return photon_emit_aimed(task->scene, &task->w, random, out);

@@ -65,7 +65,8 @@ typedef struct light_kind {
      * position by the light's own density (for environment: a direction), and aims the
      * ray at y. flux is Le cosθ / pdf_position (for distant/infinite: radiance or
      * irradiance over the density of the direction), still to be divided by the density
-     * of the aimed direction (for distant/infinite: of the position across the ray). */
+     * of the aimed direction (for distant/infinite: of the position across the ray).
+     * The ray is filled in also where nothing is sent that way. */
     bool (*emit_toward)(const void *self, const wavelengths *w, float u_primitive, vec2 u,
                         vec3 target, light_emission *out);
     bool (*sample)(const void *self, const wavelengths *w, vec3 ref, float u_primitive,
@@ -86,6 +87,8 @@ struct light {
     source_place place;
     char *group;     /**< light group's name, NULL: the default one */
     int group_index; /**< in scene->light_groups, if there are any */
+    bool is_apart;   /**< stands outside the sphere around what casts caustics: from it,
+                        that sphere is a cone */
 };
 
 light *light_new(const struct scene *s, const char *kind, const params *p,

@@ -286,17 +286,30 @@ static bool find_lights(scene *s, GError **error)
     return done;
 }
 
-/* Parallel light is spread over the whole scene: only what falls on the sphere counts. */
+/* The share of a light's power that may meet the sphere around what casts caustics:
+   parallel light is spread over the whole scene, that from a lamp apart from the sphere
+   over a cone and up to twice as strong as on average. */
+static float caustic_share(const scene *s, light *l, const wavelengths *w)
+{
+    if (l->kind->is_parallel)
+        return square(minf(1.0f, s->caustic_radius / s->radius));
+    light_bound bound = l->kind->bound(l->self, w);
+    vec3 nearest = max3(bound.box.low, min3(s->caustic_center, bound.box.high));
+    l->is_apart = bound.is_local &&
+                  length3(nearest - s->caustic_center) > 1.01f * s->caustic_radius;
+    float distance = length3(box3_center(bound.box) - s->caustic_center);
+    float sine = s->caustic_radius / distance;
+    return l->is_apart ? 1.0f - sqrtf(maxf(0.0f, 1.0f - sine * sine)) : 1.0f;
+}
+
 static bool find_caustic_power(scene *s, GError **error)
 {
     const wavelengths w = wavelengths_at(0.5f);
     guint n = s->lights->len;
-    float share = square(minf(1.0f, s->caustic_radius / s->radius));
     float *power = big_alloc(n, sizeof(float), "lights", error);
     for (guint i = 0; i < n && power; i++) {
-        const light *l = s->lights->pdata[i];
-        power[i] = spectrum_mean(l->kind->power(l->self, &w)) *
-                   (l->kind->is_parallel ? share : 1.0f);
+        light *l = s->lights->pdata[i];
+        power[i] = spectrum_mean(l->kind->power(l->self, &w)) * caustic_share(s, l, &w);
     }
     bool done = power && distribution_init(&s->caustic_power, power, n, error);
     big_free(power);

@@ -88,7 +88,7 @@ static void run_trials(size_t begin, size_t end, unsigned thread, void *data)
     for (size_t i = begin; i < end; i++) {
         emission_record *record = &all->records[i];
         trial t = {all->visible, &hits, 0.0f};
-        photon_start_point(&all->task, all->first + i, record->u);
+        record->density = photon_start_point(&all->task, all->first + i, record->u);
         photon_tell(&all->task, all->first + i, note_arrival, &t);
         record->value = t.value;
     }
