@@ -446,7 +446,7 @@ static double unit_emission(void)
     const wavelengths w = wavelengths_at(0.5f);
     g_autoptr(params) p = params_new(here, "/", color_space_srgb());
     emitter e;
-    g_assert_true(emitter_init(&e, p, "L", NULL));
+    g_assert_true(emitter_init(&e, p, "L", NULL, NULL));
     double value = (double)spectrum_mean(emitter_eval(&e, &w));
     emitter_clear(&e);
     return value;
@@ -646,7 +646,6 @@ static void test_bad_input_is_named(void)
     expect_error("point", numbers_of("intensity", 1.0, NULL), NULL, "intensity");
     expect_error("spot", numbers_of("coneangle", 0.0, NULL), NULL, "coneangle");
     expect_error("spot", numbers_of("conedeltaangle", 40.0, NULL), NULL, "coneangle");
-    expect_error("infinite", with_string("filename"), NULL, "\"filename\"");
     expect_error("diffuse", with_string("filename"), unit_square(&at), "\"filename\"");
     params *p = params_new(here, "/", color_space_srgb());
     add_point(p, "to", 0, 0, 0);

@@ -379,7 +379,7 @@ static void test_refusals(void)
     p = list();
     add_string(p, PARAM_TEXTURE, "displacement", "bumps");
     refuse("diffuse", p,
-           "m.pbrt:4:9: parameter 'displacement' of a material is not supported yet");
+           "m.pbrt:4:9: parameter 'displacement': there is no float texture 'bumps'");
     p = list();
     add_string(p, PARAM_TEXTURE, "reflectance", "nowhere");
     refuse("diffuse", p,

@@ -303,6 +303,45 @@ static void leave_and_expect_nothing(const accel *a, sampler *random, const ray 
     }
 }
 
+/* Two rays close by: what p moves is what dpdu, dpdv say of the way that uv moves. */
+static void assert_moves_with_uv(const accel *a, const ray *r, float scale)
+{
+    surface_hit first, second;
+    ray moved = *r;
+    if (!accel_intersect(a, r, &first))
+        return;
+    const vec3 aside = frame_from_normal(r->direction).s;
+    moved.direction = normalize3(r->direction + 2e-3f * scale / first.t * aside);
+    if (!accel_intersect(a, &moved, &second) || fabsf(second.uv.x - first.uv.x) > 0.01f ||
+        fabsf(second.uv.y - first.uv.y) > 0.01f || second.primitive != first.primitive ||
+        length3(second.p - first.p) > 0.01f * scale)
+        return; /* over a seam, an edge or the horizon */
+    vec3 by_uv =
+        (second.uv.x - first.uv.x) * first.dpdu + (second.uv.y - first.uv.y) * first.dpdv;
+    float moved_by = length3(second.p - first.p);
+    g_assert_cmpfloat(length3(by_uv - (second.p - first.p)), <,
+                      0.05f * moved_by + 2e-5f * scale);
+}
+
+static void test_tangents_follow_uv(void)
+{
+    for (int k = 0; k < N_PLACES; k++) {
+        shape_place at = place_at(k);
+        for (size_t i = 0; i <= G_N_ELEMENTS(quadrics); i++) {
+            bool is_mesh = i == G_N_ELEMENTS(quadrics);
+            shape *s = is_mesh ? unit_square(&at) : make(&quadrics[i], &at);
+            accel *a = accel_of(&s, 1);
+            for (uint32_t n = 0; n < 300; n++) {
+                sampler random = sampler_make(70, n);
+                ray r = random_ray(&random, &at.to_world);
+                assert_moves_with_uv(a, &r, k == 5 ? 1e-3f : 1.0f);
+            }
+            accel_free(a);
+            shape_free(s);
+        }
+    }
+}
+
 static void test_offset_rays_leave_spheres(void)
 {
     for (int e = -3; e <= 3; e++) {
@@ -557,6 +596,7 @@ int main(int argc, char **argv)
     g_test_add_func("/shape/mesh/twin", test_mesh_against_twin);
     g_test_add_func("/shape/orientation", test_orientation);
     g_test_add_func("/shape/uv", test_uv_and_tangents);
+    g_test_add_func("/shape/tangents-follow-uv", test_tangents_follow_uv);
     g_test_add_func("/shape/leave/sphere", test_offset_rays_leave_spheres);
     g_test_add_func("/shape/leave/square", test_offset_rays_leave_squares);
     g_test_add_func("/shape/scale", test_scale_by_thousand);

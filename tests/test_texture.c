@@ -209,17 +209,110 @@ static void refuse(params *p, const char *kind, const char *part)
 static void test_refusals(void)
 {
     refuse(list(colour_path), "marble", "found 'marble'");
-    refuse(list(NULL), "imagemap", "needs a 'filename'");
+    refuse(list(NULL), "imagemap", "\"string filename\"");
     refuse(list("none.png"), "imagemap", "none.png");
-    refuse(with_word(list(colour_path), "filter", "ewa"), "imagemap", "found 'ewa'");
-    refuse(with_word(list(colour_path), "wrap", "octahedralsphere"), "imagemap",
-           "found 'octahedralsphere'");
-    refuse(with_word(list(colour_path), "mapping", "planar"), "imagemap",
-           "found 'planar'");
+    refuse(with_word(list(colour_path), "filter", "cubic"), "imagemap", "found 'cubic'");
+    refuse(with_number(list(colour_path), "maxanisotropy", 4), "imagemap",
+           "'maxanisotropy'");
+    refuse(with_word(list(colour_path), "wrap", "mirror"), "imagemap", "found 'mirror'");
+    refuse(with_word(list(colour_path), "mapping", "cubic"), "imagemap", "found 'cubic'");
+    refuse(with_number(with_word(list(colour_path), "mapping", "spherical"), "uscale", 2),
+           "imagemap", "unknown parameter 'uscale'");
     refuse(with_word(list(colour_path), "encoding", "gamma x"), "imagemap",
            "found 'gamma x'");
     refuse(with_number(list(colour_path), "turbulence", 1.0f), "imagemap",
            "unknown parameter 'turbulence' of texture 'imagemap'");
+}
+
+/* A look-up at a hit, through an input that borrows the texture. */
+static float number_of(params *p, const surface_hit *hit)
+{
+    GError *error = NULL;
+    texture *t = texture_new(NULL, "imagemap", false, p, &error);
+    g_assert_no_error(error);
+    float_input in = {.texture = t};
+    float x = float_input_eval(&in, hit);
+    texture_free(t);
+    params_free(p);
+    return x;
+}
+
+/* Each mapping's coordinates, at a point given in the texture's space. */
+static void test_mappings(void)
+{
+    transform turn = transform_rotate(40, 1, -2, 0.5),
+              move = transform_translate(1, 2, 3);
+    transform to_world = transform_multiply(&move, &turn);
+    for (uint64_t i = 0; i < 30; i++) {
+        sampler s = sampler_make(4, i);
+        vec2 a = sampler_2d(&s);
+        double x = (double)a.x - 0.5, y = (double)a.y - 0.5, z = (double)sampler_1d(&s);
+        double phi = atan2(y, x), theta = acos(z / sqrt(x * x + y * y + z * z));
+        surface_hit hit = {
+            .p = transform_point(&to_world, vec3_make((float)x, (float)y, (float)z))};
+        params *p = with_word(list(colour_path), "mapping", "spherical");
+        p->to_world = to_world;
+        assert_close((double)number_of(p, &hit),
+                     naive(theta / G_PI, (phi < 0 ? phi + 2 * G_PI : phi) / (2 * G_PI)));
+        p = with_word(list(colour_path), "mapping", "cylindrical");
+        p->to_world = to_world;
+        assert_close((double)number_of(p, &hit), naive((G_PI + phi) / (2 * G_PI), z));
+        p = with_word(list(colour_path), "mapping", "planar");
+        p->to_world = to_world;
+        const float v1[3] = {1, 0.5f, 0}, v2[3] = {0, 0, 2};
+        params_add_numbers(p, here, PARAM_VECTOR3, "v1", v1, 3, NULL);
+        params_add_numbers(p, here, PARAM_VECTOR3, "v2", v2, 3, NULL);
+        with_number(with_number(p, "udelta", 0.2f), "vdelta", -0.1f);
+        assert_close((double)number_of(p, &hit), naive(x + 0.5 * y + 0.2, 2 * z - 0.1));
+    }
+}
+
+/* Beyond an edge the octahedral sphere goes on at the edge's mirror image. */
+static void test_octahedral_wrap(void)
+{
+    for (int i = 0; i < 10; i++) {
+        float a = ((float)i + 0.5f) / 10;
+        const vec2 outside[4] = {{-0.1f, a}, {1.1f, a}, {a, -0.1f}, {a, 1.1f}};
+        const vec2 inside[4] = {
+            {0.1f, 1 - a}, {0.9f, 1 - a}, {1 - a, 0.1f}, {1 - a, 0.9f}};
+        for (int k = 0; k < 4; k++) {
+            params *p = with_word(list(colour_path), "wrap", "octahedralsphere");
+            params *q = with_word(list(colour_path), "wrap", "octahedralsphere");
+            assert_close((double)number_at(p, outside[k].x, outside[k].y),
+                         (double)number_at(q, inside[k].x, inside[k].y));
+        }
+    }
+}
+
+/* A wide look sees the mean; a narrow one, and one of unknown width, the image itself. */
+static void test_trilinear(void)
+{
+    static const char *const filters[] = {"trilinear", "EWA", "ewa"};
+    surface_hit hit = {.dpdu = {1, 0, 0, 0}, .dpdv = {0, 1, 0, 0}, .uv = {0.3f, 0.6f}};
+    static const char *const names[] = {"R", "G", "B"};
+    g_autofree char *path = g_build_filename(folder, "ramp.pfm", NULL);
+    g_autoptr(image) img = image_new(16, 16, 3, names, NULL);
+    for (int i = 0; i < 16 * 16 * 3; i++)
+        img->pixels[i] = (float)(i / 3 % 2);
+    g_assert_true(image_write(img, path, NULL, NULL));
+    for (int i = 0; i < 3; i++) {
+        const float widths[4] = {0, 1e-4f, 1, 30};
+        float found[4];
+        for (int k = 0; k < 4; k++) {
+            hit.footprint = widths[k];
+            found[k] = number_of(with_word(list(path), "filter", filters[i]), &hit);
+        }
+        assert_close((double)found[0], (double)number_at(list(path), 0.3f, 0.6f));
+        assert_close((double)found[1], (double)found[0]);
+        assert_close((double)found[2], 0.5);
+        assert_close((double)found[3], 0.5);
+        hit.footprint = 1.0f / 32; /* half a texel: between the image and the next */
+        hit.footprint *= 1.5f;
+        float between = number_of(with_word(list(path), "filter", filters[i]), &hit);
+        g_assert_cmpfloat(fabsf(between - 0.5f), <, fabsf(found[0] - 0.5f));
+        g_assert_cmpfloat(fabsf(between - 0.5f), >, 0.0f);
+    }
+    g_unlink(path);
 }
 
 int main(int argc, char **argv)
@@ -234,6 +327,9 @@ int main(int argc, char **argv)
     g_test_add_func("/texture/orientation", test_orientation);
     g_test_add_func("/texture/parameters-act", test_parameters_act);
     g_test_add_func("/texture/wrap", test_wrap);
+    g_test_add_func("/texture/mappings", test_mappings);
+    g_test_add_func("/texture/octahedral", test_octahedral_wrap);
+    g_test_add_func("/texture/trilinear", test_trilinear);
     g_test_add_func("/texture/alpha", test_alpha);
     g_test_add_func("/texture/spectra", test_spectra);
     g_test_add_func("/texture/encoding", test_encoding);

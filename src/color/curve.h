@@ -90,3 +90,8 @@ void smooth_from_rgb(const color_space *space, const float rgb[3], float coeffic
 /** @brief The smooth (sigmoid of a quadratic) curve at the eight wavelengths, in [0, 1].
  */
 spectrum smooth_eval(const float coefficients[3], const wavelengths *w);
+/** @brief An RGB triple (components >= 0) by role at the eight wavelengths: what
+ * curve_eval gives of curve_rgb, up to the table's accuracy, without making a curve. An
+ * albedo's components above one count as one. Thread-safe. */
+spectrum rgb_eval(const color_space *space, const float rgb[3], curve_role role,
+                  const wavelengths *w);

@@ -245,6 +245,7 @@ static bool read_param(pbrt_parser *parser, params *p)
 params *pbrt_read_params(pbrt_parser *parser, source_place place)
 {
     g_autoptr(params) p = params_new(place, parser->base_directory, parser->state.space);
+    p->to_world = parser->state.ctm;
     while (lexer_peek(parser->words).kind == TOKEN_STRING)
         if (!read_param(parser, p))
             return NULL;

@@ -210,6 +210,8 @@ bool accel_intersect(const accel *a, const ray *r, surface_hit *hit)
     hit->time = r->time;
     hit->shape = (int)query.hit.geomID;
     hit->primitive = query.hit.primID;
+    hit->dpdv = (vec3){0};
+    hit->footprint = 0.0f;
     s->kind->fill_hit(s->self, r, query.hit.u, query.hit.v, hit);
     return true;
 }

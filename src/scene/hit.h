@@ -29,11 +29,14 @@ typedef struct surface_hit {
     vec3 n_geom; /**< true normal of the surface */
     vec3 n;      /**< shading normal */
     vec3 dpdu;   /**< tangent of the parametrisation, not unit */
+    vec3 dpdv;   /**< the other one; zero where a shape does not tell */
     vec2 uv;
     float t;     /**< distance along the ray */
     float error; /**< m: how far off the surface rounding may see a ray that starts at p
                     (large triangles near the origin); 0: the coordinates of p tell */
     float time;
+    float footprint;    /**< m: how wide the eye sees at once there; 0 for photons and
+                           where it is not known */
     int shape;          /**< index in scene->shapes */
     uint32_t primitive; /**< triangle of a mesh, else 0 */
     int material; /**< index in scene->materials, or NO_INDEX: an invisible interface */

@@ -10,15 +10,16 @@
 #include <glib.h>
 #include <string.h>
 
-static const light_kind *const kinds[] = {&point_light_kind, &spot_light_kind,
-                                          &distant_light_kind, &infinite_light_kind,
-                                          &area_light_kind};
+static const light_kind *const kinds[] = {&point_light_kind,    &spot_light_kind,
+                                          &distant_light_kind,  &image_sky_kind,
+                                          &infinite_light_kind, &area_light_kind};
 
-static const light_kind *find_kind(const char *name, bool on_shape)
+static const light_kind *find_kind(const char *name, const params *p, bool on_shape)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {
         bool is_area = kinds[i] == &area_light_kind;
-        if (is_area == on_shape && strcmp(kinds[i]->name, name) == 0)
+        if (is_area == on_shape && strcmp(kinds[i]->name, name) == 0 &&
+            (!kinds[i]->is_meant || kinds[i]->is_meant(p)))
             return kinds[i];
     }
     return NULL;
@@ -42,7 +43,7 @@ static char *read_group(const params *p, GError **error)
 light *light_new(const struct scene *s, const char *name, const params *p,
                  const transform *to_world, const shape *on, GError **error)
 {
-    const light_kind *kind = find_kind(name, on != NULL);
+    const light_kind *kind = find_kind(name, p, on != NULL);
     if (!kind) {
         error_at(error, p->place, "%s \"%s\" is not supported; known %s",
                  on ? "area light" : "light source", name,
@@ -87,13 +88,15 @@ static bool read_scale(const params *p, float *scale, GError **error)
     return false;
 }
 
-bool emitter_init(emitter *e, const params *p, const char *name, GError **error)
+bool emitter_init(emitter *e, const params *p, const char *name, const color_space *space,
+                  GError **error)
 {
     static const float white[3] = {1.0f, 1.0f, 1.0f};
-    const color_space *space = p->space ? p->space : color_space_srgb();
+    if (!space)
+        space = p->space ? p->space : color_space_srgb();
     *e = (emitter){.scale = 1.0f};
     if (!read_scale(p, &e->scale, error) ||
-        !params_curve(p, name, CURVE_EMISSION, &e->spectrum, error))
+        (name && !params_curve(p, name, CURVE_EMISSION, &e->spectrum, error)))
         return false;
     if (!e->spectrum)
         e->spectrum = curve_rgb(space, white, CURVE_EMISSION, error);
@@ -136,6 +139,29 @@ void emitter_clear(emitter *e)
 {
     curve_unref(e->spectrum);
     *e = (emitter){0};
+}
+
+bool light_axes(frame *axes, const transform *to_world, const params *p, GError **error)
+{
+    vec3 a[3];
+    float length[3], off = 0.0f;
+    for (int i = 0; i < 3; i++) {
+        vec3 unit = {0};
+        unit[i] = 1.0f;
+        a[i] = transform_vector(to_world, unit);
+        length[i] = length3(a[i]);
+        a[i] = normalize3(a[i]);
+    }
+    for (int i = 0; i < 3; i++) {
+        off = maxf(off, fabsf(dot3(a[i], a[(i + 1) % 3])));
+        off = maxf(off, fabsf(length[i] / length[0] - 1.0f));
+    }
+    *axes = (frame){a[0], a[1], a[2]};
+    if (off < 1e-3f)
+        return true;
+    error_at(error, p->place,
+             "this light needs a transform that keeps angles: it is stretched or skewed");
+    return false;
 }
 
 bool light_refuse(const params *p, const char *name, const char *what, GError **error)

@@ -39,7 +39,10 @@ typedef struct light_sample {
 } light_sample;
 
 typedef struct light_kind {
-    const char *name;    /**< "point", "spot", "distant", "infinite", "diffuse" (area) */
+    const char *name; /**< "point", "spot", "distant", "infinite", "diffuse" (area) */
+    /** Tells kinds of one name apart by their parameters, none of which it marks used;
+     * NULL: always meant. The first in the table that is meant is made. */
+    bool (*is_meant)(const params *p);
     bool is_delta;       /**< no camera ray can hit it: point, spot, distant */
     bool is_environment; /**< shines from beyond the scene */
     bool is_parallel;    /**< emit_toward is given a direction and leaves the place across

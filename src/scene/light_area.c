@@ -35,7 +35,7 @@ static void *create(const struct scene *s, const params *p, const transform *to_
         error_at(error, on->place, "a shape that shines must have an area");
     else if (light_refuse(p, "filename", "an area light", error) &&
              params_bool(p, "twosided", &l->two_sided, error) &&
-             emitter_init(&l->radiance, p, "L", error) &&
+             emitter_init(&l->radiance, p, "L", NULL, error) &&
              emitter_set_total(&l->radiance, p, "power", exitance(l), error))
         return l;
     free_area(l);

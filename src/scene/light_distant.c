@@ -36,7 +36,7 @@ static void *create(const struct scene *s, const params *p, const transform *to_
     (void)s, (void)on;
     distant_light *l = g_new0(distant_light, 1);
     if (read_direction(l, p, to_world, error) &&
-        emitter_init(&l->irradiance, p, "L", error) &&
+        emitter_init(&l->irradiance, p, "L", NULL, error) &&
         emitter_set_total(&l->irradiance, p, "illuminance", 1.0f, error))
         return l;
     free_distant(l);

@@ -24,9 +24,8 @@ static void *create(const struct scene *s, const params *p, const transform *to_
 {
     (void)s, (void)to_world, (void)on;
     infinite_light *l = g_new0(infinite_light, 1);
-    if (light_refuse(p, "filename", "an infinite light", error) &&
-        light_refuse(p, "portal", "an infinite light", error) &&
-        emitter_init(&l->radiance, p, "L", error) &&
+    if (light_refuse(p, "portal", "an infinite light", error) &&
+        emitter_init(&l->radiance, p, "L", NULL, error) &&
         emitter_set_total(&l->radiance, p, "illuminance", PI_F, error))
         return l;
     free_infinite(l);

@@ -10,6 +10,7 @@ extern const light_kind point_light_kind;
 extern const light_kind spot_light_kind;
 extern const light_kind distant_light_kind;
 extern const light_kind infinite_light_kind;
+extern const light_kind image_sky_kind;
 extern const light_kind area_light_kind;
 
 /**
@@ -22,14 +23,34 @@ typedef struct emitter {
     float scale;
 } emitter;
 
-/** @brief Reads the spectrum `name` (default: the colour space's white) and "scale". */
-bool emitter_init(emitter *e, const params *p, const char *name, GError **error);
+/** @brief Reads the spectrum `name` and "scale".
+ *  @param name NULL: there is none to read
+ *  @param space whose white it is without one; NULL: that of the parameters */
+bool emitter_init(emitter *e, const params *p, const char *name, const color_space *space,
+                  GError **error);
 /** @brief Reads `name` ("power", "illuminance"), which if given rescales such that the
  * emitter's Y times k_e is that number. */
 bool emitter_set_total(emitter *e, const params *p, const char *name, float k_e,
                        GError **error);
 spectrum emitter_eval(const emitter *e, const wavelengths *w);
 void emitter_clear(emitter *e);
+
+/* 380, 380 + 340/71, ... 720 nm: whole vectors of wavelengths. */
+enum { EMISSION_SUM_N = 72 };
+
+/** @brief A sum of emitters of RGB colours; {0} is none. */
+typedef struct emission_sum {
+    double values[EMISSION_SUM_N];
+} emission_sum;
+
+void emission_sum_add(emission_sum *sum, const color_space *space, const float rgb[3],
+                      double weight);
+/** @brief The sum as a spectrum, times scale. Owned by the caller. */
+curve *emission_sum_curve(const emission_sum *sum, float scale);
+
+/** @brief The world directions of a light's own axes, unit; a mirrored space is
+ * left-handed. @return false with ERROR_INPUT if the transform stretches directions. */
+bool light_axes(frame *axes, const transform *to_world, const params *p, GError **error);
 
 /** @brief false with ERROR_INPUT at the parameter's place if it is given. */
 bool light_refuse(const params *p, const char *name, const char *what, GError **error);

@@ -25,7 +25,7 @@ static void *create(const struct scene *s, const params *p, const transform *to_
     point_light *l = g_new0(point_light, 1);
     vec3 from = {0};
     if (params_point3(p, "from", &from, error) &&
-        emitter_init(&l->intensity, p, "I", error) &&
+        emitter_init(&l->intensity, p, "I", NULL, error) &&
         emitter_set_total(&l->intensity, p, "power", all_around, error)) {
         l->p = transform_point(to_world, from);
         return l;

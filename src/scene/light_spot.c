@@ -76,7 +76,7 @@ static void *create(const struct scene *s, const params *p, const transform *to_
     (void)s, (void)on;
     spot_light *l = g_new0(spot_light, 1);
     if (read_cone(l, p, error) && read_axis(l, p, to_world, error) &&
-        emitter_init(&l->intensity, p, "I", error) &&
+        emitter_init(&l->intensity, p, "I", NULL, error) &&
         emitter_set_total(&l->intensity, p, "power", l->solid_angle, error))
         return l;
     free_spot(l);

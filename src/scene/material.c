@@ -23,32 +23,17 @@ static const material_kind *find_kind(const char *name, const params *p, GError 
     return NULL;
 }
 
-/* What pbrt allows of every material and is not there yet. */
-static bool check_unsupported(const params *p, GError **error)
-{
-    static const char *const names[] = {"displacement", "normalmap"};
-    for (size_t i = 0; i < G_N_ELEMENTS(names); i++)
-        if (params_has(p, names[i])) {
-            error_at(error, params_find(p, names[i])->place,
-                     "parameter '%s' of a material is not supported yet", names[i]);
-            return false;
-        }
-    return true;
-}
-
 material *material_new(const struct scene *s, const char *kind, const params *p,
                        GError **error)
 {
     const material_kind *k = find_kind(kind, p, error);
-    if (!k || !check_unsupported(p, error))
-        return NULL;
-    void *self = k->create(s, p, error);
+    void *self = k ? k->create(s, p, error) : NULL;
     if (!self)
         return NULL;
     material *m = g_new0(material, 1);
     *m = (material){.kind = k, .self = self};
     g_autofree char *what = g_strdup_printf("material '%s'", kind);
-    if (!params_all_used(p, what, error)) {
+    if (!bump_new(&m->bump, s, p, error) || !params_all_used(p, what, error)) {
         material_free(m);
         return NULL;
     }
@@ -60,6 +45,7 @@ void material_free(material *m)
     if (!m)
         return;
     m->kind->free(m->self);
+    bump_free(m->bump);
     g_free(m->name);
     g_free(m);
 }
@@ -67,7 +53,8 @@ void material_free(material *m)
 void material_bsdf(const material *m, const surface_hit *hit, const wavelengths *w,
                    int lane, const bsdf_options *options, bsdf *out)
 {
-    out->shading = frame_from_tangent(hit->n, hit->dpdu);
+    out->shading =
+        m->bump ? bump_frame(m->bump, hit) : frame_from_tangent(hit->n, hit->dpdu);
     out->n_geom = hit->n_geom;
     out->lane = lane;
     m->kind->make_bsdf(m->self, hit, w, options, out);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "scene/bsdf.h"
+#include "scene/material_bump.h"
 #include "scene/params.h"
 #include "scene/texture.h"
 
@@ -33,6 +34,7 @@ typedef struct material_kind {
 typedef struct material {
     const material_kind *kind;
     void *self;
+    bump *bump; /**< what bends its normals; NULL: nothing */
     char *name; /**< from MakeNamedMaterial; NULL if none */
 } material;
 

@@ -340,15 +340,20 @@ static vec2 interpolate_uv(const vec2 uv[3], const float b[3])
                   b[0] * uv[0].y + b[1] * uv[1].y + b[2] * uv[2].y};
 }
 
-/* dp/du from two edges and their differences in uv; zero if uv does not tell. */
-static vec3 tangent_of(const corners *c, const vec2 uv[3])
+/* dp/du and dp/dv from two edges and their differences in uv; zero if uv does not tell.
+ */
+static vec3 tangents_of(const corners *c, const vec2 uv[3], vec3 *dpdv)
 {
     float du1 = uv[1].x - uv[0].x, dv1 = uv[1].y - uv[0].y;
     float du2 = uv[2].x - uv[0].x, dv2 = uv[2].y - uv[0].y;
     float determinant = du1 * dv2 - dv1 * du2;
-    vec3 along = dv2 * (c->p[1] - c->p[0]) - dv1 * (c->p[2] - c->p[0]);
-    vec3 dpdu = along / determinant;
-    return finite3(dpdu) ? dpdu : (vec3){0};
+    vec3 e1 = c->p[1] - c->p[0], e2 = c->p[2] - c->p[0];
+    vec3 dpdu = (dv2 * e1 - dv1 * e2) / determinant;
+    *dpdv = (du1 * e2 - du2 * e1) / determinant;
+    if (finite3(dpdu) && finite3(*dpdv))
+        return dpdu;
+    *dpdv = (vec3){0};
+    return (vec3){0};
 }
 
 /* With v the vertices relative to p, D their largest coordinates and N = e1 x e2, the
@@ -376,7 +381,9 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     hit->p = point_of(&c, b);
     hit->n_geom = normal_of(s, &c, plane, b, &hit->n);
     hit->uv = interpolate_uv(uv, b);
-    hit->dpdu = s->m.tangents ? interpolate3(s->m.tangents, &c, b) : tangent_of(&c, uv);
+    hit->dpdu = tangents_of(&c, uv, &hit->dpdv);
+    if (s->m.tangents)
+        hit->dpdu = interpolate3(s->m.tangents, &c, b);
     if (!(length3_2(hit->dpdu) > 0.0f))
         hit->dpdu = frame_from_normal(hit->n).s;
     hit->error = rounding_error(&c, hit->p, plane);

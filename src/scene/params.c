@@ -45,6 +45,7 @@ params *params_new(source_place place, const char *base_directory,
     p->place = place;
     p->base_directory = g_intern_string(base_directory);
     p->space = space;
+    p->to_world = transform_identity();
     return p;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "color/curve.h"
+#include "math/transform.h"
 #include "math/vec.h"
 
 typedef enum param_type {
@@ -44,6 +45,8 @@ typedef struct params {
     source_place place;         /**< of the directive */
     const char *base_directory; /**< interned; relative file names are relative to it */
     const color_space *space;
+    transform to_world; /**< from the space that the directive stands in; identity unless
+                           the reader says otherwise */
 } params;
 
 params *params_new(source_place place, const char *base_directory,

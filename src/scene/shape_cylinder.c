@@ -41,8 +41,8 @@ static void *create(const params *p, const shape_place *at, GError **error)
         return NULL;
     }
     cylinder *c = g_new(cylinder, 1);
-    *c = (cylinder){q, (double)radius, (double)minf(z[0], z[1]),
-                    (double)maxf(z[0], z[1])};
+    *c =
+        (cylinder){q, (double)radius, (double)minf(z[0], z[1]), (double)maxf(z[0], z[1])};
     double area = q.phi_max * c->radius * (c->z_max - c->z_min);
     if (quadric_set_area(&c->q, map_cylinder, area, p, error))
         return c;
@@ -89,7 +89,8 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     double onto = c->radius / sqrt(p[0] * p[0] + p[1] * p[1]);
     quadric_point at = at_angle(c, p[0] * onto, p[1] * onto, p[2]);
     double dpdu[3] = {-c->q.phi_max * at.p[1], c->q.phi_max * at.p[0], 0.0};
-    quadric_fill_hit(&c->q, &at, dpdu, hit);
+    const double dpdv[3] = {0.0, 0.0, c->z_max - c->z_min};
+    quadric_fill_hit(&c->q, &at, dpdu, dpdv, hit);
 }
 
 const shape_kind cylinder_kind = {

@@ -94,7 +94,10 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     quadric_point at =
         at_xy(d, object.o[0] + t * object.d[0], object.o[1] + t * object.d[1]);
     double dpdu[3] = {-d->q.phi_max * at.p[1], d->q.phi_max * at.p[0], 0.0};
-    quadric_fill_hit(&d->q, &at, dpdu, hit);
+    double rho = hypot(at.p[0], at.p[1]),
+           slope = rho > 0.0 ? (d->inner - d->radius) / rho : 0.0;
+    const double dpdv[3] = {slope * at.p[0], slope * at.p[1], 0.0};
+    quadric_fill_hit(&d->q, &at, dpdu, dpdv, hit);
 }
 
 const shape_kind disk_kind = {

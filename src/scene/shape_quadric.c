@@ -135,14 +135,21 @@ static vec3 normal_to_world(const quadric *q, const double n[3])
                      (float)(out[2] * scale));
 }
 
+static vec3 vector_to_world(const quadric *q, const double v[3])
+{
+    vec3 out = {0};
+    for (int i = 0; i < 3; i++)
+        out[i] = (float)dot_double(q->to_world.m[i], v, 3);
+    return out;
+}
+
 void quadric_fill_hit(const quadric *q, const quadric_point *at, const double dpdu[3],
-                      surface_hit *hit)
+                      const double dpdv[3], surface_hit *hit)
 {
     hit->p = point_to_world(q, at->p);
     hit->n = hit->n_geom = normal_to_world(q, at->n);
-    for (int i = 0; i < 3; i++)
-        hit->dpdu[i] = (float)dot_double(q->to_world.m[i], dpdu, 3);
-    hit->dpdu[3] = 0.0f;
+    hit->dpdu = vector_to_world(q, dpdu);
+    hit->dpdv = vector_to_world(q, dpdv);
     hit->uv = at->uv;
     hit->error = 0.0f;
 }

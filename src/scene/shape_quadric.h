@@ -46,10 +46,10 @@ bool quadric_set_area(quadric *q, quadric_map map, double object_area, const par
                       GError **error);
 
 quadric_ray quadric_to_object(const quadric *q, const ray *r);
-/** @brief Puts a point of the surface into the world: p, n_geom, n, uv; dpdu given in
- * object space. */
+/** @brief Puts a point of the surface into the world: p, n_geom, n, uv; dpdu and dpdv
+ * given in object space. */
 void quadric_fill_hit(const quadric *q, const quadric_point *at, const double dpdu[3],
-                      surface_hit *hit);
+                      const double dpdv[3], surface_hit *hit);
 /** @brief The angle of (x, y) in 0..2 pi. */
 double quadric_phi(const double p[3]);
 /** @brief World bounds of a box in object space, rounded outward. */

@@ -135,7 +135,10 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
         p[i] *= onto;
     quadric_point at = at_angles(s, p);
     double dpdu[3] = {-s->q.phi_max * p[1], s->q.phi_max * p[0], 0.0};
-    quadric_fill_hit(&s->q, &at, dpdu, hit);
+    double rho = hypot(p[0], p[1]), along = s->theta_max - s->theta_min;
+    double slope = rho > 0.0 ? along * p[2] / rho : 0.0;
+    const double dpdv[3] = {slope * p[0], slope * p[1], -along * rho};
+    quadric_fill_hit(&s->q, &at, dpdu, dpdv, hit);
 }
 
 /* The cone in which ref sees the sphere; false if ref is inside or too near to tell, or
