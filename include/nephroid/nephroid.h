@@ -9,7 +9,9 @@
  * or NULL and sets GError **error (domain NEPH_ERROR_DOMAIN, codes NephError); messages
  * about input begin with file:line:column. The library never exits and never prints.
  * Calls on different objects may come from different threads; calls on one object from
- * one thread at a time, except neph_render_cancel, which may come from any.
+ * one thread at a time, except neph_render_cancel, which may come from any. A scene may
+ * be read (const NephScene *) by many at once, also while it renders; what changes its
+ * size or camera waits until nothing renders it.
  */
 #ifndef NEPHROID_H
 #define NEPHROID_H
@@ -112,6 +114,50 @@ NEPH_API const char *neph_scene_output(const NephScene *scene);
 /** @brief What is in the scene, for people (json false) or programs. Owned by caller. */
 NEPH_API char *neph_scene_describe(const NephScene *scene, bool json);
 
+/* ---- Where a scene is seen from ---- */
+
+/** @brief A view: a plain value, taken from a scene, changed and given back. World
+ * coordinates; metres and degrees. */
+typedef struct NephCamera {
+    double position[3];
+    double direction[3];   /**< unit, into the picture */
+    double up[3];          /**< unit, perpendicular to direction */
+    bool mirrored;         /**< left and right exchanged, as "Scale -1 1 1" does */
+    double fov;            /**< across the shorter side, 0 < fov < 180 */
+    double screen[4];      /**< what the picture shows at distance 1: left, right, bottom,
+                              top; follows from fov and the picture's shape */
+    double lens_radius;    /**< 0: everything is sharp */
+    double focal_distance; /**< sharp at this distance along direction */
+} NephCamera;
+
+/** @brief The present view. */
+NEPH_API void neph_scene_camera(const NephScene *scene, NephCamera *out);
+/** @brief Looks from elsewhere; while nothing renders the scene. Everything but screen is
+ * taken over; NEPH_ERROR_USAGE if it is no view (not finite, direction zero or parallel
+ * to up, fov or lens out of range), and the scene is as it was. */
+NEPH_API bool neph_scene_set_camera(NephScene *scene, const NephCamera *camera,
+                                    GError **error);
+/** @brief Changes fov and with it screen. */
+NEPH_API void neph_camera_set_fov(NephCamera *camera, double degrees);
+/** @brief What the middle of the lens sees at a place of the picture: x to the right and
+ * y down, both 0..1. direction is unit. */
+NEPH_API void neph_camera_ray(const NephCamera *camera, double x, double y,
+                              double origin[3], double direction[3]);
+/** @brief Where a point is in the picture, as above, also outside of it; false if it is
+ * behind the camera. */
+NEPH_API bool neph_camera_project(const NephCamera *camera, const double point[3],
+                                  double *x, double *y);
+/** @brief The view as pbrt directives: LookAt, after Scale if mirrored, and Camera. Owned
+ * by caller. */
+NEPH_API char *neph_camera_text(const NephCamera *camera);
+/** @brief Writes the view into a scene file: where its LookAt or Camera stands, the rest
+ * as it was. The file is replaced only when whole. */
+NEPH_API bool neph_camera_save(const NephCamera *camera, const char *scene_path,
+                               GError **error);
+
+/** @brief The box around all shapes; false if there are none. */
+NEPH_API bool neph_scene_bounds(const NephScene *scene, double low[3], double high[3]);
+
 /* ---- Images ---- */
 
 typedef struct NephImage NephImage;
@@ -198,6 +244,9 @@ NEPH_API void neph_render_cancel(NephRender *render);
 /** @brief The mean of the passes so far, with layers; owned by the caller. */
 NEPH_API NephImage *neph_render_image(const NephRender *render, GError **error);
 NEPH_API void neph_render_statistics(const NephRender *render, NephStatistics *out);
+/** @brief The relative error of the image, as in NephStatistics, found now: also from the
+ * progress function of a render that is not asked to keep it. */
+NEPH_API double neph_render_noise(const NephRender *render);
 /** @brief Statistics as JSON (json true) or a table for people; owned by caller. */
 NEPH_API char *neph_statistics_text(const NephStatistics *statistics, bool json);
 

@@ -87,3 +87,8 @@ void neph_render_statistics(const NephRender *r, NephStatistics *out)
     const render_statistics now = render_get_statistics(r->render);
     *out = statistics_export(&now);
 }
+
+double neph_render_noise(const NephRender *r)
+{
+    return render_noise(r->render);
+}

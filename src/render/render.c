@@ -403,3 +403,8 @@ render_statistics render_get_statistics(const render *r)
 {
     return r->statistics;
 }
+
+double render_noise(const render *r)
+{
+    return film_noise(&r->film);
+}

@@ -53,3 +53,5 @@ void render_cancel(render *r);
  * what was done of the first. Owned by the caller. */
 image *render_image(const render *r, GError **error);
 render_statistics render_get_statistics(const render *r);
+/** @brief film_noise of the passes done. */
+double render_noise(const render *r);

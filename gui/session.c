@@ -1,0 +1,513 @@
+#include "session.h"
+
+#include "preview.h"
+
+#include <math.h>
+#include <sys/resource.h>
+
+/* A quick look while the view moves takes about this long, s; those that follow when it
+   stands still, until the first pass is done. */
+#define LOOK_MOVING 0.06
+static const double looks_still[] = {0.25, 1.0};
+
+/* Shares of its time that a render may spend on handing pictures over. */
+#define SNAPSHOT_SHARE 0.1
+
+/* What the window wants. `version` grows with each change of what is to be rendered. */
+typedef struct session_order {
+    guint version;
+    char *path; /* to be loaded; NULL: done */
+    NephSettings *settings;
+    NephCamera camera;
+    int width, height;
+    bool playing, moving;
+    bool keep; /* the changes not yet taken up leave what is rendered as it is */
+    bool quit;
+} session_order;
+
+struct session {
+    GThread *thread;
+    GMainContext *context;
+    session_listener listener; /* NULL once closed; main thread only */
+    void *listener_data;
+
+    GMutex lock; /* guards what follows, up to the next comment */
+    GCond wake;
+    session_order wanted;
+    NephRender *running;    /* to be cancelled */
+    NephSettings *rendered; /* what the render was given; NULL: none yet */
+    session_news news;      /* owned fields */
+    GError *news_error;
+    bool news_pending; /* an idle source is on its way */
+
+    /* The worker's own. */
+    session_order order; /* its copy of wanted */
+    held_scene *scene;
+    NephRender *render; /* of order.version; NULL: to be made */
+    double extent;      /* of the scene, m */
+    preview_pace pace;
+    bool look_was_whole; /* the last quick look had as many pixels as the picture */
+    int64_t passes_shown;
+    double last_snapshot, snapshot_cost; /* s */
+    bool complete, failed;
+};
+
+static double seconds(void)
+{
+    return (double)g_get_monotonic_time() * 1e-6;
+}
+
+/* ---- News ---- */
+
+static void clear_news(session_news *news)
+{
+    g_clear_pointer(&news->loaded, held_scene_unref);
+    g_clear_pointer(&news->picture, held_picture_unref);
+}
+
+static void session_unref(session *s);
+
+static gboolean tell_news(void *data)
+{
+    session *s = data;
+    g_mutex_lock(&s->lock);
+    session_news news = s->news;
+    GError *error = g_steal_pointer(&s->news_error);
+    s->news.loaded = NULL;
+    s->news.picture = NULL;
+    s->news_pending = false;
+    g_mutex_unlock(&s->lock);
+    news.error = error;
+    if (s->listener)
+        s->listener(&news, s->listener_data);
+    clear_news(&news);
+    g_clear_error(&error);
+    return G_SOURCE_REMOVE;
+}
+
+static void free_session(void *data)
+{
+    session *s = data;
+    clear_news(&s->news);
+    g_clear_error(&s->news_error);
+    g_free(s->wanted.path);
+    neph_settings_free(s->wanted.settings);
+    neph_settings_free(s->order.settings);
+    neph_settings_free(s->rendered);
+    held_scene_unref(s->scene);
+    g_mutex_clear(&s->lock);
+    g_cond_clear(&s->wake);
+    g_main_context_unref(s->context);
+}
+
+static void session_unref(session *s)
+{
+    g_atomic_rc_box_release_full(s, free_session);
+}
+
+/* With the lock held. */
+static void send_news(session *s)
+{
+    if (s->news_pending)
+        return;
+    s->news_pending = true;
+    g_autoptr(GSource) idle = g_idle_source_new();
+    g_source_set_priority(idle, G_PRIORITY_DEFAULT);
+    g_source_set_callback(idle, tell_news, g_atomic_rc_box_acquire(s),
+                          (GDestroyNotify)session_unref);
+    g_source_attach(idle, s->context);
+}
+
+static void tell_state(session *s, session_state state)
+{
+    g_mutex_lock(&s->lock);
+    s->news.state = state;
+    send_news(s);
+    g_mutex_unlock(&s->lock);
+}
+
+/* Takes the error. */
+static void tell_error(session *s, GError *error, bool of_load)
+{
+    g_mutex_lock(&s->lock);
+    g_clear_error(&s->news_error);
+    s->news_error = error;
+    s->news.error_of_load = of_load;
+    send_news(s);
+    g_mutex_unlock(&s->lock);
+}
+
+/* Takes the image. */
+static void tell_picture(session *s, NephImage *image, bool coarse)
+{
+    held_picture *picture =
+        held_picture_new(image, s->order.width, s->order.height, coarse);
+    g_mutex_lock(&s->lock);
+    held_picture_unref(s->news.picture);
+    s->news.picture = picture;
+    send_news(s);
+    g_mutex_unlock(&s->lock);
+}
+
+static void tell_progress(session *s, double fraction, const NephStatistics *statistics)
+{
+    g_mutex_lock(&s->lock);
+    s->news.fraction = fraction;
+    s->news.statistics = *statistics;
+    send_news(s);
+    g_mutex_unlock(&s->lock);
+}
+
+/* ---- Rendering, on the worker ---- */
+
+/* True if the window has thought of something else. With the lock held. A quick look on
+   the way is worth its end: the next view will be the latest then. */
+static bool outdated(const session *s)
+{
+    const session_order *wanted = &s->wanted;
+    bool on_the_way = s->order.moving && wanted->moving && !wanted->quit && !wanted->path;
+    return wanted->version != s->order.version && !on_the_way;
+}
+
+static void set_running(session *s, NephRender *render)
+{
+    g_mutex_lock(&s->lock);
+    s->running = render;
+    if (render && outdated(s))
+        neph_render_cancel(render);
+    g_mutex_unlock(&s->lock);
+}
+
+static bool is_outdated(session *s)
+{
+    g_mutex_lock(&s->lock);
+    bool is = outdated(s);
+    g_mutex_unlock(&s->lock);
+    return is;
+}
+
+static bool go_on(double fraction, const NephStatistics *statistics, void *data)
+{
+    (void)fraction, (void)statistics;
+    return !is_outdated(data);
+}
+
+/* A small picture with few photons. @return false if it failed or was cancelled. */
+static bool quick_look(session *s, double allowed)
+{
+    const int whole[2] = {s->order.width, s->order.height};
+    int size[2];
+    double start = seconds();
+    preview_size(&s->pace, allowed, whole, size);
+    s->look_was_whole = size[0] == whole[0] && size[1] == whole[1];
+    g_autoptr(NephSettings) settings = preview_settings(s->order.settings, s->extent);
+    neph_scene_resize(s->scene->scene, size[0], size[1], NULL);
+    g_autoptr(NephRender) render = neph_render_new(s->scene->scene, settings, NULL);
+    NephImage *image = NULL;
+    if (render) {
+        set_running(s, render);
+        if (neph_render_run(render, go_on, s, NULL))
+            image = neph_render_image(render, NULL);
+        set_running(s, NULL);
+    }
+    if (image) {
+        preview_note(&s->pace, size, seconds() - start);
+        tell_picture(s, image, true);
+    }
+    return image != NULL;
+}
+
+static void show_picture(session *s)
+{
+    double start = seconds();
+    NephImage *image = neph_render_image(s->render, NULL);
+    if (image)
+        tell_picture(s, image, false);
+    s->last_snapshot = seconds();
+    s->snapshot_cost = s->last_snapshot - start;
+}
+
+/* Pictures are handed over as often as they are cheap beside the passes. */
+static bool on_progress(double fraction, const NephStatistics *statistics, void *data)
+{
+    session *s = data;
+    bool newer = statistics->passes > s->passes_shown;
+    bool cheap = SNAPSHOT_SHARE * (seconds() - s->last_snapshot) > s->snapshot_cost;
+    NephStatistics now = *statistics;
+    if (newer && (cheap || s->passes_shown == 0)) {
+        s->passes_shown = statistics->passes;
+        show_picture(s);
+    }
+    now.noise = statistics->passes > 1 ? neph_render_noise(s->render) : (double)INFINITY;
+    tell_progress(s, fraction, &now);
+    return !is_outdated(s);
+}
+
+static bool begin_render(session *s, GError **error)
+{
+    s->passes_shown = 0;
+    s->last_snapshot = s->snapshot_cost = 0.0;
+    s->complete = false;
+    bool going = quick_look(s, LOOK_MOVING);
+    for (size_t i = 0; i < G_N_ELEMENTS(looks_still) && going; i++)
+        going = !s->look_was_whole && quick_look(s, looks_still[i]);
+    neph_scene_resize(s->scene->scene, s->order.width, s->order.height, NULL);
+    s->render = neph_render_new(s->scene->scene, s->order.settings, error);
+    g_mutex_lock(&s->lock);
+    neph_settings_free(s->rendered);
+    s->rendered = neph_settings_copy(s->order.settings);
+    g_mutex_unlock(&s->lock);
+    return s->render != NULL;
+}
+
+static void run(session *s)
+{
+    g_autoptr(GError) error = NULL;
+    NephStatistics statistics;
+    tell_state(s, SESSION_RENDERING);
+    bool ok = s->render || begin_render(s, &error);
+    if (ok) {
+        set_running(s, s->render);
+        ok = neph_render_run(s->render, on_progress, s, &error);
+        set_running(s, NULL);
+        neph_render_statistics(s->render, &statistics);
+        if (ok || statistics.passes > s->passes_shown)
+            show_picture(s);
+        tell_progress(s, ok ? 1.0 : s->news.fraction, &statistics);
+    }
+    s->complete = ok;
+    s->failed = error && !g_error_matches(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
+    if (s->failed)
+        tell_error(s, g_steal_pointer(&error), false);
+    if (s->complete || s->failed)
+        tell_state(s, SESSION_DONE);
+}
+
+/* ---- Loading ---- */
+
+static void measure(session *s)
+{
+    double low[3], high[3], sum = 0.0;
+    s->extent = 0.0;
+    if (!neph_scene_bounds(s->scene->scene, low, high))
+        return;
+    for (int i = 0; i < 3; i++)
+        sum += (high[i] - low[i]) * (high[i] - low[i]);
+    s->extent = sqrt(sum);
+}
+
+/* The order's settings, view and size become those of the scene, unless the window has
+   asked for another scene meanwhile. */
+static void take_over(session *s)
+{
+    NephScene *scene = s->scene->scene;
+    g_mutex_lock(&s->lock);
+    neph_settings_free(s->wanted.settings);
+    s->wanted.settings = neph_scene_settings(scene);
+    s->wanted.width = s->scene->width;
+    s->wanted.height = s->scene->height;
+    s->wanted.camera = s->scene->camera;
+    s->wanted.version++;
+    held_scene_unref(s->news.loaded);
+    s->news.loaded = held_scene_ref(s->scene);
+    send_news(s);
+    g_mutex_unlock(&s->lock);
+}
+
+static void load(session *s, const char *path)
+{
+    g_autoptr(GError) error = NULL;
+    tell_state(s, SESSION_LOADING);
+    NephScene *scene = neph_scene_load(path, 0, NULL, NULL, &error);
+    if (!scene) {
+        tell_state(s, s->scene ? SESSION_STOPPED : SESSION_EMPTY);
+        tell_error(s, g_steal_pointer(&error), true);
+        return;
+    }
+    g_clear_pointer(&s->render, neph_render_free);
+    held_scene_unref(s->scene);
+    s->scene = held_scene_new(scene);
+    s->complete = s->failed = false;
+    s->pace = (preview_pace){0};
+    measure(s);
+    take_over(s);
+}
+
+/* ---- The worker ---- */
+
+static bool has_work(const session *s)
+{
+    if (s->wanted.quit || s->wanted.path || s->wanted.version != s->order.version)
+        return true;
+    return s->scene && s->wanted.playing && !s->wanted.moving && !s->complete &&
+           !s->failed;
+}
+
+/* Waits for work; the order is then the worker's own copy. Returns the path to load, or
+   NULL. */
+static char *next_order(session *s, bool *changed)
+{
+    g_mutex_lock(&s->lock);
+    while (!has_work(s))
+        g_cond_wait(&s->wake, &s->lock);
+    char *path = g_steal_pointer(&s->wanted.path);
+    *changed = s->wanted.version != s->order.version;
+    bool keep = *changed && s->wanted.keep;
+    neph_settings_free(s->order.settings);
+    s->order = s->wanted;
+    s->order.settings =
+        s->wanted.settings ? neph_settings_copy(s->wanted.settings) : NULL;
+    s->wanted.keep = true;
+    g_mutex_unlock(&s->lock);
+    *changed = *changed && !keep;
+    return path;
+}
+
+static void renew(session *s)
+{
+    g_clear_pointer(&s->render, neph_render_free);
+    s->complete = s->failed = false;
+    neph_scene_set_camera(s->scene->scene, &s->order.camera, NULL);
+}
+
+static void *work(void *data)
+{
+    session *s = data;
+    setpriority(PRIO_PROCESS, 0, 5); /* the window comes first */
+    for (;;) {
+        bool changed;
+        g_autofree char *path = next_order(s, &changed);
+        if (s->order.quit)
+            break;
+        if (path)
+            load(s, path);
+        if (!s->scene || path)
+            continue;
+        if (changed)
+            renew(s);
+        if (s->order.moving)
+            quick_look(s, LOOK_MOVING);
+        else if (s->order.playing && !s->complete && !s->failed)
+            run(s);
+        else if (!s->complete && !s->failed)
+            tell_state(s, s->render ? SESSION_PAUSED : SESSION_STOPPED);
+    }
+    g_clear_pointer(&s->render, neph_render_free);
+    return NULL;
+}
+
+/* ---- Orders ---- */
+
+session *session_new(session_listener listener, void *data)
+{
+    session *s = g_atomic_rc_box_new0(session);
+    s->listener = listener;
+    s->listener_data = data;
+    s->context = g_main_context_ref_thread_default();
+    s->wanted.playing = true;
+    s->wanted.keep = true;
+    s->news.statistics.noise = (double)INFINITY;
+    g_mutex_init(&s->lock);
+    g_cond_init(&s->wake);
+    s->thread = g_thread_new("render", work, s);
+    return s;
+}
+
+/* Between lock and unlock, `wanted` is changed. */
+static void order_begin(session *s)
+{
+    g_mutex_lock(&s->lock);
+}
+
+/* anew: what is rendered changes, not only whether. */
+static void order_end(session *s, bool anew)
+{
+    s->wanted.version++;
+    if (anew)
+        s->wanted.keep = false;
+    if (s->running && outdated(s))
+        neph_render_cancel(s->running);
+    g_cond_signal(&s->wake);
+    g_mutex_unlock(&s->lock);
+}
+
+void session_close(session *s)
+{
+    if (!s)
+        return;
+    s->listener = NULL;
+    order_begin(s);
+    s->wanted.quit = true;
+    order_end(s, true);
+    g_thread_join(s->thread);
+    session_unref(s);
+}
+
+void session_load(session *s, const char *path)
+{
+    order_begin(s);
+    g_free(s->wanted.path);
+    s->wanted.path = g_strdup(path);
+    s->wanted.playing = true;
+    s->wanted.moving = false;
+    order_end(s, false);
+}
+
+void session_set_settings(session *s, const NephSettings *settings)
+{
+    order_begin(s);
+    neph_settings_free(s->wanted.settings);
+    s->wanted.settings = neph_settings_copy(settings);
+    order_end(s, true);
+}
+
+NephSettings *session_rendered_settings(session *s)
+{
+    g_mutex_lock(&s->lock);
+    NephSettings *copy = s->rendered ? neph_settings_copy(s->rendered) : NULL;
+    g_mutex_unlock(&s->lock);
+    return copy;
+}
+
+void session_set_camera(session *s, const NephCamera *camera, bool moving)
+{
+    order_begin(s);
+    s->wanted.camera = *camera;
+    s->wanted.moving = moving;
+    order_end(s, true);
+}
+
+void session_set_size(session *s, int width, int height)
+{
+    order_begin(s);
+    s->wanted.width = width;
+    s->wanted.height = height;
+    order_end(s, true);
+}
+
+static void set_playing(session *s, bool playing, bool anew)
+{
+    order_begin(s);
+    s->wanted.playing = playing;
+    order_end(s, anew);
+}
+
+void session_play(session *s)
+{
+    set_playing(s, true, false);
+}
+
+void session_pause(session *s)
+{
+    set_playing(s, false, false);
+}
+
+void session_stop(session *s)
+{
+    set_playing(s, false, true);
+}
+
+void session_restart(session *s)
+{
+    set_playing(s, true, true);
+}

@@ -1,0 +1,153 @@
+#include "widgets.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+void widget_name(GtkWidget *widget, const char *name)
+{
+    gtk_accessible_update_property(GTK_ACCESSIBLE(widget), GTK_ACCESSIBLE_PROPERTY_LABEL,
+                                   name, -1);
+    if (!gtk_widget_get_tooltip_text(widget))
+        gtk_widget_set_tooltip_text(widget, name);
+}
+
+GtkWidget *label_make(const char *text, const char *css_class)
+{
+    GtkWidget *label = gtk_label_new(text);
+    gtk_label_set_xalign(GTK_LABEL(label), 0.0f);
+    if (css_class)
+        gtk_widget_add_css_class(label, css_class);
+    return label;
+}
+
+GtkWidget *icon_button_make(const char *icon, const char *tooltip, const char *action)
+{
+    GtkWidget *button = gtk_button_new_from_icon_name(icon);
+    gtk_actionable_set_action_name(GTK_ACTIONABLE(button), action);
+    widget_name(button, tooltip);
+    return button;
+}
+
+GtkWidget *text_button_make(const char *text, const char *tooltip, const char *action)
+{
+    GtkWidget *button = gtk_button_new_with_label(text);
+    gtk_actionable_set_action_name(GTK_ACTIONABLE(button), action);
+    if (tooltip)
+        gtk_widget_set_tooltip_text(button, tooltip);
+    return button;
+}
+
+GtkWidget *box_make(GtkOrientation orientation, int spacing, int margin)
+{
+    GtkWidget *box = gtk_box_new(orientation, spacing);
+    gtk_widget_set_margin_start(box, margin);
+    gtk_widget_set_margin_end(box, margin);
+    gtk_widget_set_margin_top(box, margin);
+    gtk_widget_set_margin_bottom(box, margin);
+    return box;
+}
+
+GtkWidget *group_make(const char *title, GtkWidget **list)
+{
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 6);
+    GtkWidget *heading = label_make(title, "heading");
+    *list = gtk_list_box_new();
+    gtk_list_box_set_selection_mode(GTK_LIST_BOX(*list), GTK_SELECTION_NONE);
+    gtk_list_box_set_show_separators(GTK_LIST_BOX(*list), TRUE);
+    gtk_widget_add_css_class(*list, "frame");
+    gtk_widget_add_css_class(*list, "group");
+    widget_name(*list, title);
+    gtk_widget_set_has_tooltip(*list, FALSE);
+    gtk_box_append(GTK_BOX(box), heading);
+    gtk_box_append(GTK_BOX(box), *list);
+    return box;
+}
+
+static GtkWidget *append_row(GtkWidget *list, GtkWidget *content)
+{
+    GtkWidget *row = gtk_list_box_row_new();
+    gtk_list_box_row_set_activatable(GTK_LIST_BOX_ROW(row), FALSE);
+    gtk_widget_set_focusable(row, FALSE);
+    gtk_list_box_row_set_child(GTK_LIST_BOX_ROW(row), content);
+    gtk_list_box_append(GTK_LIST_BOX(list), row);
+    return row;
+}
+
+GtkWidget *row_add(GtkWidget *list, const char *title, GtkWidget *control)
+{
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 8);
+    GtkWidget *label = label_make(title, NULL);
+    gtk_widget_set_hexpand(label, TRUE);
+    gtk_label_set_ellipsize(GTK_LABEL(label), PANGO_ELLIPSIZE_END);
+    gtk_widget_set_valign(control, GTK_ALIGN_CENTER);
+    gtk_accessible_update_property(GTK_ACCESSIBLE(control), GTK_ACCESSIBLE_PROPERTY_LABEL,
+                                   title, -1);
+    gtk_box_append(GTK_BOX(box), label);
+    gtk_box_append(GTK_BOX(box), control);
+    return append_row(list, box);
+}
+
+GtkWidget *value_row_add(GtkWidget *list, const char *title)
+{
+    GtkWidget *value = gtk_label_new("–");
+    gtk_label_set_selectable(GTK_LABEL(value), TRUE);
+    gtk_label_set_xalign(GTK_LABEL(value), 1.0f);
+    gtk_widget_add_css_class(value, "numeric");
+    gtk_widget_set_can_focus(value, FALSE);
+    row_add(list, title, value);
+    return value;
+}
+
+/* ---- Numbers, in any locale ---- */
+
+static int read_number(GtkSpinButton *spin, double *value, void *data)
+{
+    (void)data;
+    const char *text = gtk_editable_get_text(GTK_EDITABLE(spin));
+    char *end = NULL;
+    *value = g_ascii_strtod(text, &end);
+    while (end && g_ascii_isspace(*end))
+        end++;
+    return end == text || *end || !isfinite(*value) ? GTK_INPUT_ERROR : TRUE;
+}
+
+static gboolean write_number(GtkSpinButton *spin, void *data)
+{
+    (void)data;
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    double value = gtk_spin_button_get_value(spin);
+    bool whole = fabs(value - rint(value)) <= 0.0 && fabs(value) < 1e15;
+    g_ascii_formatd(text, sizeof text, whole ? "%.0f" : "%.6g", value);
+    if (g_strcmp0(text, gtk_editable_get_text(GTK_EDITABLE(spin))) != 0)
+        gtk_editable_set_text(GTK_EDITABLE(spin), text);
+    return TRUE;
+}
+
+GtkWidget *spin_make(double low, double high, double step, bool whole)
+{
+    GtkWidget *spin = gtk_spin_button_new_with_range(low, high, step);
+    gtk_spin_button_set_digits(GTK_SPIN_BUTTON(spin), whole ? 0 : 12);
+    gtk_spin_button_set_numeric(GTK_SPIN_BUTTON(spin), FALSE);
+    gtk_editable_set_width_chars(GTK_EDITABLE(spin), 8);
+    gtk_editable_set_max_width_chars(GTK_EDITABLE(spin), 8);
+    g_signal_connect(spin, "input", G_CALLBACK(read_number), NULL);
+    g_signal_connect(spin, "output", G_CALLBACK(write_number), NULL);
+    gtk_spin_button_update(GTK_SPIN_BUTTON(spin));
+    return spin;
+}
+
+GtkWidget *slider_make(double low, double high, double step, int digits)
+{
+    GtkWidget *scale =
+        gtk_scale_new_with_range(GTK_ORIENTATION_HORIZONTAL, low, high, step);
+    gtk_scale_set_digits(GTK_SCALE(scale), digits);
+    gtk_scale_set_draw_value(GTK_SCALE(scale), TRUE);
+    gtk_scale_set_value_pos(GTK_SCALE(scale), GTK_POS_LEFT);
+    gtk_widget_set_size_request(scale, 170, -1);
+    return scale;
+}
+
+GtkWidget *choice_make(const char *const *words)
+{
+    return gtk_drop_down_new_from_strings(words);
+}

@@ -1,0 +1,298 @@
+#include "window_parts.h"
+
+#include "widgets.h"
+
+#include <stdarg.h>
+
+enum { TOAST_MS = 4000, SIDEBAR_LEAST = 360 };
+
+GtkWindow *window_gtk(window *w)
+{
+    return w->gtk;
+}
+
+/* ---- Messages ---- */
+
+static gboolean hide_toast(void *data)
+{
+    window *w = data;
+    w->toast_timer = 0;
+    gtk_revealer_set_reveal_child(GTK_REVEALER(w->toast), FALSE);
+    return G_SOURCE_REMOVE;
+}
+
+void window_toast(window *w, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    g_autofree char *text = g_strdup_vprintf(format, arguments);
+    va_end(arguments);
+    gtk_label_set_text(GTK_LABEL(gtk_revealer_get_child(GTK_REVEALER(w->toast))), text);
+    gtk_revealer_set_reveal_child(GTK_REVEALER(w->toast), TRUE);
+    g_clear_handle_id(&w->toast_timer, g_source_remove);
+    w->toast_timer = g_timeout_add(TOAST_MS, hide_toast, w);
+}
+
+void window_show_content(window *w, const char *page)
+{
+    gtk_stack_set_visible_child_name(GTK_STACK(w->content), page);
+}
+
+/* ---- Opening ---- */
+
+void window_open(window *w, const char *path)
+{
+    g_autofree char *whole = g_canonicalize_filename(path, NULL);
+    w->reloading = g_strcmp0(document_path(w->document), whole) == 0;
+    document_set_path(w->document, whole);
+    session_load(w->session, whole);
+}
+
+static void file_changed(void *data)
+{
+    window *w = data;
+    window_open(w, document_path(w->document));
+}
+
+static gboolean dropped(GtkDropTarget *target, const GValue *value, double x, double y,
+                        window *w)
+{
+    (void)target, (void)x, (void)y;
+    g_autofree char *path = g_file_get_path(g_value_get_object(value));
+    if (path)
+        window_open(w, path);
+    return path != NULL;
+}
+
+/* ---- Settings ---- */
+
+static void settings_changed(const NephSettings *settings, void *data)
+{
+    window *w = data;
+    session_set_settings(w->session, settings);
+}
+
+static void size_changed(int width, int height, void *data)
+{
+    window *w = data;
+    session_set_size(w->session, width, height);
+}
+
+/* ---- Building ---- */
+
+static GtkWidget *open_buttons(void)
+{
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 0);
+    GtkWidget *open = text_button_make("Open", "Open a scene (Ctrl+O)", "win.open");
+    GtkWidget *more = gtk_menu_button_new();
+    g_autoptr(GMenu) menu = g_menu_new();
+    window_fill_scenes_menu(menu);
+    gtk_menu_button_set_menu_model(GTK_MENU_BUTTON(more), G_MENU_MODEL(menu));
+    widget_name(more, "Recent scenes and examples");
+    gtk_widget_add_css_class(box, "linked");
+    gtk_box_append(GTK_BOX(box), open);
+    gtk_box_append(GTK_BOX(box), more);
+    return box;
+}
+
+static GtkWidget *header_make(window *w)
+{
+    GtkWidget *header = gtk_header_bar_new();
+    GtkHeaderBar *bar = GTK_HEADER_BAR(header);
+    w->play_button = icon_button_make("media-playback-start-symbolic",
+                                      "Start or pause (Space)", "win.play");
+    gtk_header_bar_pack_start(bar, open_buttons());
+    gtk_header_bar_pack_start(bar, w->play_button);
+    gtk_header_bar_pack_start(bar, icon_button_make("media-playback-stop-symbolic",
+                                                    "Stop (Ctrl+.)", "win.stop"));
+    gtk_header_bar_pack_start(bar, icon_button_make("view-refresh-symbolic",
+                                                    "Render anew (F5)", "win.restart"));
+    GtkWidget *switcher = gtk_stack_switcher_new();
+    gtk_stack_switcher_set_stack(GTK_STACK_SWITCHER(switcher), GTK_STACK(w->views));
+    gtk_header_bar_set_title_widget(bar, switcher);
+    GtkWidget *menu = gtk_menu_button_new();
+    g_autoptr(GMenuModel) model = window_menu();
+    gtk_menu_button_set_icon_name(GTK_MENU_BUTTON(menu), "open-menu-symbolic");
+    gtk_menu_button_set_menu_model(GTK_MENU_BUTTON(menu), model);
+    gtk_menu_button_set_primary(GTK_MENU_BUTTON(menu), TRUE);
+    widget_name(menu, "Menu (F10)");
+    gtk_header_bar_pack_end(bar, menu);
+    GtkWidget *side = gtk_toggle_button_new();
+    gtk_button_set_icon_name(GTK_BUTTON(side), "sidebar-show-right-symbolic");
+    gtk_actionable_set_action_name(GTK_ACTIONABLE(side), "win.sidebar");
+    widget_name(side, "Show the panels (F9)");
+    gtk_header_bar_pack_end(bar, side);
+    w->name = gtk_label_new("");
+    gtk_widget_add_css_class(w->name, "dim-label");
+    gtk_label_set_ellipsize(GTK_LABEL(w->name), PANGO_ELLIPSIZE_MIDDLE);
+    gtk_header_bar_pack_start(bar, w->name);
+    return header;
+}
+
+static GtkWidget *welcome_make(void)
+{
+    GtkWidget *box = box_make(GTK_ORIENTATION_VERTICAL, 18, 24);
+    gtk_widget_set_valign(box, GTK_ALIGN_CENTER);
+    gtk_widget_set_halign(box, GTK_ALIGN_CENTER);
+    GtkWidget *title = gtk_label_new("Nephroid");
+    gtk_widget_add_css_class(title, "title-1");
+    GtkWidget *text = gtk_label_new("Open a scene, or drop one here.");
+    gtk_widget_add_css_class(text, "dim-label");
+    GtkWidget *open = text_button_make("Open a scene…", NULL, "win.open");
+    gtk_widget_add_css_class(open, "suggested-action");
+    gtk_widget_add_css_class(open, "pill");
+    gtk_widget_set_halign(open, GTK_ALIGN_CENTER);
+    gtk_box_append(GTK_BOX(box), title);
+    gtk_box_append(GTK_BOX(box), text);
+    gtk_box_append(GTK_BOX(box), open);
+    g_auto(GStrv) examples = document_examples();
+    if (examples[0])
+        gtk_box_append(GTK_BOX(box), gtk_label_new("Or begin with an example:"));
+    for (size_t i = 0; examples[i]; i++) {
+        g_autofree char *base = g_path_get_basename(examples[i]);
+        *strrchr(base, '.') = '\0';
+        g_strdelimit(base, "-", ' ');
+        base[0] = g_ascii_toupper(base[0]);
+        GtkWidget *button = text_button_make(base, examples[i], "win.open-path");
+        gtk_actionable_set_action_target(GTK_ACTIONABLE(button), "s", examples[i]);
+        gtk_widget_set_halign(button, GTK_ALIGN_CENTER);
+        gtk_widget_add_css_class(button, "flat");
+        gtk_box_append(GTK_BOX(box), button);
+    }
+    return box;
+}
+
+static GtkWidget *sidebar_make(window *w)
+{
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
+    GtkWidget *switcher = gtk_stack_switcher_new();
+    w->pages = gtk_stack_new();
+    gtk_stack_switcher_set_stack(GTK_STACK_SWITCHER(switcher), GTK_STACK(w->pages));
+    gtk_widget_set_margin_top(switcher, 12);
+    gtk_widget_set_margin_start(switcher, 12);
+    gtk_widget_set_margin_end(switcher, 12);
+    gtk_widget_set_halign(switcher, GTK_ALIGN_FILL);
+    gtk_stack_add_titled(GTK_STACK(w->pages), settings_panel_widget(w->settings),
+                         "settings", "Settings");
+    gtk_box_append(GTK_BOX(box), switcher);
+    gtk_box_append(GTK_BOX(box), w->pages);
+    gtk_widget_set_size_request(box, SIDEBAR_LEAST, -1);
+    return box;
+}
+
+static GtkWidget *views_make(window *w)
+{
+    const navigation_events events = {window_view_moved, window_view_clicked, w};
+    w->views = gtk_stack_new();
+    w->canvas = canvas_new(window_hover, w);
+    w->navigation = navigation_new(canvas_widget(w->canvas), &w->view, &events);
+    gtk_stack_add_titled(GTK_STACK(w->views), canvas_widget(w->canvas), "picture",
+                         "Picture");
+    GtkWidget *overlay = gtk_overlay_new();
+    w->toast = gtk_revealer_new();
+    GtkWidget *label = gtk_label_new("");
+    gtk_widget_add_css_class(label, "toast");
+    gtk_label_set_wrap(GTK_LABEL(label), TRUE);
+    gtk_revealer_set_child(GTK_REVEALER(w->toast), label);
+    gtk_revealer_set_transition_type(GTK_REVEALER(w->toast),
+                                     GTK_REVEALER_TRANSITION_TYPE_SLIDE_UP);
+    gtk_widget_set_halign(w->toast, GTK_ALIGN_CENTER);
+    gtk_widget_set_valign(w->toast, GTK_ALIGN_END);
+    gtk_widget_set_can_target(w->toast, FALSE);
+    gtk_overlay_set_child(GTK_OVERLAY(overlay), w->views);
+    gtk_overlay_add_overlay(GTK_OVERLAY(overlay), w->toast);
+    return overlay;
+}
+
+static GtkWidget *main_make(window *w)
+{
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
+    w->paned = gtk_paned_new(GTK_ORIENTATION_HORIZONTAL);
+    w->settings = settings_panel_new(settings_changed, size_changed, w);
+    w->status = status_new();
+    GtkPaned *paned = GTK_PANED(w->paned);
+    gtk_paned_set_start_child(paned, views_make(w));
+    w->sidebar = sidebar_make(w);
+    gtk_paned_set_end_child(paned, w->sidebar);
+    gtk_paned_set_resize_end_child(paned, FALSE);
+    gtk_paned_set_shrink_end_child(paned, FALSE);
+    gtk_paned_set_shrink_start_child(paned, FALSE);
+    gtk_widget_set_vexpand(w->paned, TRUE);
+    gtk_widget_set_size_request(w->sidebar, w->remembered.sidebar_width, -1);
+    gtk_widget_set_visible(w->sidebar, w->remembered.sidebar);
+    gtk_box_append(GTK_BOX(box), w->paned);
+    gtk_box_append(GTK_BOX(box), status_widget(w->status));
+    return box;
+}
+
+static void build(window *w)
+{
+    GtkWidget *main_view = main_make(w);
+    w->errors = error_page_new();
+    w->content = gtk_stack_new();
+    GtkStack *content = GTK_STACK(w->content);
+    gtk_stack_add_named(content, welcome_make(), "welcome");
+    gtk_stack_add_named(content, error_page_widget(w->errors), "error");
+    gtk_stack_add_named(content, main_view, "main");
+    gtk_window_set_titlebar(w->gtk, header_make(w));
+    gtk_window_set_child(w->gtk, w->content);
+    GtkDropTarget *drop = gtk_drop_target_new(G_TYPE_FILE, GDK_ACTION_COPY);
+    g_signal_connect(drop, "drop", G_CALLBACK(dropped), w);
+    gtk_widget_add_controller(GTK_WIDGET(w->gtk), GTK_EVENT_CONTROLLER(drop));
+}
+
+/* ---- Closing ---- */
+
+static void remember(window *w)
+{
+    window_state *state = &w->remembered;
+    gtk_window_get_default_size(w->gtk, &state->width, &state->height);
+    state->maximized = gtk_window_is_maximized(w->gtk);
+    state->sidebar = gtk_widget_get_visible(w->sidebar);
+    int width = gtk_widget_get_width(w->sidebar);
+    if (state->sidebar && width > 0)
+        state->sidebar_width = width;
+    window_state_save(state);
+}
+
+static gboolean close_request(window *w)
+{
+    remember(w);
+    return FALSE;
+}
+
+static void destroyed(window *w)
+{
+    session_close(w->session);
+    document_free(w->document);
+    g_clear_handle_id(&w->toast_timer, g_source_remove);
+    navigation_free(w->navigation);
+    canvas_free(w->canvas);
+    settings_panel_free(w->settings);
+    error_page_free(w->errors);
+    status_free(w->status);
+    held_scene_unref(w->scene);
+    neph_settings_free(w->of_scene);
+    g_free(w);
+}
+
+window *window_new(GtkApplication *app)
+{
+    window *w = g_new0(window, 1);
+    w->gtk = GTK_WINDOW(gtk_application_window_new(app));
+    w->remembered = window_state_load();
+    gtk_window_set_title(w->gtk, "Nephroid");
+    gtk_window_set_default_size(w->gtk, w->remembered.width, w->remembered.height);
+    if (w->remembered.maximized)
+        gtk_window_maximize(w->gtk);
+    w->document = document_new(file_changed, w);
+    w->session = session_new(window_on_news, w);
+    window_add_actions(w);
+    build(w);
+    window_apply_theme(w);
+    window_update_actions(w);
+    g_signal_connect_swapped(w->gtk, "close-request", G_CALLBACK(close_request), w);
+    g_signal_connect_swapped(w->gtk, "destroy", G_CALLBACK(destroyed), w);
+    g_object_set_data(G_OBJECT(w->gtk), "window", w);
+    return w;
+}

@@ -1,0 +1,351 @@
+#include "window_parts.h"
+
+#include <string.h>
+
+/* ---- Files ---- */
+
+static void scene_chosen(GtkNativeDialog *dialog, int response, window *w)
+{
+    if (response == GTK_RESPONSE_ACCEPT) {
+        g_autoptr(GFile) file = gtk_file_chooser_get_file(GTK_FILE_CHOOSER(dialog));
+        g_autofree char *path = g_file_get_path(file);
+        if (path)
+            window_open(w, path);
+    }
+    g_object_unref(dialog);
+}
+
+static void add_filter(GtkFileChooser *chooser, const char *name,
+                       const char *const *patterns)
+{
+    g_autoptr(GtkFileFilter) filter = gtk_file_filter_new();
+    gtk_file_filter_set_name(filter, name);
+    for (size_t i = 0; patterns[i]; i++)
+        gtk_file_filter_add_pattern(filter, patterns[i]);
+    gtk_file_chooser_add_filter(chooser, filter);
+}
+
+static void open_scene(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    window *w = data;
+    GtkFileChooserNative *dialog = gtk_file_chooser_native_new(
+        "Open a scene", w->gtk, GTK_FILE_CHOOSER_ACTION_OPEN, "_Open", "_Cancel");
+    static const char *const scenes[] = {"*.pbrt", "*.gltf", "*.glb", "*.obj", NULL};
+    static const char *const all[] = {"*", NULL};
+    add_filter(GTK_FILE_CHOOSER(dialog), "Scenes", scenes);
+    add_filter(GTK_FILE_CHOOSER(dialog), "All files", all);
+    gtk_native_dialog_set_modal(GTK_NATIVE_DIALOG(dialog), TRUE);
+    g_signal_connect(dialog, "response", G_CALLBACK(scene_chosen), w);
+    gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
+}
+
+static void open_path(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action;
+    window_open(data, g_variant_get_string(parameter, NULL));
+}
+
+static void reload(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    window *w = data;
+    if (document_path(w->document))
+        window_open(w, document_path(w->document));
+}
+
+static void dismiss_error(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    window *w = data;
+    window_show_content(w, w->scene ? "main" : "welcome");
+}
+
+static void save_to(window *w, const char *path)
+{
+    g_autoptr(GError) error = NULL;
+    const held_picture *picture = canvas_picture(w->canvas);
+    float exposure = canvas_options(w->canvas)->exposure;
+    if (!picture)
+        return;
+    if (neph_image_write(picture->image, path, exposure, &error))
+        window_toast(w, "Saved %s", path);
+    else
+        window_toast(w, "%s", error->message);
+}
+
+static void picture_chosen(GtkNativeDialog *dialog, int response, window *w)
+{
+    if (response == GTK_RESPONSE_ACCEPT) {
+        g_autoptr(GFile) file = gtk_file_chooser_get_file(GTK_FILE_CHOOSER(dialog));
+        g_autofree char *path = g_file_get_path(file);
+        if (path)
+            save_to(w, path);
+    }
+    g_object_unref(dialog);
+}
+
+static void save_picture(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    window *w = data;
+    GtkFileChooserNative *dialog = gtk_file_chooser_native_new(
+        "Save the picture", w->gtk, GTK_FILE_CHOOSER_ACTION_SAVE, "_Save", "_Cancel");
+    g_autofree char *base = g_path_get_basename(document_path(w->document));
+    char *dot = strrchr(base, '.');
+    if (dot)
+        *dot = '\0';
+    g_autofree char *name = g_strconcat(base, ".png", NULL);
+    static const char *const images[] = {"*.png", "*.exr", "*.jpg",
+                                         "*.hdr", "*.pfm", NULL};
+    add_filter(GTK_FILE_CHOOSER(dialog), "Pictures (png, exr, jpg, hdr, pfm)", images);
+    gtk_file_chooser_set_current_name(GTK_FILE_CHOOSER(dialog), name);
+    gtk_native_dialog_set_modal(GTK_NATIVE_DIALOG(dialog), TRUE);
+    g_signal_connect(dialog, "response", G_CALLBACK(picture_chosen), w);
+    gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
+}
+
+static void save_picture_as(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action;
+    save_to(data, g_variant_get_string(parameter, NULL));
+}
+
+/* ---- Rendering ---- */
+
+static void play(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    window *w = data;
+    if (w->state == SESSION_RENDERING)
+        session_pause(w->session);
+    else if (w->state == SESSION_DONE)
+        session_restart(w->session);
+    else
+        session_play(w->session);
+}
+
+static void stop(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    session_stop(((window *)data)->session);
+}
+
+static void restart(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    session_restart(((window *)data)->session);
+}
+
+/* ---- The view ---- */
+
+static void zoom(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)parameter;
+    window *w = data;
+    const char *name = g_action_get_name(G_ACTION(action));
+    if (strcmp(name, "zoom-fit") == 0)
+        canvas_set_zoom(w->canvas, 0.0);
+    else if (strcmp(name, "zoom-one") == 0)
+        canvas_set_zoom(w->canvas, 1.0);
+    else
+        canvas_zoom_by(w->canvas, strcmp(name, "zoom-in") == 0 ? 1.5 : 1.0 / 1.5);
+}
+
+static void show_view(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action;
+    window *w = data;
+    gtk_stack_set_visible_child_name(GTK_STACK(w->views),
+                                     g_variant_get_string(parameter, NULL));
+}
+
+static void show_sidebar(window *w, bool shown)
+{
+    GAction *action = g_action_map_lookup_action(G_ACTION_MAP(w->gtk), "sidebar");
+    gtk_widget_set_visible(w->sidebar, shown);
+    g_simple_action_set_state(G_SIMPLE_ACTION(action), g_variant_new_boolean(shown));
+}
+
+static void show_page(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action;
+    window *w = data;
+    show_sidebar(w, true);
+    gtk_stack_set_visible_child_name(GTK_STACK(w->pages),
+                                     g_variant_get_string(parameter, NULL));
+}
+
+static void toggle_sidebar(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    window *w = data;
+    show_sidebar(w, !gtk_widget_get_visible(w->sidebar));
+}
+
+static void search(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    window *w = data;
+    show_sidebar(w, true);
+    gtk_stack_set_visible_child_name(GTK_STACK(w->pages), "settings");
+    settings_panel_search(w->settings);
+}
+
+static void fullscreen(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    window *w = data;
+    if (gtk_window_is_fullscreen(w->gtk))
+        gtk_window_unfullscreen(w->gtk);
+    else
+        gtk_window_fullscreen(w->gtk);
+}
+
+/* ---- Light and dark ---- */
+
+/* The first theme decides what "system" is. */
+static bool system_is_dark(void)
+{
+    static int dark = -1;
+    if (dark < 0) {
+        gboolean prefers = FALSE;
+        g_object_get(gtk_settings_get_default(), "gtk-application-prefer-dark-theme",
+                     &prefers, NULL);
+        dark = prefers;
+    }
+    return dark > 0;
+}
+
+void window_apply_theme(window *w)
+{
+    bool by_system = system_is_dark();
+    window_theme theme = w->remembered.theme;
+    bool dark = theme == THEME_DARK || (theme == THEME_SYSTEM && by_system);
+    g_object_set(gtk_settings_get_default(), "gtk-application-prefer-dark-theme", dark,
+                 NULL);
+    GAction *action = g_action_map_lookup_action(G_ACTION_MAP(w->gtk), "theme");
+    g_simple_action_set_state(G_SIMPLE_ACTION(action),
+                              g_variant_new_string(theme_words[theme]));
+}
+
+static void choose_theme(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action;
+    window *w = data;
+    for (int i = 0; i < N_THEMES; i++)
+        if (strcmp(g_variant_get_string(parameter, NULL), theme_words[i]) == 0)
+            w->remembered.theme = (window_theme)i;
+    window_apply_theme(w);
+}
+
+/* ---- The table ---- */
+
+static const GActionEntry entries[] = {
+    {.name = "open", .activate = open_scene},
+    {.name = "open-path", .activate = open_path, .parameter_type = "s"},
+    {.name = "reload", .activate = reload},
+    {.name = "dismiss-error", .activate = dismiss_error},
+    {.name = "save-picture", .activate = save_picture},
+    {.name = "save-picture-as", .activate = save_picture_as, .parameter_type = "s"},
+    {.name = "play", .activate = play},
+    {.name = "stop", .activate = stop},
+    {.name = "restart", .activate = restart},
+    {.name = "zoom-fit", .activate = zoom},
+    {.name = "zoom-one", .activate = zoom},
+    {.name = "zoom-in", .activate = zoom},
+    {.name = "zoom-out", .activate = zoom},
+    {.name = "view", .activate = show_view, .parameter_type = "s"},
+    {.name = "page", .activate = show_page, .parameter_type = "s"},
+    {.name = "sidebar", .activate = toggle_sidebar, .state = "true"},
+    {.name = "search", .activate = search},
+    {.name = "fullscreen", .activate = fullscreen},
+    {.name = "theme",
+     .activate = choose_theme,
+     .parameter_type = "s",
+     .state = "'system'"},
+};
+
+void window_add_actions(window *w)
+{
+    g_action_map_add_action_entries(G_ACTION_MAP(w->gtk), entries, G_N_ELEMENTS(entries),
+                                    w);
+}
+
+static void enable(window *w, const char *name, bool enabled)
+{
+    GAction *action = g_action_map_lookup_action(G_ACTION_MAP(w->gtk), name);
+    g_simple_action_set_enabled(G_SIMPLE_ACTION(action), enabled);
+}
+
+void window_update_actions(window *w)
+{
+    static const char *const of_scene[] = {"play",     "restart",      "zoom-fit",
+                                           "zoom-one", "zoom-in",      "zoom-out",
+                                           "search",   "save-picture", "save-picture-as"};
+    bool rendering = w->state == SESSION_RENDERING;
+    for (size_t i = 0; i < G_N_ELEMENTS(of_scene); i++)
+        enable(w, of_scene[i], w->scene != NULL);
+    enable(w, "stop", rendering || w->state == SESSION_PAUSED);
+    enable(w, "reload", document_path(w->document) != NULL);
+    gtk_button_set_icon_name(GTK_BUTTON(w->play_button),
+                             rendering ? "media-playback-pause-symbolic"
+                                       : "media-playback-start-symbolic");
+    gtk_accessible_update_property(GTK_ACCESSIBLE(w->play_button),
+                                   GTK_ACCESSIBLE_PROPERTY_LABEL,
+                                   rendering ? "Pause" : "Start", -1);
+}
+
+/* ---- Menus ---- */
+
+static void append_section(GMenu *menu, const char *title, const char *const items[][2],
+                           size_t n)
+{
+    g_autoptr(GMenu) section = g_menu_new();
+    for (size_t i = 0; i < n; i++)
+        g_menu_append(section, items[i][0], items[i][1]);
+    g_menu_append_section(menu, title, G_MENU_MODEL(section));
+}
+
+GMenuModel *window_menu(void)
+{
+    static const char *const file[][2] = {{"Save the picture…", "win.save-picture"},
+                                          {"Read the scene again", "win.reload"}};
+    static const char *const view[][2] = {{"Fit to the window", "win.zoom-fit"},
+                                          {"Pixel by pixel", "win.zoom-one"},
+                                          {"Full screen", "win.fullscreen"}};
+    static const char *const theme[][2] = {{"As the system", "win.theme::system"},
+                                           {"Light", "win.theme::light"},
+                                           {"Dark", "win.theme::dark"}};
+    static const char *const help[][2] = {{"Keys and mouse", "win.show-help-overlay"},
+                                          {"About Nephroid", "app.about"}};
+    GMenu *menu = g_menu_new();
+    append_section(menu, NULL, file, G_N_ELEMENTS(file));
+    append_section(menu, NULL, view, G_N_ELEMENTS(view));
+    append_section(menu, "Appearance", theme, G_N_ELEMENTS(theme));
+    append_section(menu, NULL, help, G_N_ELEMENTS(help));
+    return G_MENU_MODEL(menu);
+}
+
+static void append_scenes(GMenu *menu, const char *title, char **paths)
+{
+    g_autoptr(GMenu) section = g_menu_new();
+    for (size_t i = 0; paths[i]; i++) {
+        g_autofree char *base = g_path_get_basename(paths[i]);
+        g_autofree char *label = g_utf8_make_valid(base, -1);
+        g_autoptr(GMenuItem) item = g_menu_item_new(label, NULL);
+        g_menu_item_set_action_and_target(item, "win.open-path", "s", paths[i]);
+        g_menu_append_item(section, item);
+    }
+    if (paths[0])
+        g_menu_append_section(menu, title, G_MENU_MODEL(section));
+}
+
+void window_fill_scenes_menu(GMenu *menu)
+{
+    g_auto(GStrv) recent = document_recent();
+    g_auto(GStrv) examples = document_examples();
+    g_menu_remove_all(menu);
+    append_scenes(menu, "Recent", recent);
+    append_scenes(menu, "Examples", examples);
+}

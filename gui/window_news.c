@@ -1,0 +1,114 @@
+#include "window_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+static bool same_values(const double *a, const double *b, int n)
+{
+    bool same = true;
+    for (int i = 0; i < n; i++)
+        same &= !(fabs(a[i] - b[i]) > 1e-9 * (1.0 + fabs(a[i])));
+    return same;
+}
+
+static bool same_camera(const NephCamera *a, const NephCamera *b)
+{
+    return same_values(a->position, b->position, 3) &&
+           same_values(a->direction, b->direction, 3) && same_values(a->up, b->up, 3) &&
+           same_values(&a->fov, &b->fov, 1) &&
+           same_values(&a->lens_radius, &b->lens_radius, 1) &&
+           same_values(&a->focal_distance, &b->focal_distance, 1);
+}
+
+/* The file has changed: where the file says what it said, the user's word stands. True if
+   anything of the user's was kept. */
+static bool keep_settings(window *w, NephSettings *fresh)
+{
+    size_t n;
+    bool kept = false;
+    const NephSettingInfo *rows = neph_settings_table(&n);
+    for (size_t i = 0; i < n; i++) {
+        const char *name = rows[i].name;
+        g_autofree char *before = neph_settings_get(w->of_scene, name);
+        g_autofree char *now = neph_settings_get(fresh, name);
+        g_autofree char *chosen =
+            neph_settings_get(settings_panel_values(w->settings), name);
+        if (strcmp(before, now) == 0 && strcmp(chosen, now) != 0)
+            kept |= neph_settings_set(fresh, name, chosen, NULL);
+    }
+    return kept;
+}
+
+static void show_name(window *w)
+{
+    g_autofree char *base = g_path_get_basename(document_path(w->document));
+    g_autofree char *name = g_utf8_make_valid(base, -1);
+    g_autofree char *title = g_strdup_printf("%s – Nephroid", name);
+    gtk_window_set_title(w->gtk, title);
+    gtk_label_set_text(GTK_LABEL(w->name), name);
+    gtk_widget_set_tooltip_text(w->name, document_path(w->document));
+}
+
+static void take_view(window *w, const held_scene *scene)
+{
+    double low[3], high[3];
+    bool bounded = neph_scene_bounds(scene->scene, low, high);
+    bool keep =
+        w->reloading && w->scene && same_camera(&w->scene->camera, &scene->camera);
+    if (!keep) {
+        viewpoint_init(&w->view, &scene->camera, bounded ? low : NULL, high);
+        return;
+    }
+    if (!same_camera(&w->view.camera, &scene->camera))
+        session_set_camera(w->session, &w->view.camera, false);
+}
+
+static void scene_loaded(window *w, held_scene *scene)
+{
+    g_autoptr(NephSettings) fresh = neph_scene_settings(scene->scene);
+    NephSettings *of_scene = neph_settings_copy(fresh);
+    if (w->reloading && w->of_scene && keep_settings(w, fresh))
+        session_set_settings(w->session, fresh);
+    settings_panel_show(w->settings, fresh, of_scene);
+    settings_panel_show_size(w->settings, scene->width, scene->height);
+    neph_settings_free(w->of_scene);
+    w->of_scene = of_scene;
+    take_view(w, scene);
+    held_scene_unref(w->scene);
+    w->scene = held_scene_ref(scene);
+    document_remember(w->document);
+    show_name(w);
+    window_show_content(w, "main");
+    if (w->reloading)
+        window_toast(w, "The scene has been read again");
+    w->reloading = false;
+}
+
+static void failed(window *w, const session_news *news)
+{
+    if (news->error_of_load) {
+        error_page_show(w->errors, document_path(w->document), news->error->message,
+                        w->scene != NULL);
+        window_show_content(w, "error");
+    } else {
+        window_toast(w, "%s", news->error->message);
+    }
+}
+
+void window_on_news(const session_news *news, void *data)
+{
+    window *w = data;
+    bool state_changed = w->state != news->state;
+    w->state = news->state;
+    w->statistics = news->statistics;
+    w->fraction = news->fraction;
+    if (news->loaded)
+        scene_loaded(w, news->loaded);
+    if (news->error)
+        failed(w, news);
+    if (news->picture)
+        canvas_set_picture(w->canvas, news->picture);
+    status_show(w->status, news);
+    if (state_changed || news->loaded)
+        window_update_actions(w);
+}

@@ -1,0 +1,330 @@
+/*
+ * The window, driven by its actions and controls: scenes open and fail to, every setting
+ * reaches the library, rendering starts, pauses, stops and dies with the window.
+ */
+#include "view_run.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Far more passes than any test waits for. */
+static char *long_scene(void)
+{
+    g_auto(GStrv) parts = g_strsplit(view_scene, "\"integer passes\" 2", 2);
+    g_autofree char *text = g_strjoinv("\"integer passes\" 100000", parts);
+    return view_write("long.pbrt", text);
+}
+
+static window *open_scene(const char *path)
+{
+    window *w = view_window();
+    window_open(w, path);
+    return w;
+}
+
+static const char *page_of(window *w)
+{
+    return gtk_stack_get_visible_child_name(GTK_STACK(w->content));
+}
+
+/* ---- Opening ---- */
+
+static void test_open(void)
+{
+    g_autofree char *path = view_write("box.pbrt", view_scene);
+    window *w = view_window();
+    g_assert_cmpstr(page_of(w), ==, "welcome");
+    window_open(w, path);
+    view_wait(view_is_done, w);
+    g_assert_cmpstr(page_of(w), ==, "main");
+    const held_picture *picture = canvas_picture(w->canvas);
+    g_assert_nonnull(picture);
+    g_assert_false(picture->coarse);
+    g_assert_cmpint(picture->width, ==, 24);
+    g_assert_cmpint(w->statistics.passes, ==, 2);
+    g_assert_true(isfinite(w->statistics.noise));
+    g_assert_nonnull(strstr(gtk_window_get_title(w->gtk), "box.pbrt"));
+    view_close(w);
+}
+
+static bool shows_error(window *w)
+{
+    return strcmp(page_of(w), "error") == 0;
+}
+
+static bool shows_main(window *w)
+{
+    return strcmp(page_of(w), "main") == 0;
+}
+
+/* A label somewhere below the widget that holds the text. */
+static bool has_text(GtkWidget *widget, const char *text)
+{
+    if (GTK_IS_LABEL(widget) && strstr(gtk_label_get_text(GTK_LABEL(widget)), text))
+        return true;
+    GtkWidget *child = gtk_widget_get_first_child(widget);
+    for (; child; child = gtk_widget_get_next_sibling(child))
+        if (has_text(child, text))
+            return true;
+    return false;
+}
+
+static void test_broken(void)
+{
+    g_autofree char *broken = view_write(
+        "broken.pbrt", "WorldBegin\nLightSource \"point\"\n  Shape \"spere\"\n");
+    window *w = open_scene(broken);
+    GtkWidget *page = error_page_widget(w->errors);
+    view_wait(shows_error, w);
+    g_assert_true(has_text(page, "broken.pbrt:3"));
+    g_assert_true(has_text(page, "Shape \"spere\""));
+    g_assert_true(g_file_set_contents(broken, view_scene, -1, NULL));
+    view_activate(w, "win.reload");
+    view_wait(view_is_done, w);
+    g_assert_cmpstr(page_of(w), ==, "main");
+    view_close(w);
+}
+
+/* The old scene goes on when the new one is broken, and a saved file is read by itself.
+ */
+static void test_reload(void)
+{
+    g_autofree char *path = view_write("watched.pbrt", view_scene);
+    window *w = open_scene(path);
+    view_wait(view_is_done, w);
+    g_assert_true(g_file_set_contents(path, "Nonsense\n", -1, NULL));
+    view_wait(shows_error, w);
+    view_activate(w, "win.dismiss-error");
+    g_assert_cmpstr(page_of(w), ==, "main");
+    g_assert_true(g_file_set_contents(path, view_scene, -1, NULL));
+    held_scene *old = held_scene_ref(w->scene);
+    while (w->scene == old)
+        g_main_context_iteration(NULL, TRUE);
+    held_scene_unref(old);
+    view_wait(shows_main, w);
+    view_close(w);
+}
+
+/* ---- Settings ---- */
+
+/* Another value that is quick to render with. */
+static char *other_value(const NephSettingInfo *info)
+{
+    switch (info->type) {
+    case NEPH_SETTING_BOOL:
+        return g_strdup(info->initial > 0.5 ? "false" : "true");
+    case NEPH_SETTING_CHOICE:
+        return g_strdup(info->words[info->initial > 0.5 ? 0 : 1]);
+    case NEPH_SETTING_COUNT:
+        if (info->initial > 100.0)
+            return g_strdup("150");
+        return g_strdup_printf("%d", info->initial < 2.0 ? 3 : (int)info->initial - 1);
+    case NEPH_SETTING_REAL:
+    default:
+        return g_strdup(info->low > 0.5 ? "1.5" : "0.25");
+    }
+}
+
+/* Moves the control as a user would. */
+static void turn(GtkWidget *input, const NephSettingInfo *info, const char *value)
+{
+    double number = g_ascii_strtod(value, NULL);
+    unsigned word = 0;
+    if (GTK_IS_SWITCH(input)) {
+        gtk_switch_set_active(GTK_SWITCH(input), strcmp(value, "true") == 0);
+    } else if (GTK_IS_DROP_DOWN(input)) {
+        while (strcmp(info->words[word], value) != 0)
+            word++;
+        gtk_drop_down_set_selected(GTK_DROP_DOWN(input), word);
+    } else if (GTK_IS_RANGE(input)) {
+        gtk_range_set_value(GTK_RANGE(input), number);
+    } else {
+        gtk_editable_set_text(GTK_EDITABLE(input), value);
+        gtk_spin_button_update(GTK_SPIN_BUTTON(input));
+    }
+}
+
+static void assert_setting(const NephSettings *s, const char *name, const char *value)
+{
+    g_autofree char *found = neph_settings_get(s, name);
+    if (g_strcmp0(found, value) != 0)
+        g_test_message("%s is %s, expected %s", name, found, value);
+    g_assert_cmpfloat_with_epsilon(g_ascii_strtod(found, NULL),
+                                   g_ascii_strtod(value, NULL), 1e-9);
+    if (!g_ascii_isdigit(value[0]))
+        g_assert_cmpstr(found, ==, value);
+}
+
+static void test_each_setting(void)
+{
+    size_t n;
+    const NephSettingInfo *rows = neph_settings_table(&n);
+    g_autofree char *path = view_write("settings.pbrt", view_scene);
+    window *w = open_scene(path);
+    view_wait(view_is_done, w);
+    for (size_t i = 0; i < n; i++) {
+        setting_control *c = settings_panel_find(w->settings, rows[i].name);
+        g_assert_nonnull(c);
+        g_autofree char *value = other_value(&rows[i]);
+        turn(setting_control_input(c), &rows[i], value);
+        assert_setting(settings_panel_values(w->settings), rows[i].name, value);
+        g_assert_nonnull(
+            strstr(gtk_widget_get_tooltip_text(setting_control_row(c)), rows[i].doc));
+        gtk_test_accessible_assert_property(GTK_ACCESSIBLE(setting_control_input(c)),
+                                            GTK_ACCESSIBLE_PROPERTY_DESCRIPTION,
+                                            rows[i].doc);
+    }
+    view_wait(view_is_rendering, w);
+    view_wait(view_is_done, w);
+    g_autoptr(NephSettings) rendered = session_rendered_settings(w->session);
+    for (size_t i = 0; i < n; i++) {
+        g_autofree char *value = other_value(&rows[i]);
+        assert_setting(rendered, rows[i].name, value);
+    }
+    view_close(w);
+}
+
+static void test_search(void)
+{
+    g_autofree char *path = view_write("search.pbrt", view_scene);
+    window *w = open_scene(path);
+    view_wait(view_is_done, w);
+    settings_panel_search(w->settings);
+    GtkWidget *entry = gtk_root_get_focus(GTK_ROOT(w->gtk));
+    entry = gtk_widget_get_ancestor(entry, GTK_TYPE_SEARCH_ENTRY);
+    g_assert_nonnull(entry);
+    gtk_editable_set_text(GTK_EDITABLE(entry), "Gather ray");
+    g_signal_emit_by_name(entry, "search-changed");
+    setting_control *rays = settings_panel_find(w->settings, "gather_rays");
+    setting_control *seed = settings_panel_find(w->settings, "seed");
+    g_assert_true(gtk_widget_get_visible(setting_control_row(rays)));
+    g_assert_false(gtk_widget_get_visible(setting_control_row(seed)));
+    view_close(w);
+}
+
+/* ---- Rendering ---- */
+
+static bool is_paused(window *w)
+{
+    return w->state == SESSION_PAUSED;
+}
+
+static bool is_stopped(window *w)
+{
+    return w->state == SESSION_STOPPED;
+}
+
+static bool has_passes(window *w)
+{
+    return w->statistics.passes > 2;
+}
+
+static void test_pause_and_stop(void)
+{
+    g_autofree char *path = long_scene();
+    window *w = open_scene(path);
+    view_wait(has_passes, w);
+    view_activate(w, "win.play");
+    view_wait(is_paused, w);
+    int64_t passes = w->statistics.passes;
+    view_activate(w, "win.play");
+    view_wait(view_is_rendering, w);
+    g_assert_cmpint(w->statistics.passes, >=, passes);
+    view_activate(w, "win.stop");
+    view_wait(is_stopped, w);
+    g_assert_nonnull(canvas_picture(w->canvas));
+    view_activate(w, "win.restart");
+    view_wait(view_is_rendering, w);
+    view_close(w);
+}
+
+static void test_save(void)
+{
+    g_autofree char *path = view_write("save.pbrt", view_scene);
+    g_autofree char *picture = g_build_filename(view_folder(), "saved.exr", NULL);
+    window *w = open_scene(path);
+    view_wait(view_is_done, w);
+    gtk_widget_activate_action(GTK_WIDGET(w->gtk), "win.save-picture-as", "s", picture);
+    g_autoptr(NephImage) saved = neph_image_read(picture, NULL);
+    g_assert_nonnull(saved);
+    int width, height, n;
+    neph_image_size(saved, &width, &height, &n);
+    g_assert_cmpint(width, ==, 24);
+    view_close(w);
+}
+
+/* Each window dies while its worker is busy, at another moment each time. */
+static void test_close_while_rendering(void)
+{
+    g_autofree char *path = long_scene();
+    for (int i = 0; i < 20; i++) {
+        window *w = open_scene(path);
+        for (int k = 0; k < 3 * i; k++) {
+            g_main_context_iteration(NULL, FALSE);
+            g_usleep(1000);
+        }
+        view_close(w);
+    }
+}
+
+/* ---- Size and names ---- */
+
+static bool is_small(window *w)
+{
+    const held_picture *picture = canvas_picture(w->canvas);
+    return picture && picture->width == 10 && view_is_done(w);
+}
+
+static void test_size(void)
+{
+    g_autofree char *path = view_write("size.pbrt", view_scene);
+    window *w = open_scene(path);
+    view_wait(view_is_done, w);
+    session_set_size(w->session, 10, 8);
+    view_wait(is_small, w);
+    view_close(w);
+}
+
+/* Every control that takes the keyboard says what it is. */
+static void assert_named(GtkWidget *widget)
+{
+    bool is_control = GTK_IS_BUTTON(widget) || GTK_IS_SWITCH(widget) ||
+                      GTK_IS_SPIN_BUTTON(widget) || GTK_IS_DROP_DOWN(widget) ||
+                      GTK_IS_SCALE(widget) || GTK_IS_SEARCH_ENTRY(widget);
+    bool has_words =
+        GTK_IS_BUTTON(widget) && gtk_button_get_label(GTK_BUTTON(widget)) != NULL;
+    if (is_control && !has_words &&
+        !gtk_test_accessible_has_property(GTK_ACCESSIBLE(widget),
+                                          GTK_ACCESSIBLE_PROPERTY_LABEL))
+        g_error("a %s has no accessible name", G_OBJECT_TYPE_NAME(widget));
+    if (is_control || GTK_IS_WINDOW_CONTROLS(widget) || GTK_IS_MENU_BUTTON(widget))
+        return;
+    GtkWidget *child = gtk_widget_get_first_child(widget);
+    for (; child; child = gtk_widget_get_next_sibling(child))
+        assert_named(child);
+}
+
+static void test_accessible_names(void)
+{
+    g_autofree char *path = view_write("names.pbrt", view_scene);
+    window *w = open_scene(path);
+    view_wait(view_is_done, w);
+    assert_named(GTK_WIDGET(w->gtk));
+    view_close(w);
+}
+
+int main(int argc, char **argv)
+{
+    view_init(&argc, &argv);
+    view_add_test("/view/open", test_open);
+    view_add_test("/view/broken", test_broken);
+    view_add_test("/view/reload", test_reload);
+    view_add_test("/view/each-setting", test_each_setting);
+    view_add_test("/view/search", test_search);
+    view_add_test("/view/pause-and-stop", test_pause_and_stop);
+    view_add_test("/view/save", test_save);
+    view_add_test("/view/close-while-rendering", test_close_while_rendering);
+    view_add_test("/view/size", test_size);
+    view_add_test("/view/accessible-names", test_accessible_names);
+    return view_run();
+}
