@@ -211,18 +211,16 @@ static void add_shape(pbrt_parser *parser, const arguments *a)
                       .reverse_orientation = parser->state.reverse_orientation,
                       .material = current_material(parser, a->at),
                       .area_light = parser->state.area_light};
-    const param *alpha = params_find(a->p, "alpha");
-    if (alpha) {
-        pbrt_error(parser, alpha->place, "parameter 'alpha' of shapes is not supported");
-        return;
-    }
     GError *error = NULL;
     bool seen = true;
-    if (!params_bool(a->p, "camera_visible", &seen, &error)) {
+    float_input alpha;
+    if (!params_bool(a->p, "camera_visible", &seen, &error) ||
+        !float_input_init(&alpha, parser->scene, a->p, "alpha", 1.0f, &error)) {
         pbrt_report(parser, error);
         return;
     }
     at.camera_hidden = !seen;
+    at.alpha = &alpha;
     bool is_ply = strcmp(a->kind, "plymesh") == 0;
     bool done = is_ply ? add_ply(parser, a->p, &at, &error)
                        : scene_add_shape(parser->scene, a->kind, a->p, &at, &error);

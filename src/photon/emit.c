@@ -21,10 +21,11 @@ static vec3 caustic_target(const scene *s, sampler *random)
     return shape_sample_area(on, u_shape, sampler_2d(random)).p;
 }
 
-/* Moves on to the next surface along a ray; distance grows by the way made. */
+/* Moves on to the next surface along a ray, cut-outs taken as solid as targets on them
+   are; distance grows by the way made. */
 static bool next_crossing(const scene *s, ray *r, float *distance, surface_hit *hit)
 {
-    if (!scene_intersect(s, r, hit))
+    if (!scene_intersect_solid(s, r, hit))
         return false;
     *distance += length3(hit->p - r->origin);
     *r = hit_ray(hit, r->direction);
@@ -32,8 +33,7 @@ static bool next_crossing(const scene *s, ray *r, float *distance, surface_hit *
 }
 
 /* The density with which targets chosen by area give this ray: per solid angle at its
-   origin, or for parallel light per area across it. Zero if the first surface casts no
-   caustic. */
+   origin, or for parallel light per area across it. */
 static double aimed_density(const scene *s, ray r, bool parallel)
 {
     double density = 0.0, p_area = 1.0 / distribution_total(&s->caustic_area);
@@ -44,11 +44,21 @@ static double aimed_density(const scene *s, ray r, bool parallel)
             double cosine = fabs((double)dot3(hit.n_geom, r.direction));
             double d2 = parallel ? 1.0 : (double)distance * (double)distance;
             density += cosine > 0.0 ? p_area * d2 / cosine : 0.0;
-        } else if (!(density > 0.0) && hit.material != NO_INDEX) {
-            return 0.0;
         }
     }
     return density;
+}
+
+/* True if the first surface that stops the ray casts caustics. */
+static bool meets_caster(const scene *s, ray r)
+{
+    surface_hit hit;
+    for (int i = 0; i < MAX_CROSSINGS && scene_intersect(s, &r, &hit); i++) {
+        if (hit.material != NO_INDEX)
+            return casts_caustics(s, &hit);
+        r = hit_ray(&hit, r.direction);
+    }
+    return false;
 }
 
 /* Chooses a light by power; *u becomes uniform again. */
@@ -78,6 +88,8 @@ bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
     const light *l = choose_light(s, &s->caustic_power, &u_light, out);
     vec3 target = caustic_target(s, random);
     if (!l->kind->emit_toward(l->self, w, u_primitive, u, target, &emission))
+        return false;
+    if (!meets_caster(s, emission.ray))
         return false;
     double density = aimed_density(s, emission.ray, l->kind->is_parallel);
     return density > 0.0 && finish(&emission, (float)density, out);

@@ -4,16 +4,34 @@
 #pragma once
 
 #include "scene/hit.h"
+#include "scene/instance.h"
 #include "scene/shape.h"
 
 typedef struct accel accel;
 
-/** @brief Builds over n shapes (borrowed; they must outlive the result). */
+/** @brief What rays may meet. Everything is borrowed and must outlive the result. */
+typedef struct accel_input {
+    shape *const *shapes; /**< of the world and of all objects */
+    size_t n_shapes;
+    const instance *instances;
+    size_t n_instances, n_objects;
+    double shutter[2]; /**< s: when rays of time 0 and 1 are */
+} accel_input;
+
+accel *accel_build_scene(const accel_input *in, unsigned threads, GError **error);
+/** @brief The same for n shapes of the world alone. */
 accel *accel_build(shape *const *shapes, size_t n, unsigned threads, GError **error);
 void accel_free(accel *a);
-/** @brief Nearest hit in (0, r->t_max): geometry only, hit->shape tells the rest.
+/** @brief Nearest hit in (0, r->t_max): geometry only, hit->shape and hit->instance tell
+ * the rest. Cut-outs (alpha) are passed by a choice that the ray alone decides.
  * Thread-safe. */
 bool accel_intersect(const accel *a, const ray *r, surface_hit *hit);
-/** @brief True if anything but interfaces (shapes without a material) lies in (0, r->t_max).
- *  Thread-safe. */
+/** @brief The same with all cut-outs solid. */
+bool accel_intersect_solid(const accel *a, const ray *r, surface_hit *hit);
+/** @brief True if anything but interfaces (shapes without a material) lies in (0,
+ * r->t_max). Thread-safe. */
 bool accel_occluded(const accel *a, const ray *r);
+/** @brief Where an instance is at a time of the shutter, 0..1. */
+transform accel_instance_at(const accel *a, int i, float time);
+/** @brief True if it moves while the shutter is open. */
+bool accel_instance_moves(const accel *a, int i);

@@ -14,7 +14,7 @@ typedef struct ray {
     vec3 origin;
     vec3 direction; /**< unit */
     float t_max;
-    float time; /**< shutter time in 0..1, for moving scenes */
+    float time; /**< of the shutter: 0 when it opens, 1 when it closes */
     const struct medium *medium; /**< that it travels in; NULL: none (medium.h) */
 } ray;
 
@@ -38,6 +38,7 @@ typedef struct surface_hit {
     float footprint;    /**< m: how wide the eye sees at once there; 0 for photons and
                            where it is not known */
     int shape;          /**< index in scene->shapes */
+    int instance;       /**< index in scene->instances, or NO_INDEX */
     uint32_t primitive; /**< triangle of a mesh, else 0 */
     int material; /**< index in scene->materials, or NO_INDEX: an invisible interface */
     int light;    /**< index in scene->lights of the area light here, or NO_INDEX */

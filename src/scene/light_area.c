@@ -19,6 +19,17 @@ static void free_area(void *self)
     g_free(l);
 }
 
+/* The share of the light that a cut-out shape sends from a place drawn on it. */
+static float opacity(const area_light *l, const shape_sample *at)
+{
+    const surface_hit hit = {.p = at->p,
+                             .n = at->n,
+                             .n_geom = at->n,
+                             .uv = at->uv,
+                             .primitive = at->primitive};
+    return shape_opacity(l->on, &hit);
+}
+
 /* Φ / L */
 static float exitance(const area_light *l)
 {
@@ -33,6 +44,10 @@ static void *create(const struct scene *s, const params *p, const transform *to_
     l->on = on;
     if (!(on->area > 0.0f))
         error_at(error, on->place, "a shape that shines must have an area");
+    else if (on->has_alpha && !on->alpha.texture && !(on->alpha.constant > 0.0f))
+        error_at(error, on->place,
+                 "a shape of \"alpha\" 0 can not shine; \"bool camera_visible\" false "
+                 "hides a lamp from the camera");
     else if (light_refuse(p, "filename", "an area light", error) &&
              params_bool(p, "twosided", &l->two_sided, error) &&
              emitter_init(&l->radiance, p, "L", NULL, error) &&
@@ -88,7 +103,7 @@ static bool emit(const void *self, const wavelengths *w, float u_primitive,
     vec3 local = warp_cosine_hemisphere(u_direction);
     frame f = frame_from_normal(back ? -at.n : at.n);
     leave(l, &at, frame_to_world(&f, local), out);
-    out->flux = power(self, w);
+    out->flux = power(self, w) * opacity(l, &at);
     return out->pdf_direction > 0.0f;
 }
 
@@ -109,7 +124,8 @@ static bool emit_toward(const void *self, const wavelengths *w, float u_primitiv
     vec3 direction = normalize3(target - at.p);
     float cosine = dot3(at.n, direction);
     leave(l, &at, direction, out);
-    out->flux = emitter_eval(&l->radiance, w) * (fabsf(cosine) * l->on->area);
+    out->flux =
+        emitter_eval(&l->radiance, w) * (fabsf(cosine) * l->on->area * opacity(l, &at));
     return out->pdf_direction > 0.0f;
 }
 
@@ -126,7 +142,7 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
         return false;
     *out = (light_sample){.wi = to / distance,
                           .distance = distance,
-                          .radiance = emitter_eval(&l->radiance, w),
+                          .radiance = emitter_eval(&l->radiance, w) * opacity(l, &at),
                           .pdf = at.pdf,
                           .n = at.n};
     return true;

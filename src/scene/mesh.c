@@ -19,6 +19,7 @@
  * that looks tiny or fills nearly the hemisphere by area, where the former loses digits.
  */
 #include "base/memory.h"
+#include "scene/mesh_params.h"
 #include "scene/mesh_triangle.h"
 #include "scene/shape_kinds.h"
 
@@ -169,82 +170,17 @@ void *mesh_shape_create(mesh *m, const shape_place *at, source_place place,
 
 /* ---- From a scene file ---- */
 
-/* The numbers of a per-vertex parameter; *out stays NULL if absent or empty. The first
- * one read tells the number of vertices. */
-static bool read_numbers(const params *p, const char *name, param_type type, size_t width,
-                         size_t *n, float **out, GError **error)
-{
-    const param *given = params_find(p, name);
-    if (!given || given->n == 0)
-        return true;
-    if (given->type != type) {
-        error_at(error, given->place, "\"%s\" of a triangle mesh has the wrong type",
-                 name);
-        return false;
-    }
-    if (given->n % width != 0 || (*n != 0 && given->n != *n * width)) {
-        error_at(error, given->place,
-                 "\"%s\" has %zu numbers; it needs %zu for each of %zu vertices", name,
-                 given->n, width, *n ? *n : given->n / width);
-        return false;
-    }
-    *out = big_alloc(given->n + 1, sizeof(float), "mesh vertices", error);
-    if (!*out)
-        return false;
-    memcpy(*out, given->numbers, given->n * sizeof(float));
-    *n = given->n / width;
-    return true;
-}
-
-static bool read_indices(const params *p, mesh *m, GError **error)
-{
-    static const int one_triangle[3] = {0, 1, 2};
-    const param *given = params_find(p, "indices");
-    source_place place = given ? given->place : p->place;
-    if (given && given->type != PARAM_INTEGER) {
-        error_at(error, place, "\"indices\" of a triangle mesh must be integers");
-        return false;
-    }
-    size_t n = given ? given->n : 3;
-    if ((!given && m->n_vertices != 3) || n == 0 || n % 3 != 0) {
-        error_at(error, place,
-                 given ? "a triangle mesh needs three \"indices\" a triangle, found %zu"
-                       : "a triangle mesh of more than one triangle needs \"indices\"",
-                 n);
-        return false;
-    }
-    m->indices = big_alloc(n, sizeof(uint32_t), "mesh indices", error);
-    if (!m->indices)
-        return false;
-    m->n_triangles = n / 3;
-    for (size_t i = 0; i < n; i++) {
-        int index = given ? given->integers[i] : one_triangle[i];
-        if (index < 0 || (size_t)index >= m->n_vertices) {
-            error_at(error, place,
-                     "index %d of triangle %zu is out of range: the mesh has %zu "
-                     "vertices",
-                     index, i / 3, m->n_vertices);
-            return false;
-        }
-        m->indices[i] = (uint32_t)index;
-    }
-    return true;
-}
-
 static bool read_mesh(const params *p, mesh *m, GError **error)
 {
+    const mesh_words words = {"triangle mesh", "triangle", 3};
     size_t *n = &m->n_vertices;
-    if (!read_numbers(p, "P", PARAM_POINT3, 3, n, &m->positions, error))
-        return false;
-    if (!m->positions) {
-        error_at(error, p->place, "a triangle mesh needs \"P\"");
-        return false;
-    }
     float *uvs = NULL;
-    bool done = read_numbers(p, "N", PARAM_NORMAL, 3, n, &m->normals, error) &&
-                read_numbers(p, "S", PARAM_VECTOR3, 3, n, &m->tangents, error) &&
-                read_numbers(p, "uv", PARAM_POINT2, 2, n, &uvs, error) &&
-                read_indices(p, m, error);
+    bool done =
+        mesh_read_points(&words, p, n, &m->positions, error) &&
+        mesh_read_numbers(&words, p, "N", PARAM_NORMAL, 3, n, &m->normals, error) &&
+        mesh_read_numbers(&words, p, "S", PARAM_VECTOR3, 3, n, &m->tangents, error) &&
+        mesh_read_numbers(&words, p, "uv", PARAM_POINT2, 2, n, &uvs, error) &&
+        mesh_read_indices(&words, p, *n, &m->n_triangles, &m->indices, error);
     m->uvs = (vec2 *)(void *)uvs;
     return done;
 }

@@ -112,16 +112,31 @@ float scene_imaging_ratio(const scene *s);
 
 /* ---- Queries on a committed scene ---- */
 
-/** @brief Nearest hit of a ray, with material and light. */
-static inline bool scene_intersect(const scene *s, const ray *r, surface_hit *hit)
+/** @brief What a hit's shape is made of. */
+static inline void scene_fill_hit(const scene *s, const ray *r, surface_hit *hit)
 {
-    if (!accel_intersect(s->accel, r, hit))
-        return false;
     const shape *on = s->shapes->pdata[hit->shape];
     hit->material = on->material;
     hit->light = on->light;
     hit->medium = r->medium;
     hit->interior = on->interior;
+}
+
+/** @brief Nearest hit of a ray, with material and light. */
+static inline bool scene_intersect(const scene *s, const ray *r, surface_hit *hit)
+{
+    if (!accel_intersect(s->accel, r, hit))
+        return false;
+    scene_fill_hit(s, r, hit);
+    return true;
+}
+
+/** @brief The same, cut-outs (alpha) taken as solid. */
+static inline bool scene_intersect_solid(const scene *s, const ray *r, surface_hit *hit)
+{
+    if (!accel_intersect_solid(s->accel, r, hit))
+        return false;
+    scene_fill_hit(s, r, hit);
     return true;
 }
 

@@ -4,10 +4,15 @@
  */
 #include "scene/shape.h"
 
+#include "math/sampler.h"
 #include "scene/shape_kinds.h"
 
-static const shape_kind *const kinds[] = {&mesh_kind, &sphere_kind, &disk_kind,
-                                          &cylinder_kind};
+#include <string.h>
+
+static const shape_kind *const kinds[] = {
+    &mesh_kind,     &sphere_kind,      &disk_kind,  &cylinder_kind,
+    &bilinear_kind, &subdivision_kind, &curve_kind,
+};
 
 static const shape_kind *find_kind(const char *name)
 {
@@ -22,13 +27,17 @@ static shape *shape_wrap(const shape_kind *kind, void *self, const shape_place *
                          source_place place)
 {
     shape *s = g_new0(shape, 1);
-    *s = (shape){.kind = kind,
-                 .self = self,
-                 .material = at->material,
-                 .light = NO_INDEX,
-                 .camera_hidden = at->camera_hidden,
-                 .area = kind->area(self),
-                 .place = place};
+    *s =
+        (shape){.kind = kind,
+                .self = self,
+                .material = at->material,
+                .light = NO_INDEX,
+                .camera_hidden = at->camera_hidden,
+                .has_alpha = at->alpha && (at->alpha->texture || at->alpha->constant < 1),
+                .alpha = at->alpha ? *at->alpha : (float_input){.constant = 1.0f},
+                .object = NO_INDEX,
+                .area = kind->area(self),
+                .place = place};
     return s;
 }
 
@@ -38,11 +47,13 @@ shape *shape_new(const char *name, const params *p, const shape_place *at, GErro
     if (!kind) {
         error_at(error, p->place,
                  "shape \"%s\" is not supported; known are trianglemesh, plymesh, "
-                 "sphere, disk and cylinder",
+                 "bilinearmesh, loopsubdiv, curve, sphere, disk and cylinder",
                  name);
         return NULL;
     }
     void *self = kind->create(p, at, error);
+    if (kind->becomes)
+        kind = kind->becomes;
     if (!self)
         return NULL;
     g_autofree char *what = g_strdup_printf("shape \"%s\"", name);
@@ -65,6 +76,15 @@ void shape_free(shape *s)
         return;
     s->kind->free(s->self);
     g_free(s);
+}
+
+vec2 shape_retry(vec2 u, uint64_t attempt, float *third)
+{
+    uint32_t bits[2];
+    memcpy(bits, &u, sizeof bits);
+    uint64_t h = hash_mix(((uint64_t)bits[0] << 32) | bits[1], attempt);
+    *third = (float)(hash_mix(h, 1) >> 40) * 0x1p-24f;
+    return (vec2){(float)(h >> 40) * 0x1p-24f, (float)((h >> 8) & 0xffffff) * 0x1p-24f};
 }
 
 shape_sample shape_sample_area(const shape *s, float u_primitive, vec2 u)

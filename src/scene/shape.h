@@ -8,6 +8,7 @@
 #include "math/transform.h"
 #include "scene/hit.h"
 #include "scene/params.h"
+#include "scene/texture.h"
 
 /** @brief Where a shape stands and what it is made of. */
 typedef struct shape_place {
@@ -16,6 +17,8 @@ typedef struct shape_place {
     int material;             /**< index in scene->materials, or NO_INDEX */
     const params *area_light; /**< borrowed; NULL: does not shine */
     bool camera_hidden;       /**< rays straight from the camera pass it unseen */
+    const float_input *alpha; /**< copied; the share of rays that the surface stops, by
+                                 place; NULL: all */
 } shape_place;
 
 /** @brief A triangle mesh in world space; arrays big_alloc'ed, owned. */
@@ -45,14 +48,20 @@ typedef struct shape shape;
  * intersect. */
 typedef struct shape_kind {
     const char *name; /**< "sphere" */
+    /** What create makes is of that kind; NULL: of this one. */
+    const struct shape_kind *becomes;
     /** From parameters. NULL with ERROR_INPUT. */
     void *(*create)(const params *p, const shape_place *at, GError **error);
     void (*free)(void *self);
     box3 (*bounds)(const void *self);
     /** The mesh to hand to Embree; NULL for kinds with intersect. */
     const mesh *(*triangles)(const void *self);
-    /** Nearest t in (0, t_max); NULL for meshes. */
-    bool (*intersect)(const void *self, const ray *r, float *t, float *u, float *v);
+    /** Nearest t in (t_min, t_max), with u and v; NULL for meshes. */
+    bool (*intersect)(const void *self, uint32_t primitive, const ray *r, float t_min,
+                      float tuv[3]);
+    /** Of kinds with intersect; NULL: one primitive, with the bounds of all. */
+    size_t (*n_primitives)(const void *self);
+    box3 (*primitive_bounds)(const void *self, uint32_t primitive);
     /** Fills p, n_geom, n, dpdu, uv from the primitive and Embree's or intersect's u, v.
      */
     void (*fill_hit)(const void *self, const ray *r, float u, float v, surface_hit *hit);
@@ -74,7 +83,10 @@ struct shape {
     int light; /**< index in scene->lights or NO_INDEX */
     bool camera_hidden;
     const struct medium *interior; /**< its material's, once the scene is committed */
-    float area;
+    bool has_alpha;
+    float_input alpha;
+    int object; /**< index in scene->objects it is a part of, or NO_INDEX: the world */
+    float area; /**< m², in the space of its object */
     source_place place;
 };
 
@@ -85,6 +97,16 @@ shape *shape_new(const char *kind, const params *p, const shape_place *at,
  * otherwise. */
 shape *shape_new_mesh(mesh *m, const shape_place *at, source_place place, GError **error);
 void shape_free(shape *s);
+
+/** @brief The share of rays that the surface stops at a hit, 0..1. */
+static inline float shape_opacity(const shape *s, const surface_hit *hit)
+{
+    return s->has_alpha ? clampf(float_input_eval(&s->alpha, hit), 0.0f, 1.0f) : 1.0f;
+}
+
+/** @brief For kinds that sample by rejection: two uniform numbers and a third for the
+ * given attempt, made from u. */
+vec2 shape_retry(vec2 u, uint64_t attempt, float *third);
 
 /** @brief Uniform by area; pdf per area. */
 shape_sample shape_sample_area(const shape *s, float u_primitive, vec2 u);

@@ -57,8 +57,10 @@ static box3 bounds(const void *self)
                           (const double[3]){c->radius, c->radius, c->z_max});
 }
 
-static bool intersect(const void *self, const ray *r, float *t, float *u, float *v)
+static bool intersect(const void *self, uint32_t primitive, const ray *r, float t_min,
+                      float tuv[3])
 {
+    (void)primitive;
     const cylinder *c = self;
     quadric_ray object = quadric_to_object(&c->q, r);
     double roots[2];
@@ -68,10 +70,10 @@ static bool intersect(const void *self, const ray *r, float *t, float *u, float 
         double p[3];
         for (int k = 0; k < 3; k++)
             p[k] = object.o[k] + roots[i] * object.d[k];
-        if (roots[i] > 0.0 && roots[i] < (double)r->t_max && p[2] >= c->z_min &&
+        if (roots[i] > (double)t_min && roots[i] < (double)r->t_max && p[2] >= c->z_min &&
             p[2] <= c->z_max && quadric_phi(p) <= c->q.phi_max) {
-            *t = (float)roots[i];
-            *u = *v = 0.0f;
+            tuv[0] = (float)roots[i];
+            tuv[1] = tuv[2] = 0.0f;
             return true;
         }
     }

@@ -68,20 +68,22 @@ static box3 bounds(const void *self)
                           (const double[3]){d->radius, d->radius, d->height});
 }
 
-static bool intersect(const void *self, const ray *r, float *t, float *u, float *v)
+static bool intersect(const void *self, uint32_t primitive, const ray *r, float t_min,
+                      float tuv[3])
 {
+    (void)primitive;
     const disk *d = self;
     quadric_ray object = quadric_to_object(&d->q, r);
     double where = (d->height - object.o[2]) / object.d[2];
-    if (!(where > 0.0 && where < (double)r->t_max))
+    if (!(where > (double)t_min && where < (double)r->t_max))
         return false;
     double p[3] = {object.o[0] + where * object.d[0], object.o[1] + where * object.d[1]};
     double distance2 = p[0] * p[0] + p[1] * p[1];
     if (distance2 > d->radius * d->radius || distance2 < d->inner * d->inner ||
         quadric_phi(p) > d->q.phi_max)
         return false;
-    *t = (float)where;
-    *u = *v = 0.0f;
+    tuv[0] = (float)where;
+    tuv[1] = tuv[2] = 0.0f;
     return true;
 }
 

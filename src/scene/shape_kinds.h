@@ -9,6 +9,9 @@ extern const shape_kind mesh_kind;
 extern const shape_kind sphere_kind;
 extern const shape_kind disk_kind;
 extern const shape_kind cylinder_kind;
+extern const shape_kind bilinear_kind;
+extern const shape_kind subdivision_kind; /**< becomes a mesh */
+extern const shape_kind curve_kind;
 
 /** @brief What mesh_kind keeps: the mesh moved to world space and checked. Takes the
  * arrays of m, also on failure. */

@@ -1,9 +1,8 @@
 #include "scene/shape_quadric.h"
 
-#include "math/sampler.h"
-
 #include <glib.h>
-#include <string.h>
+
+enum { MEAN_STEPS = 512 };
 
 static double dot_double(const double *a, const double *b, int n)
 {
@@ -49,6 +48,16 @@ static double area_factor(const quadric *q, const double n[3])
     return fabs(determinant(q)) * sqrt(dot_double(moved, moved, 3));
 }
 
+void quadric_place(quadric *q, const shape_place *at)
+{
+    *q = (quadric){.to_world = at->to_world,
+                   .flip = at->reverse_orientation !=
+                           transform_swaps_handedness(&at->to_world),
+                   .is_similar = is_similarity(at->to_world.m),
+                   .phi_max = 2.0 * G_PI,
+                   .mean_steps = MEAN_STEPS};
+}
+
 bool quadric_init(quadric *q, const params *p, const shape_place *at, GError **error)
 {
     float phi_max = 360.0f;
@@ -60,26 +69,23 @@ bool quadric_init(quadric *q, const params *p, const shape_place *at, GError **e
                  (double)phi_max);
         return false;
     }
-    *q = (quadric){.to_world = at->to_world,
-                   .flip = at->reverse_orientation !=
-                           transform_swaps_handedness(&at->to_world),
-                   .is_similar = is_similarity(at->to_world.m),
-                   .phi_max = (double)phi_max / 180.0 * G_PI};
+    quadric_place(q, at);
+    q->phi_max = (double)phi_max / 180.0 * G_PI;
     return true;
 }
 
 /* The mean of the area factor over the surface, by the midpoint rule. */
 static double mean_factor(const quadric *q)
 {
-    enum { STEPS = 512 };
+    int n = q->mean_steps;
     double sum = 0.0;
-    for (int i = 0; i < STEPS; i++) {
-        for (int k = 0; k < STEPS; k++) {
-            vec2 u = {((float)i + 0.5f) / STEPS, ((float)k + 0.5f) / STEPS};
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < n; k++) {
+            vec2 u = {((float)i + 0.5f) / (float)n, ((float)k + 0.5f) / (float)n};
             sum += area_factor(q, q->map(q, u).n);
         }
     }
-    return sum / ((double)STEPS * STEPS);
+    return sum / ((double)n * n);
 }
 
 bool quadric_set_area(quadric *q, quadric_map map, double object_area, const params *p,
@@ -200,16 +206,6 @@ float quadric_area(const void *self)
     return q->area;
 }
 
-/* Uniform numbers made from u, for the next attempt. */
-static vec2 rehash(vec2 u, uint64_t attempt, float *third)
-{
-    uint32_t bits[2];
-    memcpy(bits, &u, sizeof bits);
-    uint64_t h = hash_mix(((uint64_t)bits[0] << 32) | bits[1], attempt);
-    *third = (float)(hash_mix(h, 1) >> 40) * 0x1p-24f;
-    return (vec2){(float)(h >> 40) * 0x1p-24f, (float)((h >> 8) & 0xffffff) * 0x1p-24f};
-}
-
 shape_sample quadric_sample_area(const void *self, float u_primitive, vec2 u)
 {
     const quadric *q = self;
@@ -219,7 +215,7 @@ shape_sample quadric_sample_area(const void *self, float u_primitive, vec2 u)
         for (uint64_t i = 1; i < 64; i++) {
             if ((double)keep * q->factor < area_factor(q, at.n))
                 break;
-            at = q->map(q, rehash(u, i, &keep));
+            at = q->map(q, shape_retry(u, i, &keep));
         }
     }
     return (shape_sample){.p = point_to_world(q, at.p),

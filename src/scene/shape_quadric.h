@@ -29,6 +29,7 @@ typedef struct quadric {
     bool is_similar; /**< to_world keeps shapes: rotation, mirroring, uniform scale */
     double phi_max;  /**< rad, in (0, 2 pi] */
     double factor;   /**< largest area factor (the only one if is_similar) */
+    int mean_steps;  /**< each way, where the mean area factor is taken by a sum */
     float area;      /**< m², world */
     quadric_map map;
 } quadric;
@@ -38,7 +39,9 @@ typedef struct quadric_ray {
     double o[3], d[3];
 } quadric_ray;
 
-/** @brief Reads phimax and what the place tells. */
+/** @brief What the place tells; phi_max is a full turn. */
+void quadric_place(quadric *q, const shape_place *at);
+/** @brief The same, and phimax. */
 bool quadric_init(quadric *q, const params *p, const shape_place *at, GError **error);
 /** @brief Sets area and map, given the area in object space; first member of self is q.
  * false: the shape has no area. */

@@ -102,18 +102,20 @@ static bool is_on_part(const sphere *s, const quadric_ray *r, double t)
     return p[2] >= s->z_min && p[2] <= s->z_max && quadric_phi(p) <= s->q.phi_max;
 }
 
-static bool intersect(const void *self, const ray *r, float *t, float *u, float *v)
+static bool intersect(const void *self, uint32_t primitive, const ray *r, float t_min,
+                      float tuv[3])
 {
+    (void)primitive;
     const sphere *s = self;
     quadric_ray object = quadric_to_object(&s->q, r);
     double roots[2];
     if (!quadric_roots(&object, 3, s->radius, roots))
         return false;
     for (int i = 0; i < 2; i++) {
-        if (roots[i] > 0.0 && roots[i] < (double)r->t_max &&
+        if (roots[i] > (double)t_min && roots[i] < (double)r->t_max &&
             is_on_part(s, &object, roots[i])) {
-            *t = (float)roots[i];
-            *u = *v = 0.0f;
+            tuv[0] = (float)roots[i];
+            tuv[1] = tuv[2] = 0.0f;
             return true;
         }
     }
