@@ -3,16 +3,7 @@
  * renders; the error it claims against the error it makes.
  */
 #include "render/stop.h"
-#include "render_scenes.h"
-
-#define SMALL_ROOM ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS
-
-static void assert_same_bits(const image *a, const image *b)
-{
-    g_assert_cmpint(a->n_channels, ==, b->n_channels);
-    size_t n = pixels_of(a) * (size_t)a->n_channels;
-    g_assert_cmpmem(a->pixels, n * sizeof(float), b->pixels, n * sizeof(float));
-}
+#include "rooms.h"
 
 /* ---- Rules ---- */
 
@@ -71,7 +62,7 @@ static void test_fraction(void)
 /* Ends between the pass that was too early and the one that was too late. */
 static void test_time_is_kept(void)
 {
-    g_autoptr(scene) s = scene_of(SMALL_ROOM);
+    g_autoptr(scene) s = scene_of(ROOM);
     g_autoptr(render) r = render_of(s, "integrator=path spp=1 time=0.4");
     double start = (double)g_get_monotonic_time() * 1e-6;
     g_assert_true(render_run(r, NULL, NULL, NULL));
@@ -88,7 +79,7 @@ static void test_time_is_kept(void)
 
 static void test_noise_is_reached(void)
 {
-    g_autoptr(scene) s = scene_of(SMALL_ROOM);
+    g_autoptr(scene) s = scene_of(ROOM);
     g_autoptr(render) r = render_of(s, "integrator=path spp=4 noise=0.05");
     g_assert_true(render_run(r, NULL, NULL, NULL));
     const render_statistics st = render_get_statistics(r);
@@ -305,12 +296,6 @@ static void test_noise_is_honest(gconstpointer data)
     g_assert_cmpfloat(ratio, <, 1.5);
 }
 
-static double luminance_at(const image *img, size_t pixel)
-{
-    return 0.2126 * at(img, pixel, 0) + 0.7152 * at(img, pixel, 1) +
-           0.0722 * at(img, pixel, 2);
-}
-
 /* Over many seeds the squares of the errors are, on the mean over pixels, what variance.Y
    says. Both are taken relative to the brightness: at the lamp's edge, where the samples
    of a pixel fill it evenly, the scatter of passes overstates the error. */
@@ -345,7 +330,7 @@ static void test_variance_layer(void)
 
 static void test_one_pass_claims_nothing(void)
 {
-    g_autoptr(scene) s = scene_of(SMALL_ROOM);
+    g_autoptr(scene) s = scene_of(ROOM);
     g_autoptr(render) r = render_of(s, "integrator=path passes=1 spp=1");
     g_assert_true(render_run(r, NULL, NULL, NULL));
     g_autoptr(image) img = image_of(r);

@@ -1,8 +1,9 @@
 /*
- * Small scenes and short ways to render them, for tests of whole renders.
+ * Short ways to render a scene and to measure the image, for tests of whole renders.
  */
 #pragma once
 
+#include "image/compare.h"
 #include "render/render.h"
 #include "scene_text.h"
 
@@ -10,6 +11,7 @@
 static inline settings settings_with(const scene *s, const char *words)
 {
     settings how = s->settings;
+    how.integrator = INTEGRATOR_PHOTONMAP;
     how.integrator = INTEGRATOR_PHOTONMAP;
     g_auto(GStrv) list = g_strsplit(words, " ", -1);
     for (char **word = list; *word; word++) {
@@ -81,27 +83,18 @@ static inline double mean_of(const image *img, const char *layer)
     return sum / (3.0 * (double)pixels_of(img));
 }
 
-#define SIZE(n)                                                                          \
-    "Film \"rgb\" \"integer xresolution\" " #n " \"integer yresolution\" " #n            \
-    "\nPixelFilter \"box\"\n"
+/** Rec. 709 luminance of a pixel of the beauty. */
+static inline double luminance_at(const image *img, size_t pixel)
+{
+    return 0.2126 * at(img, pixel, channel_of(img, "R")) +
+           0.7152 * at(img, pixel, channel_of(img, "G")) +
+           0.0722 * at(img, pixel, channel_of(img, "B"));
+}
 
-#define ROOM_CAMERA                                                                      \
-    "LookAt 0 -3.4 1.2  0 0 0.9  0 0 1 Camera \"perspective\" \"float fov\" 55\n"
-
-/** The walls of a room of 4 x 6 x 2 m. */
-#define ROOM_WALLS                                                                       \
-    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5]\n"                           \
-    "Shape \"trianglemesh\" \"point3 P\" [-2 -4 0 2 -4 0 2 2 0 -2 2 0 -2 -4 2 2 -4 2 "   \
-    "2 2 2 -2 2 2] \"integer indices\" [0 1 2 0 2 3 4 6 5 4 7 6 0 5 1 0 4 5 3 2 6 3 6 "  \
-    "7 "                                                                                 \
-    "0 3 7 0 7 4 1 5 6 1 6 2]\n"
-
-/** A lamp beneath its ceiling; parameters come between. */
-#define ROOM_LAMP(parameters)                                                            \
-    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [8 7 6] " parameters           \
-    " Material \"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"trianglemesh\" "          \
-    "\"point3 P\" [-0.7 -0.7 1.98 -0.7 0.7 1.98 0.7 0.7 1.98 0.7 -0.7 1.98] "            \
-    "\"integer indices\" [0 1 2 0 2 3] AttributeEnd\n"
-
-#define GLASS_BALL                                                                       \
-    "Material \"dielectric\" Translate 0 0 0.6 Shape \"sphere\" \"float radius\" 0.5\n"
+/** Every channel of two images is the same, bit for bit. */
+static inline void assert_same_bits(const image *a, const image *b)
+{
+    g_assert_cmpint(a->n_channels, ==, b->n_channels);
+    size_t n = pixels_of(a) * (size_t)a->n_channels;
+    g_assert_cmpmem(a->pixels, n * sizeof(float), b->pixels, n * sizeof(float));
+}

@@ -1,0 +1,187 @@
+#include "verify.h"
+
+enum { SIDE = 8 };
+
+/* Chance that noise alone fails a comparison. */
+#define FALSE_ALARM 1e-6
+
+bool verify_is_long(void)
+{
+    return g_strcmp0(g_getenv("NEPHROID_VERIFY"), "long") == 0;
+}
+
+/* ---- Rendering ---- */
+
+typedef struct recorder {
+    const render *render;
+    trial *trial;
+    int per_group;                /* passes */
+    int64_t seen;                 /* passes that the last group ended with */
+    double before[VERIFY_BLOCKS]; /* sum over the passes seen */
+} recorder;
+
+static size_t block_of(const image *img, size_t pixel)
+{
+    size_t w = (size_t)img->width, h = (size_t)img->height;
+    return pixel / w * SIDE / h * SIDE + pixel % w * SIDE / w;
+}
+
+/* Mean luminance of what is reflected, by blocks. */
+static void measure_blocks(const image *img, double mean[VERIFY_BLOCKS])
+{
+    static const double y[3] = {0.2126, 0.7152, 0.0722};
+    double share = (double)VERIFY_BLOCKS / (double)pixels_of(img);
+    for (size_t k = 0; k < VERIFY_BLOCKS; k++)
+        mean[k] = 0;
+    for (size_t c = 0; c < 3; c++) {
+        g_autofree char *all = g_strdup_printf("%c", "RGB"[c]);
+        g_autofree char *lamps = g_strdup_printf("emission.%c", "RGB"[c]);
+        size_t a = channel_of(img, all), b = channel_of(img, lamps);
+        for (size_t i = 0; i < pixels_of(img); i++)
+            mean[block_of(img, i)] += share * y[c] * (at(img, i, a) - at(img, i, b));
+    }
+}
+
+static bool record(double fraction, const render_statistics *st, void *data)
+{
+    (void)fraction;
+    recorder *r = data;
+    if (st->passes == r->seen || st->passes % r->per_group != 0)
+        return true;
+    g_autoptr(image) img = image_of(r->render);
+    double mean[VERIFY_BLOCKS];
+    double *group = r->trial->value[st->passes / r->per_group - 1];
+    measure_blocks(img, mean);
+    for (size_t k = 0; k < VERIFY_BLOCKS; k++) {
+        double sum = mean[k] * (double)st->passes;
+        group[k] = (sum - r->before[k]) / r->per_group;
+        r->before[k] = sum;
+    }
+    r->seen = st->passes;
+    return true;
+}
+
+/* Mean over blocks of one group. */
+static double group_total(const trial *t, size_t group)
+{
+    double sum = 0;
+    for (size_t k = 0; k < VERIFY_BLOCKS; k++)
+        sum += t->value[group][k];
+    return sum / VERIFY_BLOCKS;
+}
+
+typedef struct moments {
+    double mean, error; /* standard error of the mean */
+} moments;
+
+static moments moments_of(const double *x, size_t n)
+{
+    double sum = 0, square = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += x[i];
+    double mean = sum / (double)n;
+    for (size_t i = 0; i < n; i++)
+        square += (x[i] - mean) * (x[i] - mean);
+    return (moments){mean, sqrt(square / (double)(n * (n - 1)))};
+}
+
+trial verify_render(const scene *s, const char *words, int passes)
+{
+    trial t = {0};
+    g_assert_cmpint(passes % VERIFY_GROUPS, ==, 0);
+    g_autofree char *all = g_strdup_printf("%s passes=%d", words, passes);
+    g_autoptr(render) r = render_of(s, all);
+    g_autoptr(GError) error = NULL;
+    recorder rec = {.render = r, .trial = &t, .per_group = passes / VERIFY_GROUPS};
+    render_run(r, record, &rec, &error);
+    g_assert_no_error(error);
+    g_assert_cmpint(rec.seen, ==, passes);
+    g_assert_cmpuint(render_get_statistics(r).n_not_finite, ==, 0);
+    double totals[VERIFY_GROUPS];
+    for (size_t g = 0; g < VERIFY_GROUPS; g++) {
+        totals[g] = group_total(&t, g);
+        for (size_t k = 0; k < VERIFY_BLOCKS; k++)
+            t.mean[k] += t.value[g][k] / VERIFY_GROUPS;
+    }
+    moments m = moments_of(totals, VERIFY_GROUPS);
+    t.total = m.mean;
+    t.error = m.error;
+    return t;
+}
+
+/* ---- Comparing ---- */
+
+/* Probability that a normal deviate is beyond ±z. */
+static double two_sided(double z)
+{
+    return erfc(z * G_SQRT2 / 2.0);
+}
+
+double verify_sidak(double alpha, size_t n)
+{
+    double each = -expm1(log1p(-alpha) / (double)n), low = 0, high = 30;
+    for (int i = 0; i < 60; i++) {
+        double z = 0.5 * (low + high);
+        *(two_sided(z) > each ? &low : &high) = z;
+    }
+    return high;
+}
+
+double verify_normal_of_t(double t, double freedom)
+{
+    double c = (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0);
+    return c * sqrt(freedom * log1p(t * t / freedom));
+}
+
+static double block_deviate(const trial *a, const trial *b, size_t block, double bias)
+{
+    double difference[VERIFY_GROUPS];
+    for (size_t g = 0; g < VERIFY_GROUPS; g++)
+        difference[g] = a->value[g][block] - b->value[g][block];
+    moments m = moments_of(difference, VERIFY_GROUPS);
+    double beyond = fabs(m.mean) - bias * fabs(b->mean[block]);
+    /* Where both are dark there is nothing to tell apart. */
+    if (beyond <= 1e-6 * fabs(b->total))
+        return 0;
+    return verify_normal_of_t(beyond / m.error, VERIFY_GROUPS - 1);
+}
+
+agreement verify_compare(const trial *a, const trial *b, double bias)
+{
+    double difference[VERIFY_GROUPS];
+    agreement found = {.limit = verify_sidak(FALSE_ALARM, VERIFY_BLOCKS)};
+    for (size_t g = 0; g < VERIFY_GROUPS; g++)
+        difference[g] = group_total(a, g) - group_total(b, g);
+    moments m = moments_of(difference, VERIFY_GROUPS);
+    found.off = m.mean / b->total;
+    found.error = m.error / b->total;
+    for (size_t k = 0; k < VERIFY_BLOCKS; k++)
+        found.z = fmax(found.z, block_deviate(a, b, k, bias));
+    return found;
+}
+
+void verify_agree(const char *name, const trial *a, const trial *b, double tolerance,
+                  double bias)
+{
+    agreement found = verify_compare(a, b, bias);
+    g_test_message("%s: %g and %g, %+.3f %% (+- %.3f), worst block z = %.1f of %.1f",
+                   name, a->total, b->total, 100 * found.off, 100 * found.error, found.z,
+                   found.limit);
+    g_assert_cmpfloat(found.error, <, tolerance * VERIFY_SHORT_LONG(2.0, 1.0 / 6));
+    g_assert_cmpfloat(fabs(found.off) - tolerance, <,
+                      found.error * verify_sidak(FALSE_ALARM, 1));
+    g_assert_cmpfloat(found.z, <, found.limit);
+}
+
+double verify_log_slope(const double *x, const double *y, size_t n)
+{
+    double sx = 0, sy = 0, sxx = 0, sxy = 0, count = (double)n;
+    for (size_t i = 0; i < n; i++) {
+        double u = log(x[i]), v = log(y[i]);
+        sx += u;
+        sy += v;
+        sxx += u * u;
+        sxy += u * v;
+    }
+    return (count * sxy - sx * sy) / (count * sxx - sx * sx);
+}

@@ -1,0 +1,72 @@
+/*
+ * The verify suite: whole renders against what must hold, with the statistics to tell an
+ * error from noise.
+ *
+ *   scene, settings ─► verify_render ─► trial: block by block, group of passes by group
+ *                                         └─► verify_compare(a, b) ─► mean, worst block
+ *
+ * Passes are independent but for their wavelengths, which are the same for all algorithms
+ * of one seed. So trials of the same number of passes are compared pass by pass, and what
+ * wavelengths do to both is not taken for noise.
+ *
+ * The short form runs with all tests. NEPHROID_VERIFY=long takes more samples and allows
+ * less.
+ */
+#pragma once
+
+#include "render_with.h"
+
+enum { VERIFY_GROUPS = 32, VERIFY_BLOCKS = 64 };
+
+/** @brief A render as its passes told it: luminance of what is reflected (all but the
+ * lamps as the camera sees them, whose edges make a noise of their own). */
+typedef struct trial {
+    double value[VERIFY_GROUPS][VERIFY_BLOCKS]; /**< mean over a block of pixels, by
+                                                   groups of passes */
+    double mean[VERIFY_BLOCKS], total;          /**< of all passes; of the picture */
+    double error;                               /**< standard error of total */
+} trial;
+
+/** @brief What the comparison of two trials found. */
+typedef struct agreement {
+    double off;   /**< total of a over that of b, less one */
+    double error; /**< standard error of that */
+    double z;     /**< of the worst block, as a normal deviate, beyond the bias allowed */
+    double limit; /**< of |z|, so that noise alone passes it once in 10⁶ comparisons */
+} agreement;
+
+/** @brief True if NEPHROID_VERIFY is "long". */
+bool verify_is_long(void);
+
+/** @brief The first in the short form, the second in the long one. */
+#define VERIFY_SHORT_LONG(a, b) (verify_is_long() ? (b) : (a))
+
+/**
+ * @brief Renders `passes` passes (a multiple of VERIFY_GROUPS) by the settings in words.
+ * The image is cut into 8 x 8 blocks, so its sides are multiples of 8 pixels.
+ */
+trial verify_render(const scene *s, const char *words, int passes);
+
+/**
+ * @brief Compares a with b, group by group: Student's t for each block, made a normal
+ * deviate.
+ * @param bias relative difference of a block that is allowed besides noise: what a radius
+ * blurs; 0 where none is
+ */
+agreement verify_compare(const trial *a, const trial *b, double bias);
+
+/** @brief Fails if totals differ by more than `tolerance` and noise, or some block is
+ * beyond its limit, or noise is so much that this says little: a total not known to 1.2
+ * times the tolerance, in the long form to a sixth of it. */
+void verify_agree(const char *name, const trial *a, const trial *b, double tolerance,
+                  double bias);
+
+/** @brief The normal deviate whose |z| one of n independent ones passes with probability
+ * alpha (Šidák 1967). */
+double verify_sidak(double alpha, size_t n);
+
+/** @brief The normal deviate as unlikely as Student's t (Wallace 1959). */
+double verify_normal_of_t(double t, double freedom);
+
+/** @brief Slope of the least-squares line through (log x, log y). */
+double verify_log_slope(const double *x, const double *y, size_t n);

@@ -1,0 +1,110 @@
+/*
+ * Ten small scenes by every algorithm: the same light, whichever way it is found.
+ *
+ * Path tracing is the truth: it has no bias. Photon mapping has one where it blurs: its
+ * radii shrink from pass to pass, so that what is left of it is a small share of blocks
+ * of 4 x 4 pixels, and that share is allowed; the mean over the picture is held to the
+ * same half per cent as all.
+ */
+#include "rooms.h"
+#include "verify.h"
+
+typedef struct subject {
+    const char *name, *text;
+} subject;
+
+#define EYE(more)                                                                        \
+    "LookAt 0 -3.4 1.2  0 0 0.9  0 0 1 Camera \"perspective\" \"float fov\" 55 " more    \
+    "\n" SIZE(32) "WorldBegin\n"
+#define BALL "Translate 0 0 0.6 Shape \"sphere\" \"float radius\" 0.5\n"
+/* A lamp so large that little of what is compared is the noise of its image in a mirror.
+ */
+#define WIDE_LAMP                                                                        \
+    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [2.3 2 1.8] Material "         \
+    "\"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"trianglemesh\" \"point3 P\" "       \
+    "[-1.4 -1.9 1.9 -1.4 1.2 1.9 1.4 1.2 1.9 1.4 -1.9 1.9] \"integer indices\" [0 1 2 "  \
+    "0 "                                                                                 \
+    "2 3] AttributeEnd\n"
+#define IN_ROOM(more) EYE("") WIDE_LAMP ROOM_WALLS more
+
+/* No walls to the sides and above, but a floor and a wall behind. */
+#define STAGE                                                                            \
+    "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5]\n"                           \
+    "Shape \"trianglemesh\" \"point3 P\" [-4 -2 0 4 -2 0 4 4 0 -4 4 0] \"integer "       \
+    "indices\" [0 1 2 0 2 3]\n"                                                          \
+    "Shape \"trianglemesh\" \"point3 P\" [-4 2 0 4 2 0 4 2 3 -4 2 3] \"integer "         \
+    "indices\" [0 1 2 0 2 3] Shape \"sphere\" \"float radius\" 0.5\n"
+
+static const subject subjects[] = {
+    {"empty", IN_ROOM("")},
+    {"mirror", IN_ROOM("Material \"conductor\" \"spectrum eta\" \"metal-Ag-eta\" "
+                       "\"spectrum k\" \"metal-Ag-k\" " BALL)},
+    {"glass", IN_ROOM("Material \"dielectric\" " BALL)},
+    {"dispersive",
+     IN_ROOM("Material \"dielectric\" \"spectrum eta\" \"glass-N-SF11\" " BALL)},
+    {"rough-metal", IN_ROOM("Material \"conductor\" \"float roughness\" 0.15 \"bool "
+                            "remaproughness\" false " BALL)},
+    {"rough-glass", IN_ROOM("Material \"dielectric\" \"float roughness\" 0.3 \"bool "
+                            "remaproughness\" false " BALL)},
+    {"plastic",
+     IN_ROOM("Material \"coateddiffuse\" \"rgb reflectance\" [0.2 0.4 0.8] " BALL)},
+    {"shading-normals",
+     IN_ROOM("Translate 0 0 0.8 Shape \"trianglemesh\" \"point3 P\" [1 0 0 0 1 0 -1 0 0 "
+             "0 -1 0 0 0 0.8 0 0 -0.8] \"normal N\" [1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 1 0 0 "
+             "-1] \"integer indices\" [0 1 4 1 2 4 2 3 4 3 0 4 1 0 5 2 1 5 3 2 5 0 3 "
+             "5]\n")},
+    {"lens-and-pane", EYE("\"float lensradius\" 0.1 \"float focaldistance\" 3") STAGE
+     "LightSource \"infinite\" \"rgb L\" [0.4 0.5 0.8]\n"
+     "AttributeBegin Material \"thindielectric\" Translate 0.3 -0.6 0.7 Rotate "
+     "70 1 0 0 Shape \"disk\" \"float radius\" 0.6 AttributeEnd\n"
+     "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9] \"bool twosided\" true "
+     "Translate -1 -1 2 Shape \"disk\" \"float radius\" 0.3\n"},
+    {"many-lights", EYE("") STAGE
+     "LightSource \"infinite\" \"rgb L\" [0.2 0.2 0.4]\n"
+     "LightSource \"distant\" \"point3 from\" [1 -1 2]\n"
+     "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [-1 -2 2]\n"
+     "LightSource \"spot\" \"rgb I\" [9 9 9] \"point3 from\" [1 -1 3] \"point3 to\" [0 1 "
+     "0] \"float coneangle\" 40 \"float conedeltaangle\" 15\n"
+     "AttributeBegin Translate 1 0 0.7 Material \"conductor\" \"float roughness\" 0.3 "
+     "Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n"
+     "AttributeBegin Translate 0 -0.5 0.5 Material \"interface\" Shape \"sphere\" "
+     "\"float radius\" 0.9 AttributeEnd\n"},
+};
+
+/* An algorithm, its settings, and what its radii may do to a block. */
+typedef struct way {
+    const char *name, *words;
+    int passes;
+    double bias;
+} way;
+
+static const way ways[] = {
+    {"auto", "integrator=auto spp=4 photons=5000 max_backward_bounces=-1", 32, 0.01},
+    {"photonmap", "integrator=photonmap spp=2 photons=10000 max_backward_bounces=-1", 32,
+     0.03},
+    {"sppm", "integrator=sppm spp=2 photons=10000 max_backward_bounces=-1", 32, 0.03},
+    {"vcm", "integrator=vcm spp=2 photons=4096 max_backward_bounces=-1", 32, 0.01},
+};
+
+static void test_agreement(gconstpointer data)
+{
+    const subject *of = data;
+    int more = VERIFY_SHORT_LONG(1, 16);
+    g_autoptr(scene) s = scene_of(of->text);
+    trial path =
+        verify_render(s, "integrator=path spp=8 max_backward_bounces=-1", 32 * more);
+    for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
+        trial t = verify_render(s, ways[i].words, ways[i].passes * more);
+        verify_agree(ways[i].name, &t, &path, 0.005, ways[i].bias);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    for (size_t i = 0; i < G_N_ELEMENTS(subjects); i++) {
+        g_autofree char *name = g_strconcat("/verify/agree/", subjects[i].name, NULL);
+        g_test_add_data_func(name, &subjects[i], test_agreement);
+    }
+    return g_test_run();
+}
