@@ -2,8 +2,9 @@
  * Edges, corners and thin walls: photons are counted, and area measured, where the
  * surface is.
  */
-#include "photon/estimate.h"
 #include "math/sampler.h"
+#include "math/warp.h"
+#include "photon/estimate.h"
 #include "scene_text.h"
 
 #define CAMERA                                                                           \
@@ -101,6 +102,48 @@ static void test_thin_wall_does_not_leak(void)
     g_assert_cmpfloat(fabs(irradiance(s, map, 0.22f) - 1), <, 0.02);
 }
 
+/* An even field of photons on a ball of radius 0.5 m, one W/m². */
+static photon_map *field_on_ball(float reach)
+{
+    enum { N = 400000 };
+    photon_store store = {0};
+    g_assert_true(photon_store_reserve(&store, N, NULL));
+    for (uint32_t i = 0; i < N; i++) {
+        sampler random = sampler_make(3, i);
+        vec3 n = warp_sphere(sampler_2d(&random));
+        photon p = {.p = 0.5f * n, .wi = n, .flux = spectrum_fill(PI_F / N)};
+        photon_store_put(&store, &p);
+    }
+    return photon_map_build(MAP_GRID, &store, reach, 1, NULL);
+}
+
+/* Where the surface bends off the disc, photons weigh less, and so must area. */
+static void test_ball_is_as_bright_as_a_plane(void)
+{
+    g_autoptr(scene) s =
+        scene_of(CAMERA "WorldBegin\n" LAMP "Shape \"sphere\" \"float radius\" 0.5\n");
+    const float reach[] = {0.03f, 0.05f, 0.1f, 0.15f, 0.2f};
+    for (size_t k = 0; k < G_N_ELEMENTS(reach); k++) {
+        enum { POINTS = 2000 };
+        g_autoptr(photon_map) map = field_on_ball(reach[k]);
+        estimate_options options = {.kernel = {KERNEL_EPANECHNIKOV, 1},
+                                    .radius = reach[k],
+                                    .flatten = 1,
+                                    .scene = s};
+        estimate_scratch scratch = {0};
+        double sum = 0;
+        for (uint32_t i = 0; i < POINTS; i++) {
+            sampler random = sampler_make(4, i);
+            vec3 n = warp_sphere(sampler_2d(&random));
+            sum += (double)spectrum_mean(
+                photon_irradiance(map, 0.5f * n, n, &options, &scratch, NULL));
+        }
+        estimate_scratch_clear(&scratch);
+        g_test_message("radius %g: %g W/m2, expected 1", (double)reach[k], sum / POINTS);
+        g_assert_cmpfloat(fabs(sum / POINTS - 1), <, 0.02);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -108,5 +151,6 @@ int main(int argc, char **argv)
     g_test_add_func("/neighbourhood/edge", test_edge_is_as_bright_as_the_middle);
     g_test_add_func("/neighbourhood/corner", test_corner_is_as_bright_as_the_middle);
     g_test_add_func("/neighbourhood/wall", test_thin_wall_does_not_leak);
+    g_test_add_func("/neighbourhood/ball", test_ball_is_as_bright_as_a_plane);
     return g_test_run();
 }

@@ -20,14 +20,15 @@ enum {
 /* Even where no probe passes, the centre itself is surface. */
 #define LEAST_COVERAGE (0.5f / AREA_PROBES)
 
-/* An angle of its own for every place, so that probes make no pattern in the picture. */
-static float angle_at(vec3 p)
+/* Two numbers in [0, 1) of its own for every place, so that probes make no pattern in the
+ * picture. */
+static vec2 numbers_at(vec3 p)
 {
     uint32_t bits[3];
     for (int i = 0; i < 3; i++)
         memcpy(&bits[i], (float[]){p[i]}, sizeof bits[i]);
     uint64_t h = hash_mix(hash_mix(bits[0], bits[1]), bits[2]);
-    return 2.0f * PI_F * (float)(h >> 40) * 0x1p-24f;
+    return (vec2){(float)(h >> 40) * 0x1p-24f, (float)(h & 0xffffff) * 0x1p-24f};
 }
 
 /* A direction of the frame's plane, as cosine and sine. */
@@ -53,7 +54,9 @@ static vec3 direction_at(const neighbourhood *hood, turn a)
 static void turn_frame(neighbourhood *hood)
 {
     hood->frame = frame_from_normal(hood->n);
-    vec3 s = direction_at(hood, turn_by(angle_at(hood->p)));
+    vec2 u = numbers_at(hood->p);
+    vec3 s = direction_at(hood, turn_by(2.0f * PI_F * u.x));
+    hood->offset = u.y;
     hood->frame = (frame){s, cross3(hood->n, s), hood->n};
 }
 
@@ -62,13 +65,15 @@ static vec3 lifted(const neighbourhood *hood, vec3 p)
     return p + hood->n * (LIFT * hood->radius);
 }
 
-/* True if there is surface of the disc under or at the point q of its plane. */
-static bool is_surface(const neighbourhood *hood, vec3 q)
+/* How far the surface of the disc lies off the point q of its plane, over what is
+ * allowed; 1 or more: there is none. */
+static float surface_height(const neighbourhood *hood, vec3 q)
 {
     float slab = NEIGHBOURHOOD_FLATTEN * hood->radius, height = LIFT * hood->radius;
     ray down = {lifted(hood, q), -hood->n, height + slab, 0.0f, NULL};
     surface_hit hit;
-    return scene_intersect(hood->scene, &down, &hit) && hit.t > height - slab;
+    return scene_intersect(hood->scene, &down, &hit) ? fabsf(hit.t - height) / slab
+                                                     : 1.0f;
 }
 
 /* True if what a ray from the lifted centre meets near the rim, in direction d, is the
@@ -126,7 +131,8 @@ static void probe_horizon(neighbourhood *hood)
     }
 }
 
-/* Probes on a sunflower spiral are even in area; the kernel weighs them. */
+/* Probes on a sunflower spiral are even in area. The kernel weighs them as it does
+ * photons: what bends off the plane counts as further away (photon_filter). */
 float neighbourhood_coverage(neighbourhood *hood, const kernel *k)
 {
     const turn golden = {-0.73736888f, 0.67549029f}; /* the golden angle */
@@ -134,13 +140,12 @@ float neighbourhood_coverage(neighbourhood *hood, const kernel *k)
     float whole = 0.0f, found = 0.0f;
     probe_horizon(hood);
     for (int i = 0; i < AREA_PROBES; i++, a = turn_further(a, golden)) {
-        float r2 = ((float)i + 0.5f) / AREA_PROBES;
-        float weight = kernel_eval(k, r2, 1.0f);
-        vec3 d = direction_at(hood, a);
-        vec3 q = hood->p + hood->radius * sqrtf(r2) * d;
-        whole += weight;
-        if (neighbourhood_sees(hood, q) && is_surface(hood, q))
-            found += weight;
+        float r2 = ((float)i + hood->offset) / AREA_PROBES;
+        vec3 q = hood->p + hood->radius * sqrtf(r2) * direction_at(hood, a);
+        float height = neighbourhood_sees(hood, q) ? surface_height(hood, q) : 1.0f;
+        whole += kernel_eval(k, r2, 1.0f);
+        if (height < 1.0f)
+            found += kernel_eval(k, maxf(r2, height * height), 1.0f);
     }
     return maxf(found / whole, LEAST_COVERAGE);
 }

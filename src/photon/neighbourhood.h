@@ -32,6 +32,7 @@ typedef struct neighbourhood {
     vec3 p, n;    /**< centre, unit geometric normal on the side that is seen */
     float radius; /**< m */
     frame frame;  /**< turned by an angle of its own for every place */
+    float offset; /**< of the probes, 0..1, of its own for every place */
     /** How far one sees along the surface, in the frame's plane: the sides of a polygon
      * around the centre, one a sector. */
     horizon_side side[NEIGHBOURHOOD_SECTORS];
