@@ -5,12 +5,32 @@
 
 #include "format/reader.h"
 
+#include <glib/gstdio.h>
 #include <string.h>
 
-static const format_reader *const readers[] = {&pbrt_reader};
+static const format_reader *const readers[] = {&pbrt_reader, &gltf_reader};
+
+/* A format that knows its files by what is in them. */
+static const format_reader *recognise(const char *path)
+{
+    char bytes[512];
+    const format_reader *found = NULL;
+    FILE *file = g_fopen(path, "rbe");
+    if (!file)
+        return NULL;
+    size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    for (size_t i = 0; i < G_N_ELEMENTS(readers) && !found; i++)
+        if (readers[i]->recognises && readers[i]->recognises(bytes, size))
+            found = readers[i];
+    return found;
+}
 
 static const format_reader *find_reader(const char *path)
 {
+    const format_reader *by_content = recognise(path);
+    if (by_content)
+        return by_content;
     g_autofree char *name = g_ascii_strdown(path, -1);
     if (g_str_has_suffix(name, ".gz"))
         name[strlen(name) - 3] = '\0';

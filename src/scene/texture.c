@@ -13,7 +13,8 @@ struct texture {
     bool is_spectrum;
 };
 
-static const texture_kind *const kinds[] = {&texture_constant, &texture_imagemap};
+static const texture_kind *const kinds[] = {&texture_constant, &texture_imagemap,
+                                            &texture_gltf};
 
 static const texture_kind *find_kind(const char *name, const params *p, GError **error)
 {

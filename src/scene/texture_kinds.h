@@ -7,3 +7,4 @@
 
 extern const texture_kind texture_constant;
 extern const texture_kind texture_imagemap;
+extern const texture_kind texture_gltf;

@@ -1,0 +1,181 @@
+/*
+ * A soft sky and a view that frames the scene, for files without lights or camera.
+ *
+ * The view comes from the front, a little from the side and above, as a photographer
+ * stands before a still life, as near as all of it is seen.
+ */
+#include "format/defaults.h"
+
+#include "format/given.h"
+#include "math/frame.h"
+
+#include <math.h>
+#include <string.h>
+
+#define DEFAULT_FOV 35.0 /* degrees, of the shorter side */
+
+enum { DEFAULT_WIDTH = 960, DEFAULT_HEIGHT = 720, SKY_ROWS = 64 };
+
+static params *list(const char *path)
+{
+    g_autofree char *absolute = g_canonicalize_filename(path, NULL);
+    g_autofree char *directory = g_path_get_dirname(absolute);
+    return params_new((source_place){g_intern_string(path), 0, 0}, directory,
+                      color_space_srgb());
+}
+
+/* Local z is up. */
+static transform upright(vec3 up)
+{
+    frame f = frame_from_normal(up);
+    double m[4][4] = {{0}};
+    for (int i = 0; i < 3; i++) {
+        m[i][0] = (double)f.s[i];
+        m[i][1] = (double)f.t[i];
+        m[i][2] = (double)f.n[i];
+    }
+    m[3][3] = 1.0;
+    transform out;
+    return transform_from_matrix((const double(*)[4])m, &out) ? out
+                                                              : transform_identity();
+}
+
+/* Radiance from a direction: a bright haze over a dark ground, bluer further up, and a
+ * soft sun (a cloud before it) behind the camera's left shoulder. */
+static void sky_color(vec3 d, vec3 up, vec3 sun, float rgb[3])
+{
+    static const float ground[3] = {0.22f, 0.21f, 0.2f}, haze[3] = {0.95f, 0.97f, 1.0f},
+                       zenith[3] = {0.3f, 0.42f, 0.62f}, glow[3] = {14.0f, 12.8f, 11.0f};
+    float height = dot3(d, up), off = acosf(clampf(dot3(d, sun), -1.0f, 1.0f));
+    float above = clampf(0.5f + 12.0f * height, 0.0f, 1.0f);
+    float rise = sqrtf(clampf(height, 0.0f, 1.0f)), near = expf(-square(off / 0.25f));
+    for (int i = 0; i < 3; i++)
+        rgb[i] =
+            lerpf(ground[i], lerpf(haze[i], zenith[i], rise), above) + near * glow[i];
+}
+
+/* A PFM file, whose rows go up from the lower one. Row 0 of the map is +z, columns go
+ * round from +x. */
+static GBytes *sky_picture(const transform *to_world, vec3 up, vec3 sun)
+{
+    g_autofree char *header =
+        g_strdup_printf("PF\n%d %d\n%s\n", 2 * SKY_ROWS, SKY_ROWS,
+                        G_BYTE_ORDER == G_LITTLE_ENDIAN ? "-1.0" : "1.0");
+    GByteArray *bytes = g_byte_array_new();
+    g_byte_array_append(bytes, (const guint8 *)header, (guint)strlen(header));
+    for (int y = SKY_ROWS - 1; y >= 0; y--)
+        for (int x = 0; x < 2 * SKY_ROWS; x++) {
+            float theta = PI_F * ((float)y + 0.5f) / SKY_ROWS, rgb[3];
+            float phi = PI_F * ((float)x + 0.5f) / SKY_ROWS;
+            vec3 d =
+                vec3_make(sinf(theta) * cosf(phi), sinf(theta) * sinf(phi), cosf(theta));
+            sky_color(transform_vector(to_world, d), up, sun, rgb);
+            g_byte_array_append(bytes, (const guint8 *)rgb, sizeof rgb);
+        }
+    return g_byte_array_free_to_bytes(bytes);
+}
+
+/* From where the camera looks: from the front, a little from the right and above. */
+static vec3 standpoint(vec3 up, float right, float above)
+{
+    vec3 side = vec3_make(1.0f, 0.0f, 0.0f);
+    if (fabsf(up[0]) > 0.5f)
+        side = vec3_make(0.0f, 0.0f, 1.0f);
+    return normalize3(cross3(side, up) + right * side + above * up);
+}
+
+static bool add_sky(scene *s, const char *path, vec3 up, GError **error)
+{
+    transform to_world = upright(up);
+    g_autofree char *name = g_strdup_printf("%s.sky.pfm", path);
+    g_autofree char *absolute = g_canonicalize_filename(name, NULL);
+    g_autoptr(GBytes) picture = sky_picture(&to_world, up, standpoint(up, -0.8f, 1.1f));
+    g_autoptr(params) p = list(path);
+    scene_add_file(s, absolute, picture);
+    give_text(p, PARAM_STRING, "filename", absolute);
+    log_message(&s->log, LOG_NOTE, "%s: no light in it; a soft sky is added", path);
+    return scene_add_light(s, "infinite", p, &to_world, error);
+}
+
+static bool set_film(scene *s, const char *path, GError **error)
+{
+    g_autoptr(params) p = list(path);
+    give_integer(p, "xresolution", DEFAULT_WIDTH);
+    give_integer(p, "yresolution", DEFAULT_HEIGHT);
+    return scene_set_film(s, "rgb", p, error);
+}
+
+static box3 bounds_of(const scene *s)
+{
+    box3 box = box3_empty();
+    for (guint i = 0; i < s->shapes->len; i++) {
+        const shape *on = s->shapes->pdata[i];
+        box = box3_union(box, on->kind->bounds(on->self));
+    }
+    return box;
+}
+
+/* How far back from the centre a view has to stand so that a box is in it. */
+static double distance_to_frame(box3 box, const transform *to_camera)
+{
+    double half = tan(0.5 * DEFAULT_FOV * G_PI / 180.0), far = 0.0;
+    double aspect = (double)DEFAULT_WIDTH / DEFAULT_HEIGHT;
+    for (int k = 0; k < 8; k++) {
+        vec3 corner =
+            vec3_make(k & 1 ? box.high[0] : box.low[0], k & 2 ? box.high[1] : box.low[1],
+                      k & 4 ? box.high[2] : box.low[2]);
+        vec3 c = transform_vector(to_camera, corner - box3_center(box));
+        double across = MAX(fabs((double)c[0]) / aspect, fabs((double)c[1]));
+        far = MAX(far, 1.06 * across / half - (double)c[2]);
+    }
+    return far;
+}
+
+/* Our right is the camera's right, where pbrt's camera, in a world of its own hand, looks
+ * into a mirror. */
+static bool look_from(vec3 from, vec3 at, vec3 up, transform *out)
+{
+    const transform mirror = transform_scale(-1.0, 1.0, 1.0);
+    double eye[3], target[3], upward[3];
+    for (int i = 0; i < 3; i++) {
+        eye[i] = (double)from[i];
+        target[i] = (double)at[i];
+        upward[i] = (double)up[i];
+    }
+    if (!transform_look_at(eye, target, upward, out))
+        return false;
+    *out = transform_multiply(&mirror, out);
+    return true;
+}
+
+static bool add_view(scene *s, const char *path, vec3 up, GError **error)
+{
+    box3 box = bounds_of(s);
+    vec3 toward = standpoint(up, 0.4f, 0.3f), center = box3_center(box);
+    transform look;
+    bool done = look_from(toward, vec3_make(0.0f, 0.0f, 0.0f), up, &look);
+    float distance = maxf((float)distance_to_frame(box, &look), 1e-6f);
+    if (!done || !look_from(center + distance * toward, center, up, &look)) {
+        error_at(error, (source_place){g_intern_string(path), 0, 0},
+                 "the scene is too large to be looked at");
+        return false;
+    }
+    look = transform_inverse(&look);
+    g_autoptr(params) p = list(path);
+    give_float(p, "fov", DEFAULT_FOV);
+    log_message(&s->log, LOG_NOTE, "%s: no camera in it; one that frames it is added",
+                path);
+    return set_film(s, path, error) &&
+           scene_set_camera(s, "perspective", p, &look, error);
+}
+
+bool scene_complete(scene *s, const char *path, vec3 up, GError **error)
+{
+    if (s->shapes->len == 0) {
+        error_at(error, (source_place){g_intern_string(path), 0, 0},
+                 "expected something with a surface, found nothing");
+        return false;
+    }
+    return (s->lights->len > 0 || add_sky(s, path, up, error)) &&
+           (s->has_camera || add_view(s, path, up, error));
+}
