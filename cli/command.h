@@ -18,4 +18,5 @@ int command_photons(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_compare(int argc, char **argv);
 int command_settings(int argc, char **argv);
+int command_bsdf(int argc, char **argv);
 int command_view(int argc, char **argv);

@@ -16,6 +16,7 @@ static const command commands[] = {
     {"info", "say what is in a scene", command_info},
     {"compare", "measure how far an image is from a reference", command_compare},
     {"settings", "list all settings", command_settings},
+    {"bsdf", "draw how a material scatters light", command_bsdf},
     {"view", "open a window on a scene", command_view},
 };
 

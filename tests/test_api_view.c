@@ -273,6 +273,248 @@ static void test_bounds(void)
     assert_near(high, (const double[]){3, 3, 3}, 3, 1e-5);
 }
 
+/* ---- Surfaces ---- */
+
+static void test_pick(void)
+{
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    const double origin[3] = {0, 0, -2}, ahead[3] = {0, 0, 1}, up[3] = {0, 1, 0};
+    NephSurfacePoint at;
+    g_assert_true(neph_scene_pick(scene, origin, ahead, &at));
+    g_assert_cmpfloat_with_epsilon(at.distance, 1.6, 1e-5);
+    assert_near(at.position, (const double[]){0, 0, -0.4}, 3, 1e-5);
+    assert_near(at.normal, (const double[]){0, 0, -1}, 3, 1e-5);
+    g_assert_cmpstr(at.material_name, ==, "glass");
+    g_assert_cmpstr(at.shape_kind, ==, "sphere");
+    g_assert_nonnull(strstr(at.file, "scene.pbrt"));
+    g_assert_cmpint(at.line, ==, 13);
+    g_assert_true(neph_scene_pick(scene, origin, up, &at));
+    g_assert_cmpstr(at.material_name, ==, "walls");
+    const double far_away[3] = {0, 9, 0};
+    g_assert_false(neph_scene_pick(scene, far_away, up, &at));
+}
+
+static const char cube[] =
+    "Camera \"perspective\"\n"
+    "WorldBegin\nLightSource \"point\"\nShape \"trianglemesh\"\n"
+    "\"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1]\n"
+    "\"integer indices\" [0 1 2 0 2 3 4 6 5 4 7 6 0 4 5 0 5 1\n"
+    " 1 5 6 1 6 2 2 6 7 2 7 3 3 7 4 3 4 0]\n";
+
+/* A cube has twelve edges; the diagonals of its sides are none. */
+static void test_wireframe(void)
+{
+    g_autofree char *path = g_build_filename(folder, "scene.pbrt", NULL);
+    g_assert_true(g_file_set_contents(path, cube, -1, NULL));
+    g_autoptr(NephScene) box = load(path);
+    size_t n;
+    g_autofree float *edges = neph_scene_wireframe(box, 1000, &n);
+    g_assert_cmpuint(n, ==, 12);
+    for (size_t i = 0; i < n; i++) {
+        const float *e = edges + 6 * i;
+        float length = fabsf(e[0] - e[3]) + fabsf(e[1] - e[4]) + fabsf(e[2] - e[5]);
+        g_assert_cmpfloat_with_epsilon(length, 1.0f, 1e-6f);
+    }
+    g_autofree float *few = neph_scene_wireframe(box, 4, &n);
+    g_assert_cmpuint(n, >, 0);
+    g_assert_cmpuint(n, <=, 4);
+    g_autoptr(NephScene) balls = make_scene("Camera \"perspective\"\n");
+    g_autofree float *lines = neph_scene_wireframe(balls, 100000, &n);
+    g_assert_cmpuint(n, >, 100);
+    for (size_t i = 0; i < n; i++) {
+        const float *e = lines + 6 * i;
+        float r = sqrtf(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+        g_assert_true(fabsf(r - 3.0f) < 1e-3f || fabsf(r - 0.4f) < 1e-3f);
+    }
+}
+
+/* ---- Photons ---- */
+
+static NephPhotons *trace(const NephScene *scene, const char *photons)
+{
+    g_autoptr(NephSettings) settings = neph_scene_settings(scene);
+    g_autoptr(GError) error = NULL;
+    neph_settings_set(settings, "photons", photons, NULL);
+    NephPhotons *traced = neph_photons_trace(scene, settings, &error);
+    g_assert_no_error(error);
+    return traced;
+}
+
+/* Of every photon, the path told passes where it landed, after as many bounces. */
+static void test_photon_paths(void)
+{
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    g_autoptr(NephPhotons) photons = trace(scene, "600");
+    NephPhotonEvent events[64];
+    size_t n = neph_photons_count(photons), per_class[NEPH_N_PHOTON_CLASSES] = {0};
+    g_assert_cmpuint(neph_photons_path(photons, 0, events, 64), ==, 0);
+    g_assert_true(neph_photons_follow(photons, NULL, NULL, NULL));
+    for (size_t i = 0; i < n; i++) {
+        NephPhoton p;
+        neph_photons_get(photons, i, &p);
+        per_class[p.photon_class]++;
+        g_assert_true((p.bounces == 0) == (p.photon_class == NEPH_PHOTON_DIRECT));
+        size_t n_events = MIN(neph_photons_path(photons, i, events, 64), 64);
+        g_assert_cmpuint(n_events, >, 1);
+        g_assert_cmpint(events[0].kind, ==, NEPH_PHOTON_EMITTED);
+        bool landed = false;
+        uint32_t bounces = 0;
+        for (size_t k = 0; k < n_events && !landed; k++) {
+            bounces += events[k].kind == NEPH_PHOTON_SCATTERED;
+            landed = events[k].kind == NEPH_PHOTON_STORED && bounces == p.bounces &&
+                     memcmp(events[k].position, p.position, sizeof p.position) == 0;
+        }
+        g_assert_true(landed || n_events == 64);
+    }
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
+        g_assert_cmpuint(per_class[c], >, 0);
+}
+
+static bool never(void *data)
+{
+    ++*(int *)data;
+    return false;
+}
+
+static void test_photons_cancelled(void)
+{
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    g_autoptr(NephSettings) settings = neph_scene_settings(scene);
+    g_autoptr(GError) error = NULL, again = NULL;
+    int asked = 0;
+    neph_settings_set(settings, "photons", "1000000", NULL);
+    g_assert_null(neph_photons_trace_while(scene, settings, never, &asked, &error));
+    g_assert_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
+    g_assert_cmpint(asked, >, 0);
+    g_autoptr(NephPhotons) photons = trace(scene, "60000");
+    g_assert_false(neph_photons_follow(photons, never, &asked, &again));
+    g_assert_error(again, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
+    g_assert_true(neph_photons_follow(photons, NULL, NULL, NULL));
+}
+
+/* Inside a sphere of radius 3 around a lamp of 10 W/sr, E = I / r² everywhere. About 400
+   photons weigh in, so that the tolerance is more than five standard deviations. */
+static void test_estimate(void)
+{
+    g_autofree char *head = g_strdup("Camera \"perspective\"\n");
+    g_autofree char *path = write_scene("scene.pbrt", head);
+    g_autofree char *text = NULL;
+    g_assert_true(g_file_get_contents(path, &text, NULL, NULL));
+    memcpy(strstr(text, "0 1.8 0"), "0 0.0 0", 7);
+    *strstr(text, "NamedMaterial \"glass\"\n") = '\0';
+    g_assert_true(g_file_set_contents(path, text, -1, NULL));
+    g_autoptr(NephScene) scene = load(path);
+    g_autoptr(NephPhotons) photons = trace(scene, "120000");
+    const double at[3] = {0, -3, 0}, up[3] = {0, 1, 0}, down[3] = {0, -1, 0};
+    NephEstimate e;
+    neph_photons_estimate(photons, at, up, 0.5, &e);
+    g_assert_cmpuint(e.n[NEPH_PHOTON_DIRECT], >, 100);
+    double y = 0.2126 * e.irradiance[0][0] + 0.7152 * e.irradiance[0][1] +
+               0.0722 * e.irradiance[0][2];
+    g_assert_cmpfloat_with_epsilon(y, 10.0 / 9.0, 0.33);
+    neph_photons_estimate(photons, at, down, 0.5, &e);
+    g_assert_cmpuint(e.n[NEPH_PHOTON_DIRECT], ==, 0);
+    g_assert_true(neph_photons_follow(photons, NULL, NULL, NULL));
+    neph_photons_estimate(photons, at, up, 0.0, &e);
+    g_assert_cmpfloat(e.radius[NEPH_PHOTON_DIRECT], >, 0.0);
+}
+
+static double distance_to(const NephPhotons *photons, size_t i, const double at[3])
+{
+    NephPhoton p;
+    neph_photons_get(photons, i, &p);
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++)
+        sum += ((double)p.position[k] - at[k]) * ((double)p.position[k] - at[k]);
+    return sqrt(sum);
+}
+
+static void test_neighbours(void)
+{
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    g_autoptr(NephPhotons) photons = trace(scene, "20000");
+    const double at[3] = {0, -3, 0}, up[3] = {0, 1, 0};
+    size_t index[20];
+    NephEstimate e;
+    size_t n = neph_photons_near(photons, at, up, 0.5, index, 20);
+    neph_photons_estimate(photons, at, up, 0.5, &e);
+    g_assert_cmpuint(n, ==, e.n[0] + e.n[1] + e.n[2]);
+    g_assert_cmpuint(n, >, 20);
+    for (size_t i = 0; i < 20; i++) {
+        g_assert_cmpfloat(distance_to(photons, index[i], at), <, 0.5);
+        if (i > 0)
+            g_assert_cmpfloat(distance_to(photons, index[i - 1], at), <=,
+                              distance_to(photons, index[i], at));
+    }
+}
+
+/* ---- Diagrams ---- */
+
+static size_t find_material(const NephScene *scene, const char *name)
+{
+    size_t i = 0;
+    while (g_strcmp0(neph_scene_material_name(scene, i), name) != 0)
+        g_assert_cmpuint(i++, <, neph_scene_n_materials(scene));
+    return i;
+}
+
+/* A Lambertian surface is rho / pi in every direction above it, and nothing below. */
+static void test_bsdf_diffuse(void)
+{
+    static const double rho[3] = {0.7, 0.5, 0.3};
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    size_t i = find_material(scene, "walls");
+    g_assert_cmpstr(neph_scene_material_kind(scene, i), ==, "diffuse");
+    g_autoptr(NephBsdfPlot) plot = neph_bsdf_plot(scene, i, 30.0, 360, NULL);
+    for (size_t k = 0; k < 360; k++)
+        for (int c = 0; c < 3; c++) {
+            double expected = k < 90 || k > 270 ? rho[c] / G_PI : 0.0;
+            if (k != 90 && k != 270)
+                g_assert_cmpfloat_with_epsilon((double)plot->rgb[3 * k + (size_t)c],
+                                               expected, 0.02);
+        }
+    g_assert_cmpuint(plot->n_rays, ==, 0);
+}
+
+/* Glass mirrors at the same angle, refracts by Snell, and keeps all light. */
+static void test_bsdf_glass(void)
+{
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    g_autoptr(NephBsdfPlot) plot =
+        neph_bsdf_plot(scene, find_material(scene, "glass"), 45.0, 90, NULL);
+    g_assert_cmpuint(plot->n_rays, ==, 2);
+    g_assert_cmpfloat_with_epsilon(plot->rays[0].angle, 45.0, 0.01);
+    double refracted = 180.0 - asin(sqrt(0.5) / 1.5) * 180.0 / G_PI;
+    g_assert_cmpfloat_with_epsilon(plot->rays[1].angle, refracted, 0.01);
+    for (int c = 0; c < 3; c++)
+        g_assert_cmpfloat_with_epsilon(plot->rays[0].rgb[c] + plot->rays[1].rgb[c], 1.0f,
+                                       0.03f);
+}
+
+static void test_bsdf_refused(void)
+{
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    g_assert_null(neph_bsdf_plot(scene, 99, 30.0, 90, NULL));
+    g_assert_null(neph_bsdf_plot(scene, 0, 91.0, 90, NULL));
+    g_assert_null(neph_bsdf_plot(scene, 0, 30.0, 2, NULL));
+    g_assert_null(neph_scene_material_name(scene, 99));
+}
+
+static void test_bsdf_svg(void)
+{
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    for (size_t i = 0; i < neph_scene_n_materials(scene); i++) {
+        g_autoptr(NephBsdfPlot) plot = neph_bsdf_plot(scene, i, 30.0, 90, NULL);
+        g_autofree char *svg = neph_bsdf_plot_svg(plot, "a <b> & c");
+        const GMarkupParser nothing = {0};
+        g_autoptr(GMarkupParseContext) parser =
+            g_markup_parse_context_new(&nothing, 0, NULL, NULL);
+        g_assert_true(g_markup_parse_context_parse(parser, svg, -1, NULL));
+        g_assert_true(g_markup_parse_context_end_parse(parser, NULL));
+        g_assert_nonnull(strstr(svg, "a &lt;b&gt; &amp; c"));
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -288,6 +530,16 @@ int main(int argc, char **argv)
     g_test_add_func("/api-view/camera/save-refused", test_camera_save_refused);
     g_test_add_func("/api-view/noise", test_noise);
     g_test_add_func("/api-view/bounds", test_bounds);
+    g_test_add_func("/api-view/pick", test_pick);
+    g_test_add_func("/api-view/wireframe", test_wireframe);
+    g_test_add_func("/api-view/photons/paths", test_photon_paths);
+    g_test_add_func("/api-view/photons/cancelled", test_photons_cancelled);
+    g_test_add_func("/api-view/photons/estimate", test_estimate);
+    g_test_add_func("/api-view/photons/neighbours", test_neighbours);
+    g_test_add_func("/api-view/bsdf/diffuse", test_bsdf_diffuse);
+    g_test_add_func("/api-view/bsdf/glass", test_bsdf_glass);
+    g_test_add_func("/api-view/bsdf/refused", test_bsdf_refused);
+    g_test_add_func("/api-view/bsdf/svg", test_bsdf_svg);
     int result = g_test_run();
     static const char *const files[] = {"scene.pbrt", "saved.pbrt", "none.pbrt"};
     for (size_t i = 0; i < G_N_ELEMENTS(files); i++) {

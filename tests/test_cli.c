@@ -10,8 +10,8 @@
 static void test_help_everywhere(folder *f, gconstpointer data)
 {
     (void)data;
-    static const char *const commands[] = {"",      "render ",  "photons ",
-                                           "info ", "compare ", "settings "};
+    static const char *const commands[] = {"",         "render ",   "photons ", "info ",
+                                           "compare ", "settings ", "bsdf ",    "view "};
     for (size_t i = 0; i < G_N_ELEMENTS(commands); i++) {
         g_autofree char *help = g_strconcat(commands[i], "--help", NULL);
         g_autofree char *version = g_strconcat(commands[i], "--version", NULL);
@@ -57,6 +57,10 @@ static void test_bad_usage(folder *f, gconstpointer data)
         {"compare a.exr b.exr --metric ssim", "expected rmse, relmse, psnr or flip"},
         {"settings --json --markdown", "exclude each other"},
         {"settings box.pbrt", "unexpected argument 'box.pbrt'"},
+        {"bsdf", "expected MATERIAL"},
+        {"bsdf diffuse --incidence 90", "--incidence"},
+        {"bsdf purple --scene box.pbrt", "no material 'purple'"},
+        {"view --frobnicate", "--frobnicate"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         g_auto(result) r = run(f, cases[i][0]);
@@ -200,6 +204,21 @@ static void test_info(folder *f, gconstpointer data)
     g_assert_cmpfloat(json_find_number(json.out, "width"), ==, 16.0);
 }
 
+static void test_bsdf(folder *f, gconstpointer data)
+{
+    (void)data;
+    run_well(f, "bsdf 'diffuse \"rgb reflectance\" [.2 .3 .4]' -o paint.svg");
+    g_autofree char *paint = folder_read(f, "paint.svg");
+    contains(paint, "<svg");
+    g_auto(result) named = run(f, "bsdf dielectric --scene box.pbrt --incidence 30");
+    g_assert_cmpint(named.code, ==, 0);
+    contains(named.out, "30°");
+    g_auto(result) wrong = run(f, "bsdf conduktor");
+    g_assert_cmpint(wrong.code, ==, 1);
+    contains(wrong.err, "MATERIAL");
+    g_assert_cmpuint(folder_count(f), ==, 2);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -211,5 +230,6 @@ int main(int argc, char **argv)
     folder_add_test("/cli/unwritable", test_unwritable_output);
     folder_add_test("/cli/settings-file", test_settings_file_is_read_strictly);
     folder_add_test("/cli/info", test_info);
+    folder_add_test("/cli/bsdf", test_bsdf);
     return g_test_run();
 }

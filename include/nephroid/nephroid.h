@@ -256,12 +256,25 @@ typedef struct NephPhoton {
     float position[3], direction[3]; /**< direction: to where it came from, unit */
     float rgb[3];                    /**< flux as linear sRGB, W */
     NephPhotonClass photon_class;
+    uint32_t bounces; /**< scatterings before it landed; 0 until neph_photons_follow */
 } NephPhoton;
 
 typedef struct NephPhotons NephPhotons;
-/** @brief Traces the photons of pass 0 without rendering. */
+/** @brief Traces the photons of pass 0 without rendering. The scene must outlive them. */
 NEPH_API NephPhotons *neph_photons_trace(const NephScene *scene,
                                          const NephSettings *settings, GError **error);
+/** @brief Asked now and then, on the thread that called. @return false to stop. */
+typedef bool (*NephGoOnFunc)(void *data);
+/** @brief The same, as long as go_on says so; else NULL with NEPH_ERROR_CANCELLED. */
+NEPH_API NephPhotons *neph_photons_trace_while(const NephScene *scene,
+                                               const NephSettings *settings,
+                                               NephGoOnFunc go_on, void *data,
+                                               GError **error);
+/** @brief Finds every photon's path, which bounces and neph_photons_path tell, and the
+ * radii that a render would gather within (in the statistics). Takes about as long as
+ * tracing did. go_on may be NULL. */
+NEPH_API bool neph_photons_follow(NephPhotons *photons, NephGoOnFunc go_on, void *data,
+                                  GError **error);
 NEPH_API void neph_photons_free(NephPhotons *photons);
 NEPH_API size_t neph_photons_count(const NephPhotons *photons);
 NEPH_API void neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out);
@@ -275,12 +288,115 @@ NEPH_API bool neph_photons_story(const NephScene *scene, const NephSettings *set
                                  size_t n, void (*write)(const char *line, void *data),
                                  void *data, GError **error);
 
+typedef enum {
+    NEPH_PHOTON_EMITTED,
+    NEPH_PHOTON_STORED,
+    NEPH_PHOTON_SCATTERED,
+    NEPH_PHOTON_ABSORBED,
+    NEPH_PHOTON_ENDED, /**< no lobe left for its class, or the bounce limit */
+    NEPH_PHOTON_LEFT   /**< the scene */
+} NephPhotonEventKind;
+
+/** @brief What happened to a photon at one place. */
+typedef struct NephPhotonEvent {
+    NephPhotonEventKind kind;
+    float position[3];
+    float direction[3];   /**< whither it goes on */
+    float rgb[3];         /**< its flux after the event, linear sRGB, W */
+    const char *what;     /**< "emitted", "diffuse reflected", ...; static */
+    const char *material; /**< of the surface, or of the light that emitted it its kind;
+                             "" if none; the scene's */
+} NephPhotonEvent;
+
+/** @brief The life of the emitted photon that left photon i: at most capacity events go
+ * to events. @return how many there are; 0 until neph_photons_follow */
+NEPH_API size_t neph_photons_path(const NephPhotons *photons, size_t i,
+                                  NephPhotonEvent *events, size_t capacity);
+
+/** @brief What an estimate of irradiance at a point is made of, map by map. */
+typedef struct NephEstimate {
+    double radius[NEPH_N_PHOTON_CLASSES]; /**< within which photons count, m */
+    size_t n[NEPH_N_PHOTON_CLASSES];      /**< photons within it, on the normal's side */
+    double irradiance[NEPH_N_PHOTON_CLASSES][3]; /**< linear sRGB, W/m²: kernel-weighed
+                                                    flux over the kernel's area */
+} NephEstimate;
+
+/** @brief The estimate of irradiance at a point, with the kernels of the settings,
+ * without probing edges. radius: m; 0: those of the statistics. */
+NEPH_API void neph_photons_estimate(const NephPhotons *photons, const double point[3],
+                                    const double normal[3], double radius,
+                                    NephEstimate *out);
+/** @brief The photons that the estimate counts, nearest first: at most capacity go to
+ * index. @return how many there are */
+NEPH_API size_t neph_photons_near(const NephPhotons *photons, const double point[3],
+                                  const double normal[3], double radius, size_t *index,
+                                  size_t capacity);
+
+/* ---- What a scene is made of ---- */
+
+/** @brief A place on a surface. Strings are the scene's. */
+typedef struct NephSurfacePoint {
+    double position[3];
+    double normal[3]; /**< geometric, on the side the ray came from, unit */
+    double distance;  /**< along the ray, m */
+    int shape;        /**< number in the scene */
+    const char *shape_kind;
+    int material;              /**< number in the scene; -1: none */
+    const char *material_name; /**< its name, or kind; "" if none */
+    const char *file;          /**< where the shape comes from; NULL: unknown */
+    int line;
+} NephSurfacePoint;
+
+/** @brief The first surface that the eye sees along a ray; direction is unit. */
+NEPH_API bool neph_scene_pick(const NephScene *scene, const double origin[3],
+                              const double direction[3], NephSurfacePoint *out);
+/** @brief The edges of the scene's shapes as *n line segments, six floats each; edges
+ * within a plane are left out, and if there are more than `most` an even choice is made.
+ * Curved shapes show lines on their surface. Owned by the caller (g_free). */
+NEPH_API float *neph_scene_wireframe(const NephScene *scene, size_t most, size_t *n);
+
+NEPH_API size_t neph_scene_n_materials(const NephScene *scene);
+/** @brief Its name, or its kind if it has none. The scene's. */
+NEPH_API const char *neph_scene_material_name(const NephScene *scene, size_t i);
+NEPH_API const char *neph_scene_material_kind(const NephScene *scene, size_t i);
+
+/** @brief A direction that a mirror or a smooth boundary sends light into. */
+typedef struct NephBsdfRay {
+    double angle; /**< as in NephBsdfPlot */
+    float rgb[3]; /**< share of the light */
+} NephBsdfRay;
+
+/**
+ * @brief What a material makes of light that comes in at an angle, in the plane of
+ * incidence: for a polar diagram.
+ *
+ * The light comes from the left of the normal. Angles of outgoing directions are counted
+ * in degrees from the normal to the right: below 90 is reflection, beyond is
+ * transmission, 270..360 is back to the light.
+ */
+typedef struct NephBsdfPlot {
+    double incidence; /**< degrees from the normal, 0..89 */
+    size_t n;         /**< directions, evenly spaced: direction i is at 360 i / n */
+    float *rgb; /**< [n][3], sr⁻¹: the BSDF for red, green and blue, where a white
+                   material has all three alike */
+    NephBsdfRay rays[2]; /**< what is not spread: reflected, transmitted */
+    size_t n_rays;
+} NephBsdfPlot;
+
+/** @brief n: at least 4. NEPH_ERROR_USAGE if there is no such material or angle. */
+NEPH_API NephBsdfPlot *neph_bsdf_plot(const NephScene *scene, size_t material,
+                                      double incidence, size_t n, GError **error);
+NEPH_API void neph_bsdf_plot_free(NephBsdfPlot *plot);
+/** @brief The diagram as SVG, with a title. Owned by caller. */
+NEPH_API char *neph_bsdf_plot_svg(const NephBsdfPlot *plot, const char *title);
+
 /* g_autoptr(NephScene) scene = neph_scene_load(...); frees itself. */
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephSettings, neph_settings_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephScene, neph_scene_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephImage, neph_image_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephRender, neph_render_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephPhotons, neph_photons_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephBsdfPlot, neph_bsdf_plot_free)
 
 #ifdef __cplusplus
 }

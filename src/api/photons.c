@@ -2,25 +2,56 @@
  * Photons on their way out: counted through over the three stores, directions unpacked,
  * and the flux at the pass' eight wavelengths turned into linear sRGB.
  */
-#include "api/objects.h"
+#include "api/photons.h"
 
 #include "api/statistics.h"
 #include "base/output.h"
-#include "render/photons.h"
 
-struct NephPhotons {
-    render_photons *traced;
-};
+/* Asks the caller whether to go on, as work's pulse. */
+typedef struct asking {
+    cancel_flag cancel;
+    NephGoOnFunc go_on;
+    void *data;
+} asking;
 
-NephPhotons *neph_photons_trace(const NephScene *s, const NephSettings *how,
-                                GError **error)
+static void ask(void *data)
 {
-    render_photons *traced = render_trace_photons(s->scene, &how->values, error);
+    asking *a = data;
+    if (!a->go_on(a->data))
+        atomic_store(&a->cancel.set, true);
+}
+
+static asking asking_make(NephGoOnFunc go_on, void *data)
+{
+    return (asking){.cancel.beat = go_on ? ask : NULL, .go_on = go_on, .data = data};
+}
+
+NephPhotons *neph_photons_trace_while(const NephScene *s, const NephSettings *how,
+                                      NephGoOnFunc go_on, void *data, GError **error)
+{
+    asking a = asking_make(go_on, data);
+    a.cancel.beat_data = &a;
+    render_photons *traced =
+        render_trace_photons(s->scene, &how->values, &a.cancel, error);
     if (!traced)
         return NULL;
     NephPhotons *photons = g_new(NephPhotons, 1);
     photons->traced = traced;
     return photons;
+}
+
+NephPhotons *neph_photons_trace(const NephScene *s, const NephSettings *how,
+                                GError **error)
+{
+    return neph_photons_trace_while(s, how, NULL, NULL, error);
+}
+
+bool neph_photons_follow(NephPhotons *photons, NephGoOnFunc go_on, void *data,
+                         GError **error)
+{
+    asking a = asking_make(go_on, data);
+    a.cancel.beat_data = &a;
+    return render_photons_follow(photons->traced, &a.cancel, error);
 }
 
 void neph_photons_free(NephPhotons *photons)
@@ -39,21 +70,34 @@ size_t neph_photons_count(const NephPhotons *photons)
     return n;
 }
 
-void neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out)
+photon_class photons_locate(const NephPhotons *photons, size_t *i)
 {
     const render_photons *traced = photons->traced;
     int c = 0;
-    while (c < N_PHOTON_CLASSES - 1 && i >= traced->stores[c].n)
-        i -= traced->stores[c++].n;
-    const photon found = photon_store_get(&traced->stores[c], i);
+    while (c < N_PHOTON_CLASSES - 1 && *i >= traced->stores[c].n)
+        *i -= traced->stores[c++].n;
+    return (photon_class)c;
+}
+
+void photons_rgb(const NephPhotons *photons, spectrum flux, float rgb[3])
+{
     float xyz[3];
-    spectrum_to_xyz(&traced->w, found.flux, xyz);
-    color_space_from_xyz(color_space_srgb(), xyz, out->rgb);
+    spectrum_to_xyz(&photons->traced->w, flux, xyz);
+    color_space_from_xyz(color_space_srgb(), xyz, rgb);
+}
+
+void neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out)
+{
+    const render_photons *traced = photons->traced;
+    photon_class c = photons_locate(photons, &i);
+    const photon found = photon_store_get(&traced->stores[c], i);
+    photons_rgb(photons, found.flux, out->rgb);
     for (int axis = 0; axis < 3; axis++) {
         out->position[axis] = found.p[axis];
         out->direction[axis] = found.wi[axis];
     }
     out->photon_class = (NephPhotonClass)c;
+    out->bounces = traced->origins[c] ? traced->origins[c][i].bounces : 0;
 }
 
 void neph_photons_statistics(const NephPhotons *photons, NephStatistics *out)

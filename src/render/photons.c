@@ -1,8 +1,8 @@
 #include "render/photons.h"
 
 #include "base/memory.h"
-#include "photon/trace.h"
 #include "transport/aim.h"
+#include "transport/photonmap.h"
 
 static const char *const class_names[N_PHOTON_CLASSES] = {"direct", "indirect",
                                                           "caustic"};
@@ -25,14 +25,14 @@ static uint64_t budget(const settings *how, photon_class c)
 
 /* What a render would plan, without the radii. */
 static bool make_plan(transport_plan *plan, const scene *s, const settings *how,
-                      GError **error)
+                      const cancel_flag *cancel, GError **error)
 {
     *plan = (transport_plan){.scene = s, .how = *how};
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         bool possible = c != PHOTON_CAUSTIC || s->n_caustic_shapes > 0;
         plan->n_photons[c] = possible ? budget(how, (photon_class)c) : 0;
     }
-    return aim_caustics(plan, NULL, error);
+    return aim_caustics(plan, cancel, error);
 }
 
 static trace_task task_for(const transport_plan *plan, photon_class c)
@@ -47,11 +47,17 @@ static trace_task task_for(const transport_plan *plan, photon_class c)
     };
 }
 
-static bool trace_class(render_photons *p, const transport_plan *plan, photon_class c,
+trace_task render_photons_task(const render_photons *p, photon_class c)
+{
+    return task_for(&p->plan, c);
+}
+
+static bool trace_class(render_photons *p, photon_class c, const cancel_flag *cancel,
                         GError **error)
 {
     double start = seconds();
-    trace_task task = task_for(plan, c);
+    trace_task task = task_for(&p->plan, c);
+    task.cancel = cancel;
     trace_result result = {0};
     if (!photon_trace(&task, false, &result, error))
         return false;
@@ -67,19 +73,20 @@ static bool trace_class(render_photons *p, const transport_plan *plan, photon_cl
     return true;
 }
 
-render_photons *render_trace_photons(const scene *s, const settings *how, GError **error)
+render_photons *render_trace_photons(const scene *s, const settings *how,
+                                     const cancel_flag *cancel, GError **error)
 {
     g_autoptr(render_photons) p = g_aligned_alloc0(1, sizeof *p, 64);
-    transport_plan plan;
     p->w = wavelengths_for_pass((uint64_t)how->seed, 0);
-    bool ok = make_plan(&plan, s, how, error);
+    bool ok = make_plan(&p->plan, s, how, cancel, error);
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++)
-        ok = trace_class(p, &plan, (photon_class)c, error);
-    transport_plan_clear(&plan);
+        ok = trace_class(p, (photon_class)c, cancel, error);
     if (!ok)
         return NULL;
     p->statistics.time_total = p->statistics.time_trace;
     p->statistics.memory_peak = memory_peak();
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        p->statistics.memory_photons += photon_store_bytes(&p->stores[c]);
     return g_steal_pointer(&p);
 }
 
@@ -87,9 +94,100 @@ void render_photons_free(render_photons *p)
 {
     if (!p)
         return;
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         photon_store_clear(&p->stores[c]);
+        big_free(p->origins[c]);
+    }
+    transport_plan_clear(&p->plan);
     g_aligned_free(p);
+}
+
+/* ---- Origins ---- */
+
+enum { FOLLOW_CHUNK = 4096 };
+
+typedef struct follow_loop {
+    trace_task task;
+    GArray **found; /* of photon_origin, one a chunk */
+} follow_loop;
+
+/* A path on its way. */
+typedef struct followed {
+    GArray *found;
+    uint32_t bounces;
+} followed;
+
+/* Stores exactly what photon_trace would have: those that are finite. */
+static void note_origin(const photon_event *event, void *data)
+{
+    followed *f = data;
+    if (event->kind == PHOTON_SCATTERED)
+        f->bounces++;
+    if (event->kind != PHOTON_STORED || !spectrum_is_finite(event->flux))
+        return;
+    const photon_origin origin = {(uint32_t)event->index, f->bounces};
+    g_array_append_val(f->found, origin);
+}
+
+static void follow_chunk(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const follow_loop *loop = data;
+    GArray *found = g_array_new(FALSE, FALSE, sizeof(photon_origin));
+    for (size_t i = begin; i < end; i++) {
+        followed f = {found, 0};
+        photon_tell(&loop->task, i, note_origin, &f);
+    }
+    loop->found[begin / FOLLOW_CHUNK] = found;
+}
+
+/* Puts the chunks behind one another; frees them. */
+static void join_origins(photon_origin *to, size_t n, GArray **found, size_t n_chunks)
+{
+    size_t at = 0;
+    for (size_t i = 0; i < n_chunks; i++) {
+        if (!found[i])
+            continue;
+        size_t some = MIN(found[i]->len, n - at);
+        for (size_t k = 0; k < some && to; k++)
+            to[at + k] = g_array_index(found[i], photon_origin, k);
+        at += some;
+        g_array_unref(found[i]);
+    }
+}
+
+static bool follow_class(render_photons *p, photon_class c, const cancel_flag *cancel,
+                         GError **error)
+{
+    size_t n = p->stores[c].n;
+    follow_loop loop = {.task = task_for(&p->plan, c)};
+    size_t n_chunks = ((size_t)loop.task.n_photons + FOLLOW_CHUNK - 1) / FOLLOW_CHUNK;
+    p->origins[c] = big_alloc(MAX(n, 1), sizeof(photon_origin), "photon origins", error);
+    if (!p->origins[c])
+        return false;
+    loop.found = g_new0(GArray *, n_chunks);
+    bool done = parallel_for((size_t)loop.task.n_photons, FOLLOW_CHUNK,
+                             (unsigned)p->plan.how.threads, cancel, follow_chunk, &loop);
+    join_origins(p->origins[c], n, loop.found, n_chunks);
+    g_free(loop.found);
+    if (!done) {
+        big_free(p->origins[c]);
+        p->origins[c] = NULL;
+        error_set(error, ERROR_CANCELLED, "cancelled");
+    }
+    return done;
+}
+
+bool render_photons_follow(render_photons *p, const cancel_flag *cancel, GError **error)
+{
+    bool ok = p->has_radii || photonmap_choose_radii(&p->plan, cancel, error);
+    p->has_radii = ok;
+    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
+        p->statistics.radius[c] = p->plan.radius[c];
+        if (!p->origins[c])
+            ok = follow_class(p, (photon_class)c, cancel, error);
+    }
+    return ok;
 }
 
 /* ---- The story ---- */
@@ -159,7 +257,7 @@ bool render_photon_story(const scene *s, const settings *how, size_t n,
                          GError **error)
 {
     transport_plan plan;
-    bool ok = make_plan(&plan, s, how, error);
+    bool ok = make_plan(&plan, s, how, NULL, error);
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
         trace_task task = task_for(&plan, (photon_class)c);
         story st = {s, &task.w, (photon_class)c, write, data};

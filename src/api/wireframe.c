@@ -1,0 +1,158 @@
+/*
+ * A scene as lines: what its photons are drawn over.
+ *
+ * Meshes give their edges, each once, without those between triangles of one plane (the
+ * diagonals of rectangles). Shapes without triangles give lines of equal u and equal v of
+ * their own area-preserving map (shape_sample_area), which is smooth: circles of latitude
+ * and meridians on a sphere, circles and spokes on a disc.
+ */
+#include "api/objects.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CURVED_LINES = 12, CURVED_STEPS = 24, NUMBERS = 6 };
+
+/* Normals closer than this are one plane: 1 - cos. */
+#define PLANE 1e-4f
+
+typedef struct edge {
+    uint32_t a, b; /* a < b */
+    uint32_t triangle;
+} edge;
+
+typedef struct wire {
+    GArray *segments;  /* of float, NUMBERS each */
+    size_t stride, at; /* every stride-th edge is kept */
+} wire;
+
+static void put_segment(wire *w, vec3 a, vec3 b)
+{
+    const float line[NUMBERS] = {a[0], a[1], a[2], b[0], b[1], b[2]};
+    bool finite = true;
+    for (int i = 0; i < NUMBERS; i++)
+        finite &= isfinite(line[i]);
+    if (finite)
+        g_array_append_vals(w->segments, line, NUMBERS);
+}
+
+/* ---- Meshes ---- */
+
+static vec3 corner(const mesh *m, uint32_t i)
+{
+    const float *p = m->positions + 3 * (size_t)i;
+    return vec3_make(p[0], p[1], p[2]);
+}
+
+static vec3 triangle_normal(const mesh *m, uint32_t triangle)
+{
+    const uint32_t *i = m->indices + 3 * (size_t)triangle;
+    vec3 a = corner(m, i[0]);
+    return normalize3(cross3(corner(m, i[1]) - a, corner(m, i[2]) - a));
+}
+
+static int by_ends(const void *x, const void *y)
+{
+    const edge *e = x, *f = y;
+    if (e->a != f->a)
+        return e->a < f->a ? -1 : 1;
+    if (e->b != f->b)
+        return e->b < f->b ? -1 : 1;
+    return (e->triangle > f->triangle) - (e->triangle < f->triangle);
+}
+
+static GArray *list_edges(const mesh *m)
+{
+    GArray *edges = g_array_sized_new(FALSE, FALSE, sizeof(edge),
+                                      (guint)MIN(3 * m->n_triangles, G_MAXINT));
+    for (size_t t = 0; t < m->n_triangles; t++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = m->indices[3 * t + (size_t)k];
+            uint32_t b = m->indices[3 * t + (size_t)((k + 1) % 3)];
+            edge e = {MIN(a, b), MAX(a, b), (uint32_t)t};
+            g_array_append_val(edges, e);
+        }
+    g_array_sort(edges, by_ends);
+    return edges;
+}
+
+/* True if the first two of these edges with the same ends lie between triangles of one
+   plane. */
+static bool is_flat(const mesh *m, const edge *e, size_t n)
+{
+    if (n < 2)
+        return false;
+    float cosine =
+        dot3(triangle_normal(m, e[0].triangle), triangle_normal(m, e[1].triangle));
+    return fabsf(cosine) > 1.0f - PLANE;
+}
+
+static void put_mesh(wire *w, const mesh *m)
+{
+    g_autoptr(GArray) edges = list_edges(m);
+    const edge *all = (const edge *)(void *)edges->data;
+    for (size_t i = 0, next; i < edges->len; i = next) {
+        for (next = i + 1;
+             next < edges->len && all[next].a == all[i].a && all[next].b == all[i].b;
+             next++)
+            ;
+        if (!is_flat(m, &all[i], next - i) && w->at++ % w->stride == 0)
+            put_segment(w, corner(m, all[i].a), corner(m, all[i].b));
+    }
+}
+
+/* ---- Curved shapes ---- */
+
+static vec3 at_place(const shape *s, bool along_x, float line, float step)
+{
+    const float edge_margin = 1e-6f;
+    float a = line * (1.0f - edge_margin), b = step * (1.0f - edge_margin);
+    return shape_sample_area(s, 0.5f, along_x ? (vec2){b, a} : (vec2){a, b}).p;
+}
+
+static void put_lines(wire *w, const shape *s, bool along_x)
+{
+    for (int i = 0; i <= CURVED_LINES; i++) {
+        float line = (float)i / CURVED_LINES;
+        vec3 last = at_place(s, along_x, line, 0.0f);
+        for (int k = 1; k <= CURVED_STEPS; k++) {
+            vec3 next = at_place(s, along_x, line, (float)k / CURVED_STEPS);
+            put_segment(w, last, next);
+            last = next;
+        }
+    }
+}
+
+static void put_shape(wire *w, const shape *s)
+{
+    const mesh *m = s->kind->triangles ? s->kind->triangles(s->self) : NULL;
+    if (m) {
+        put_mesh(w, m);
+        return;
+    }
+    if (!s->kind->sample_area)
+        return;
+    put_lines(w, s, true);
+    put_lines(w, s, false);
+}
+
+static size_t count_edges(const scene *s)
+{
+    size_t n = 0;
+    for (guint i = 0; i < s->shapes->len; i++) {
+        const shape *one = s->shapes->pdata[i];
+        const mesh *m = one->kind->triangles ? one->kind->triangles(one->self) : NULL;
+        n += m ? 3 * m->n_triangles / 2 : 2 * CURVED_LINES * CURVED_STEPS;
+    }
+    return n;
+}
+
+float *neph_scene_wireframe(const NephScene *s, size_t most, size_t *n)
+{
+    wire w = {.segments = g_array_new(FALSE, FALSE, sizeof(float))};
+    w.stride = MAX(count_edges(s->scene) / MAX(most, 1), 1);
+    for (guint i = 0; i < s->scene->shapes->len; i++)
+        put_shape(&w, s->scene->shapes->pdata[i]);
+    *n = MIN(w.segments->len / NUMBERS, most);
+    return (float *)(void *)g_array_free(w.segments, FALSE);
+}
