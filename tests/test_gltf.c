@@ -367,6 +367,87 @@ static void test_emission(void)
     g_assert_cmpfloat(fabsf(on->area - (1.5f + 0.5f * sqrtf(3.0f))), <, 1e-5f);
 }
 
+/* A lamp whose picture is black on its left and 1 on its right half: half the power, sent
+   from the right half by every way that light is made. */
+static void test_textured_emission(void)
+{
+    static const float texels[] = {0, 0, 0, 1, 1, 1};
+    scene_folder f = folder_new(
+        "Camera \"perspective\" WorldBegin\n"
+        "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.pfm\" "
+        "\"string filter\" \"point\" \"string wrap\" \"clamp\"\n"
+        "AttributeBegin AreaLightSource \"diffuse\" \"texture L\" \"t\" \"float scale\" "
+        "3\n"
+        "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"integer "
+        "indices\" "
+        "[0 1 2 0 2 3] \"point2 uv\" [0 0 1 0 1 1 0 1] AttributeEnd\n"
+        "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"float scale\" 3\n"
+        "Shape \"trianglemesh\" \"point3 P\" [0 0 5 1 0 5 1 1 5 0 1 5] \"integer "
+        "indices\" "
+        "[0 1 2 0 2 3]\n");
+    g_autofree char *pfm = g_malloc(64);
+    int head = g_snprintf(pfm, 64, "PF\n2 1\n-1.0\n");
+    memcpy(pfm + head, texels, sizeof texels);
+    folder_write(&f, "t.pfm", pfm, head + (gssize)sizeof texels);
+    g_autoptr(GError) error = NULL;
+    g_autoptr(scene) s = format_load(f.main, 1, NULL, &error);
+    g_assert_no_error(error);
+    folder_remove(&f);
+    wavelengths w = wavelengths_at(0.5f);
+    const light *half = scene_light(s, 0), *whole = scene_light(s, 1);
+    float power = spectrum_mean(half->kind->power(half->self, &w)), emitted = 0.0f;
+    float full = spectrum_mean(whole->kind->power(whole->self, &w)), direct = 0.0f;
+    enum { N = 40000 }; /* a deviation of 0.0025 */
+    for (int i = 0; i < N; i++) {
+        sampler random = sampler_make(9, (uint64_t)i);
+        vec2 u = sampler_2d(&random);
+        float v = sampler_1d(&random);
+        light_emission e;
+        light_sample to;
+        if (half->kind->emit(half->self, &w, v, u, u, &e)) {
+            g_assert_true(e.ray.origin[0] > 0.4999f || spectrum_is_black(e.flux));
+            emitted += spectrum_mean(e.flux) / N;
+        }
+        if (half->kind->sample(half->self, &w, vec3_make(0.5f, 0.5f, 9), v, u, &to))
+            direct += spectrum_mean(to.radiance) / to.pdf / N;
+    }
+    g_assert_cmpfloat(fabsf(power / full - 0.5f), <, 0.02f);
+    g_assert_cmpfloat(fabsf(emitted / full - 0.5f), <, 0.015f);
+    surface_hit hit = {.n = {0, 0, 1}, .n_geom = {0, 0, 1}, .uv = {0.75f, 0.5f}};
+    float lit =
+        spectrum_mean(half->kind->radiance(half->self, &hit, vec3_make(0, 0, 1), &w));
+    g_assert_cmpfloat(fabsf(lit * PI_F / full - 1.0f), <, 1e-3f);
+    g_assert_cmpfloat(fabsf(direct / (lit * 0.5f / 81.0f) - 1.0f), <, 0.03f);
+    hit.uv.x = 0.25f;
+    g_assert_true(spectrum_is_black(
+        half->kind->radiance(half->self, &hit, vec3_make(0, 0, 1), &w)));
+}
+
+/* Opacity by mode: a mask cuts, a blend lets a share through. */
+static void test_alpha(void)
+{
+    static const struct {
+        const char *json;
+        float opacity;
+    } cases[] = {
+        {"{\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.4]}}", 1.0f},
+        {"{\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,"
+         "0."
+         "4]}}",
+         0.4f},
+        {"{\"alphaMode\":\"MASK\",\"alphaCutoff\":0.3,\"pbrMetallicRoughness\":{"
+         "\"baseColorFactor\":[1,1,1,0.4]}}",
+         1.0f},
+    };
+    surface_hit hit = {.n = {0, 0, 1}, .n_geom = {0, 0, 1}};
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autoptr(scene) s = NULL;
+        material_of(cases[i].json, NULL, &s);
+        float opacity = shape_opacity(s->shapes->pdata[0], &hit);
+        g_assert_cmpfloat(fabsf(opacity - cases[i].opacity), <, 1e-6f);
+    }
+}
+
 /* ---- What is refused ---- */
 
 static void test_refused(void)
@@ -381,7 +462,8 @@ static void test_refused(void)
         {"\"nodes\":[{\"children\":[0]}],\"scenes\":[{\"nodes\":[0]}],",
          "nodes[0]: the node is met twice"},
         {"\"nodes\":[{\"mesh\":4}],", "\"mesh\" 4: there are only 0 meshes"},
-        {"\"nodes\":[{\"children\":[\"x\"]}],", "nodes[0].children[0]: expected a whole number in 0..0"},
+        {"\"nodes\":[{\"children\":[\"x\"]}],",
+         "nodes[0].children[0]: expected a whole number in 0..0"},
         {"\"nodes\":[{\"translation\":[1,2]}],",
          "nodes[0].translation: expected 3 numbers, found 2"},
         {"\"materials\":[{}],\"meshes\":[{\"primitives\":[{\"attributes\":{}}]}]," NODES,
@@ -483,6 +565,8 @@ int main(int argc, char **argv)
     g_test_add_func("/gltf/solid-glass", test_solid_glass);
     g_test_add_func("/gltf/defaults", test_defaults);
     g_test_add_func("/gltf/emission", test_emission);
+    g_test_add_func("/gltf/textured-emission", test_textured_emission);
+    g_test_add_func("/gltf/alpha", test_alpha);
     g_test_add_func("/gltf/refused", test_refused);
     g_test_add_func("/gltf/not-json", test_not_json);
     g_test_add_func("/gltf/damaged", test_damaged);

@@ -24,6 +24,7 @@ typedef struct gltf_material_info {
     int index;          /**< in the scene; NO_INDEX: not made yet */
     int solid_index;    /**< the same read as solid glass; NO_INDEX: not made yet */
     params *area_light; /**< what it shines with, owned; NULL: it does not */
+    params *alpha;      /**< "alpha" of its shapes, owned; NULL: opaque */
     int texcoord;       /**< the set of coordinates its textures use */
     bool transmits;     /**< without a volume: thin by the standard */
 } gltf_material_info;
@@ -94,6 +95,10 @@ const gltf_material_info *gltf_material(gltf *g, gint64 material);
  * texture. */
 void gltf_give_textured(gltf *g, params *p, const char *name, const json_value *info,
                         const char *channel, const double *factor, unsigned n);
+/** @brief Adds "alpha": the image's alpha channel times a factor; below `cut` 0, else 1,
+ * unless cut < 0. */
+void gltf_give_alpha(gltf *g, params *p, const json_value *info, double factor,
+                     double cut);
 /** @brief The path of a texture's image, made known to the scene if it is embedded;
  * interned, NULL with an error noted. */
 const char *gltf_image_path(gltf *g, const json_value *info);

@@ -165,13 +165,34 @@ static params *read_emission(gltf *g, const json_value *m)
     json_numbers(m, "emissiveFactor", color, 3);
     if (!(color[0] + color[1] + color[2] > 0.0) || !(strength > 0.0))
         return NULL;
-    if (json_exists(&map)) {
-        gltf_note(g, LOG_WARNING, "an emissiveTexture is left out: it does not shine");
-        return NULL;
-    }
     params *p = gltf_params(g);
-    give_triple(p, PARAM_RGB, "L", color[0], color[1], color[2]);
+    gltf_give_textured(g, p, "L", &map, NULL, color, 3);
     give_float(p, "scale", strength);
+    return p;
+}
+
+/* ---- Cut-outs ---- */
+
+/* The alpha channel of the base colour, which for MASK is cut at a value. */
+static params *read_alpha(gltf *g, const json_value *m)
+{
+    static const char *const modes[] = {"OPAQUE", "MASK", "BLEND", NULL};
+    const char *mode = json_text(m, "alphaMode");
+    json_value pbr = json_member(m, "pbrMetallicRoughness");
+    json_value map = json_member(&pbr, "baseColorTexture");
+    double color[4] = {1.0, 1.0, 1.0, 1.0}, cut = json_real(m, "alphaCutoff", 0.5);
+    json_numbers(&pbr, "baseColorFactor", color, 4);
+    double alpha = CLAMP(color[3], 0.0, 1.0);
+    if (mode && !g_strv_contains(modes, mode))
+        json_fail(m, "expected \"alphaMode\" OPAQUE, MASK or BLEND, found %s", mode);
+    if (!mode || strcmp(mode, "OPAQUE") == 0)
+        return NULL;
+    bool masked = strcmp(mode, "MASK") == 0;
+    params *p = gltf_params(g);
+    if (json_exists(&map))
+        gltf_give_alpha(g, p, &map, alpha, masked ? cut : -1.0);
+    else
+        give_float(p, "alpha", masked ? (alpha < cut ? 0.0 : 1.0) : alpha);
     return p;
 }
 
@@ -231,6 +252,7 @@ static void read_info(gltf *g, const json_value *m, gltf_material_info *info)
     info->texcoord = (int)MAX(0, json_whole(&map, "texCoord", 64));
     info->transmits = json_exists(&e) && !has_volume(m);
     info->area_light = read_emission(g, m);
+    info->alpha = read_alpha(g, m);
     note_extensions(g, m);
 }
 

@@ -195,21 +195,40 @@ static bool is_solid(gltf *g, const json_value *primitive, const mesh *m,
     return body.closed;
 }
 
+static bool alpha_hides_all(const shape_place *at)
+{
+    return at->alpha && !at->alpha->texture && !(at->alpha->constant > 0.0f);
+}
+
+static void add_shape(gltf *g, const json_value *primitive, mesh *m,
+                      const gltf_material_info *info, shape_place *at)
+{
+    GError *error = NULL;
+    float_input alpha;
+    const source_place place = {g_intern_string(g->path), 0, 0};
+    if (info->alpha) {
+        if (!float_input_init(&alpha, g->scene, info->alpha, "alpha", 1.0f, &error)) {
+            gltf_take_error(g, primitive, error);
+            return;
+        }
+        at->alpha = &alpha;
+    }
+    if (!alpha_hides_all(at) && !scene_add_mesh(g->scene, m, at, place, &error))
+        gltf_take_error(g, primitive, error);
+}
+
 static void add_primitive(gltf *g, const json_value *primitive, const transform *to_world)
 {
     mesh m = {0};
     gint64 number = json_whole(primitive, "material", GLTF_MOST);
     const gltf_material_info *info = gltf_material(g, number);
     if (info && read_primitive(g, primitive, info->texcoord, &m)) {
-        GError *error = NULL;
         bool solid = is_solid(g, primitive, &m, info);
         shape_place at = {.to_world = *to_world,
                           .material = gltf_material_index(g, number, solid),
                           .area_light = info->area_light};
-        if (!gltf_failed(g) &&
-            !scene_add_mesh(g->scene, &m, &at,
-                            (source_place){g_intern_string(g->path), 0, 0}, &error))
-            gltf_take_error(g, primitive, error);
+        if (!gltf_failed(g))
+            add_shape(g, primitive, &m, info, &at);
     }
     mesh_clear(&m);
 }

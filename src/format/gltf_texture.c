@@ -127,14 +127,26 @@ static char *texture_name(const params *p)
     return g_strdup_printf("image-%.12s", sum);
 }
 
+/* Adds parameter `name` made of a texture of these parameters. */
+static void give_texture(gltf *g, params *p, const char *name, const json_value *info,
+                         const params *img, bool is_number)
+{
+    g_autofree char *unique = texture_name(img);
+    GHashTable *known =
+        is_number ? g->scene->float_textures : g->scene->spectrum_textures;
+    GError *error = NULL;
+    if (!gltf_failed(g) && !g_hash_table_contains(known, unique) &&
+        !scene_add_texture(g->scene, unique, "gltf", !is_number, img, &error))
+        gltf_take_error(g, info, error);
+    give_text(p, PARAM_TEXTURE, name, unique);
+}
+
 void gltf_give_textured(gltf *g, params *p, const char *name, const json_value *info,
                         const char *channel, const double *factor, unsigned n)
 {
-    if (!json_exists(info)) {
+    const char *path = json_exists(info) ? gltf_image_path(g, info) : NULL;
+    if (!json_exists(info))
         give_factor(p, PARAM_RGB, name, factor, n);
-        return;
-    }
-    const char *path = gltf_image_path(g, info);
     if (!path)
         return;
     g_autoptr(params) img = gltf_params(g);
@@ -144,11 +156,22 @@ void gltf_give_textured(gltf *g, params *p, const char *name, const json_value *
     give_factor(img, PARAM_RGB, "factor", factor, n);
     give_sampler(g, img, info);
     give_transform(img, info);
-    g_autofree char *tex = texture_name(img);
-    GHashTable *known = n == 1 ? g->scene->float_textures : g->scene->spectrum_textures;
-    GError *error = NULL;
-    if (!gltf_failed(g) && !g_hash_table_contains(known, tex) &&
-        !scene_add_texture(g->scene, tex, "gltf", n != 1, img, &error))
-        gltf_take_error(g, info, error);
-    give_text(p, PARAM_TEXTURE, name, tex);
+    give_texture(g, p, name, info, img, n == 1);
+}
+
+void gltf_give_alpha(gltf *g, params *p, const json_value *info, double factor,
+                     double cut)
+{
+    const char *path = gltf_image_path(g, info);
+    if (!path)
+        return;
+    g_autoptr(params) img = gltf_params(g);
+    give_text(img, PARAM_STRING, "filename", path);
+    give_text(img, PARAM_STRING, "channel", "A");
+    give_float(img, "factor", factor);
+    if (cut >= 0.0)
+        give_float(img, "cutoff", cut);
+    give_sampler(g, img, info);
+    give_transform(img, info);
+    give_texture(g, p, "alpha", info, img, true);
 }

@@ -1,33 +1,64 @@
 /*
  * The diffuse area light: a shape that sends the same radiance L to all directions of its
- * front (where n_geom points), or of both sides, Φ = π A L per side.
+ * front (where n_geom points), or of both sides, Φ = π A L per side. L may be a spectrum
+ * texture (ours): it is looked up where light leaves, places are drawn by area alone.
  */
 #include "math/frame.h"
 #include "math/warp.h"
 #include "scene/light_kinds.h"
+#include "scene/texture.h"
 
 typedef struct area_light {
     emitter radiance;
     const shape *on; /* borrowed */
     bool two_sided;
+    spectrum_input colors; /* textured: times radiance.scale, in place of its spectrum */
 } area_light;
+
+enum { N_MEAN = 1024 };
 
 static void free_area(void *self)
 {
     area_light *l = self;
     emitter_clear(&l->radiance);
+    spectrum_input_clear(&l->colors);
     g_free(l);
 }
 
-/* The share of the light that a cut-out shape sends from a place drawn on it. */
-static float opacity(const area_light *l, const shape_sample *at)
+static spectrum shines(const area_light *l, const surface_hit *hit, const wavelengths *w)
+{
+    if (!l->colors.texture)
+        return emitter_eval(&l->radiance, w);
+    return l->radiance.scale * spectrum_input_eval(&l->colors, hit, w);
+}
+
+/* L at a place drawn on the shape, less what a cut-out takes of it. */
+static spectrum shines_from(const area_light *l, const shape_sample *at,
+                            const wavelengths *w)
 {
     const surface_hit hit = {.p = at->p,
                              .n = at->n,
                              .n_geom = at->n,
                              .uv = at->uv,
                              .primitive = at->primitive};
-    return shape_opacity(l->on, &hit);
+    return shines(l, &hit, w) * shape_opacity(l->on, &hit);
+}
+
+/* Mean over the surface: by points spread evenly (Roberts' sequence) if it
+ * is textured. */
+static spectrum mean_radiance(const area_light *l, const wavelengths *w)
+{
+    spectrum sum = {0};
+    if (!l->colors.texture)
+        return emitter_eval(&l->radiance, w);
+    for (int i = 0; i < N_MEAN; i++) {
+        float x = ((float)i + 0.5f) / N_MEAN, y = 0.7548777f * (float)i,
+              z = 0.5698403f * (float)i;
+        shape_sample at =
+            shape_sample_area(l->on, x, (vec2){y - floorf(y), z - floorf(z)});
+        sum += shines_from(l, &at, w);
+    }
+    return sum / N_MEAN;
 }
 
 /* Φ / L */
@@ -36,10 +67,23 @@ static float exitance(const area_light *l)
     return (l->two_sided ? 2.0f : 1.0f) * PI_F * l->on->area;
 }
 
+/* The emitter is white then, for its scale. */
+static bool read_radiance(area_light *l, const struct scene *s, const params *p,
+                          GError **error)
+{
+    const param *q = params_find(p, "L");
+    if (!q || q->type != PARAM_TEXTURE)
+        return emitter_init(&l->radiance, p, "L", NULL, error) &&
+               emitter_set_total(&l->radiance, p, "power", exitance(l), error);
+    return light_refuse(p, "power", "a textured area light", error) &&
+           spectrum_input_init(&l->colors, s, p, "L", CURVE_EMISSION, NULL, error) &&
+           emitter_init(&l->radiance, p, NULL, NULL, error);
+}
+
 static void *create(const struct scene *s, const params *p, const transform *to_world,
                     const shape *on, GError **error)
 {
-    (void)s, (void)to_world;
+    (void)to_world;
     area_light *l = g_new0(area_light, 1);
     l->on = on;
     if (!(on->area > 0.0f))
@@ -50,8 +94,7 @@ static void *create(const struct scene *s, const params *p, const transform *to_
                  "hides a lamp from the camera");
     else if (light_refuse(p, "filename", "an area light", error) &&
              params_bool(p, "twosided", &l->two_sided, error) &&
-             emitter_init(&l->radiance, p, "L", NULL, error) &&
-             emitter_set_total(&l->radiance, p, "power", exitance(l), error))
+             read_radiance(l, s, p, error))
         return l;
     free_area(l);
     return NULL;
@@ -60,7 +103,7 @@ static void *create(const struct scene *s, const params *p, const transform *to_
 static spectrum power(const void *self, const wavelengths *w)
 {
     const area_light *l = self;
-    return exitance(l) * emitter_eval(&l->radiance, w);
+    return exitance(l) * mean_radiance(l, w);
 }
 
 /* cosθ / π over the sides that shine; 0 behind a one-sided light. */
@@ -74,7 +117,7 @@ static float direction_pdf(const area_light *l, float cosine)
 static light_bound bound(const void *self, const wavelengths *w)
 {
     const area_light *l = self;
-    float intensity = spectrum_mean(emitter_eval(&l->radiance, w)) * l->on->area;
+    float intensity = spectrum_mean(mean_radiance(l, w)) * l->on->area;
     return (light_bound){.is_local = true,
                          .box = l->on->kind->bounds(l->on->self),
                          .power = 4.0f * PI_F * intensity};
@@ -103,7 +146,7 @@ static bool emit(const void *self, const wavelengths *w, float u_primitive,
     vec3 local = warp_cosine_hemisphere(u_direction);
     frame f = frame_from_normal(back ? -at.n : at.n);
     leave(l, &at, frame_to_world(&f, local), out);
-    out->flux = power(self, w) * opacity(l, &at);
+    out->flux = exitance(l) * shines_from(l, &at, w);
     return out->pdf_direction > 0.0f;
 }
 
@@ -124,8 +167,7 @@ static bool emit_toward(const void *self, const wavelengths *w, float u_primitiv
     vec3 direction = normalize3(target - at.p);
     float cosine = dot3(at.n, direction);
     leave(l, &at, direction, out);
-    out->flux =
-        emitter_eval(&l->radiance, w) * (fabsf(cosine) * l->on->area * opacity(l, &at));
+    out->flux = shines_from(l, &at, w) * (fabsf(cosine) * l->on->area);
     return out->pdf_direction > 0.0f;
 }
 
@@ -142,7 +184,7 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
         return false;
     *out = (light_sample){.wi = to / distance,
                           .distance = distance,
-                          .radiance = emitter_eval(&l->radiance, w) * opacity(l, &at),
+                          .radiance = shines_from(l, &at, w),
                           .pdf = at.pdf,
                           .n = at.n};
     return true;
@@ -160,7 +202,7 @@ static spectrum radiance(const void *self, const surface_hit *hit, vec3 wo,
 {
     const area_light *l = self;
     if (l->two_sided || dot3(hit->n_geom, wo) > 0.0f)
-        return emitter_eval(&l->radiance, w);
+        return shines(l, hit, w);
     return spectrum_fill(0.0f);
 }
 

@@ -21,6 +21,7 @@ typedef struct gltf_texture {
     int wrap_u, wrap_v, filter;
     float matrix[2][3];
     float factor[3]; /* a number's is the first */
+    float cutoff;    /* of a number: it is 0 below and 1 from there on; < 0: none */
 } gltf_texture;
 
 static void gltf_free(void *self)
@@ -51,8 +52,10 @@ static bool read_factor(gltf_texture *t, bool is_spectrum, const params *p,
                         GError **error)
 {
     t->factor[0] = t->factor[1] = t->factor[2] = 1.0f;
+    t->cutoff = -1.0f;
     if (!is_spectrum)
-        return params_float(p, "factor", &t->factor[0], error);
+        return params_float(p, "factor", &t->factor[0], error) &&
+               params_float(p, "cutoff", &t->cutoff, error);
     const param *q = params_find(p, "factor");
     if (q && (q->type != PARAM_RGB || q->n != 3)) {
         error_at(error, q->place, "parameter 'factor': expected an rgb");
@@ -125,10 +128,14 @@ static float gltf_eval_float(const void *self, const surface_hit *hit)
 {
     const gltf_texture *t = self;
     int channel = t->pic.channels[t->channel];
-    if (channel < 0)
-        return t->factor[0];
-    texel_mix mix = look_up(t, hit->uv);
-    return t->factor[0] * texel_mix_channel(&mix, channel);
+    float value = t->factor[0];
+    if (channel >= 0) {
+        texel_mix mix = look_up(t, hit->uv);
+        value *= texel_mix_channel(&mix, channel);
+    }
+    if (t->cutoff >= 0.0f)
+        return value < t->cutoff ? 0.0f : 1.0f;
+    return value;
 }
 
 static spectrum gltf_eval_spectrum(const void *self, const surface_hit *hit,
