@@ -154,7 +154,7 @@ static vec3 draw(const image_sky *l, const wavelengths *w, vec2 u, spectrum *rad
 static light_emission leave(const image_sky *l, vec3 origin, vec3 direction,
                             float pdf_direction, spectrum flux)
 {
-    return (light_emission){.ray = {origin, direction, INFINITY, 0.0f},
+    return (light_emission){.ray = {.origin = origin, .direction = direction, .t_max = INFINITY},
                             .n = direction,
                             .flux = flux,
                             .pdf_position = 1.0f / light_disk_area(&l->disk),
