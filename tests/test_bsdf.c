@@ -362,7 +362,8 @@ static void test_modes(void)
     }
 }
 
-/* Where the normals disagree about the side nothing is scattered. */
+/* Where the normals disagree about the side the geometric one tells it, and wide lobes
+ * are not lit. */
 static void test_disagreeing_normals(void)
 {
     for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++)
@@ -370,16 +371,42 @@ static void test_disagreeing_normals(void)
             sampler s = sampler_make(99, i);
             bsdf b = make(&MODELS[m], 0.6f, ALL_LANES);
             vec3 wo = random_direction(&s), wi = random_direction(&s);
-            bool agree = dot3(wo, b.n_geom) * dot3(wo, b.shading.n) > 0.0f &&
-                         dot3(wi, b.n_geom) * dot3(wi, b.shading.n) > 0.0f;
-            spectrum f = bsdf_eval(&b, wo, wi, LOBE_ALL, TRANSPORT_RADIANCE);
-            float pdf = bsdf_pdf(&b, wo, wi, LOBE_ALL, TRANSPORT_RADIANCE);
-            if (!agree)
-                g_assert_true(spectrum_is_black(f) && !(pdf > 0.0f));
+            bool lit = dot3(wi, b.n_geom) * dot3(wi, b.shading.n) > 0.0f;
+            unsigned wide = LOBE_DIFFUSE | LOBE_ANY_SIDE;
+            spectrum f = bsdf_eval(&b, wo, wi, wide, TRANSPORT_RADIANCE);
+            if (!lit)
+                g_assert_true(spectrum_is_black(f));
             bool reflection = dot3(wo, b.n_geom) * dot3(wi, b.n_geom) > 0.0f;
             unsigned other = reflection ? LOBE_REFLECTION : LOBE_TRANSMISSION;
             f = bsdf_eval(&b, wo, wi, LOBE_ALL & ~other, TRANSPORT_RADIANCE);
             g_assert_true(spectrum_is_black(f));
+        }
+}
+
+/* Seen from between the planes a bent model reflects what an upright one does: all of it
+ * by narrow lobes, what the lit part of the sky gives by wide ones. */
+static void test_folded_energy(void)
+{
+    for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++)
+        for (uint64_t i = 0; i < 40; i++) {
+            sampler s = sampler_make(98, i);
+            drawing d = {.b = make(&MODELS[m], 0.5f, ALL_LANES),
+                         .mask = LOBE_ALL,
+                         .mode = TRANSPORT_RADIANCE};
+            d.wo = random_direction(&s);
+            float error, upright_error;
+            float found = spectrum_mean(mean_weight(&d, 2000, &error));
+            vec3 bisector = normalize3(d.b.shading.n - d.b.n_geom);
+            if (dot3(d.wo, d.b.n_geom) * dot3(d.wo, d.b.shading.n) < 0.0f)
+                d.wo -= 2.0f * dot3(d.wo, bisector) * bisector;
+            d.b.n_geom = d.b.shading.n;
+            float upright = spectrum_mean(mean_weight(&d, 2000, &upright_error));
+            float slack = 6.0f * (error + upright_error) + 1e-3f;
+            g_assert_cmpfloat(found, <, upright + slack);
+            if (!(d.b.lobes & LOBE_DIFFUSE))
+                g_assert_cmpfloat(found, >, upright - slack);
+            else
+                g_assert_cmpfloat(found, >, 0.3f * upright - slack);
         }
 }
 
@@ -457,6 +484,7 @@ int main(int argc, char **argv)
     g_test_add_func("/bsdf/rough-dispersion", test_rough_dispersion);
     g_test_add_func("/bsdf/modes", test_modes);
     g_test_add_func("/bsdf/disagreeing-normals", test_disagreeing_normals);
+    g_test_add_func("/bsdf/folded-energy", test_folded_energy);
     g_test_add_func("/bsdf/refractor", test_refractor);
     g_test_add_func("/bsdf/phong-energy", test_phong_energy);
     zoo_open();

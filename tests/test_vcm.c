@@ -403,7 +403,10 @@ static void test_shading_normals(void)
     double expected = path_mean(s, "passes=16 spp=32 seed=1");
     check_agreement(s, "vcm_strategies=bpt passes=16 spp=8 photons=8192", expected,
                     0.006);
-    check_agreement(s, "vcm_strategies=bpm passes=8 spp=4 photons=8192", expected, 0.008);
+    /* merging mixes the facets along the edges: a small radius keeps that below the noise
+     */
+    check_agreement(s, "vcm_strategies=bpm passes=16 spp=4 photons=20000 radius=0.03",
+                    expected, 0.015);
     check_agreement(s, "vcm_strategies=light passes=8 spp=8 photons=20000", expected,
                     0.006);
 }

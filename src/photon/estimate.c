@@ -327,12 +327,6 @@ spectrum photon_estimate(const photon_map *map, vec3 p, const bsdf *b, vec3 wo,
     g.b = b;
     g.wo = wo;
     g.weigh = lambertian ? bent ? weigh_bent : weigh_plain : weigh_bsdf;
-    if (lambertian && !(dot3(wo, b->shading.n) * dot3(wo, b->n_geom) > 0.0f)) {
-        if (info)
-            *info = (estimate_info){0};
-        scale_groups(scratch, (spectrum){0});
-        return (spectrum){0};
-    }
     spectrum sum = estimate(&g, map, scratch, info);
     if (!lambertian)
         return sum;

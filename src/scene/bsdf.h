@@ -72,8 +72,9 @@ typedef struct bsdf_sample {
 
 /** @brief f(wo, wi), sr⁻¹, of the lobes chosen by mask (classes and sides; specular ones
  * count as zero), without cosine; in IMPORTANCE with the adjoint corrections such that
- * the weight of a scattered photon is f |wi·n| / pdf. Zero where geometric and shading
- * normal disagree about the side. */
+ * the weight of a scattered photon is f |wi·n| / pdf. Where geometric and shading normal
+ * disagree about the side, the geometric one tells it (see bsdf.c); wide lobes are then
+ * not lit. */
 spectrum bsdf_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes, transport_mode mode);
 
 /** @brief pdf_solid_angle with which bsdf_sample picks wi given the same mask, specular
