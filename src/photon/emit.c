@@ -73,6 +73,8 @@ static const light *choose_light(const scene *s, const distribution *power, floa
 static bool finish(const light_emission *emission, float density, photon_start *out)
 {
     out->ray = emission->ray;
+    out->n = emission->n;
+    out->primitive = emission->primitive;
     out->flux = emission->flux / (out->p_light * density);
     return !spectrum_is_black(out->flux) && spectrum_is_finite(out->flux);
 }
@@ -120,15 +122,25 @@ static bool emit_at_disc(const scene *s, const light *l, const wavelengths *w,
     return true;
 }
 
-/* A direction, uniform in the cone in which p sees the sphere, and its density. */
-static vec3 direction_to_sphere(const scene *s, vec3 p, vec2 u, float *density)
+/* 1 - cos of the half angle of the cone in which p sees the sphere. */
+static float cone_of_sphere(const scene *s, vec3 p)
 {
     vec3 to = s->caustic_center - p;
     float sine2 = minf(1.0f, square(s->caustic_radius) / length3_2(to));
-    float one_minus_cos = sine2 / (1.0f + sqrtf(1.0f - sine2));
-    frame f = frame_from_normal(normalize3(to));
-    *density = warp_cone_pdf(one_minus_cos);
-    return frame_to_world(&f, warp_cone(u, one_minus_cos));
+    return sine2 / (1.0f + sqrtf(1.0f - sine2));
+}
+
+float photon_cone_pdf(const scene *s, vec3 p)
+{
+    return warp_cone_pdf(cone_of_sphere(s, p));
+}
+
+/* A direction, uniform in that cone, and its density. */
+static vec3 direction_to_sphere(const scene *s, vec3 p, vec2 u, float *density)
+{
+    frame f = frame_from_normal(normalize3(s->caustic_center - p));
+    *density = photon_cone_pdf(s, p);
+    return frame_to_world(&f, warp_cone(u, cone_of_sphere(s, p)));
 }
 
 /* From a lamp apart: the place is drawn by the lamp, the direction in the cone. The lamp

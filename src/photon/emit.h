@@ -23,6 +23,8 @@ typedef struct photon_start {
                       their light that first meets a caustic caster (specular-area) */
     int light;     /**< index in scene->lights */
     float p_light; /**< probability with which that light was chosen */
+    vec3 n;        /**< as light_emission has it */
+    uint32_t primitive;
 } photon_start;
 
 /** @brief Emits one photon by its light's own density.
@@ -34,6 +36,10 @@ bool photon_emit(const scene *s, const wavelengths *w, sampler *random,
  * what casts caustics. As above. */
 bool photon_emit_caustic(const scene *s, const wavelengths *w,
                          const emission_guide *guide, sampler *random, photon_start *out);
+
+/** @brief Density per solid angle of a caustic photon's direction, where a light that
+ * stands apart (light.is_apart) sends it from p, guide apart. */
+float photon_cone_pdf(const scene *s, vec3 p);
 
 /** @brief Emits one caustic photon toward the surfaces that cast caustics
  * (specular-area). */

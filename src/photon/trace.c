@@ -24,8 +24,10 @@ typedef struct photon_path {
     ray ray;
     spectrum flux;
     int light, lane;
-    bool from_delta;     /* the light cannot be hit by a ray */
-    bool specular_only;  /* no lobe but SPECULAR so far */
+    caustic_end end;    /* the lamp's end of its way, as far as is known: for the share */
+    uint32_t primitive; /* of the light */
+    bool from_delta;    /* the light cannot be hit by a ray */
+    bool specular_only; /* no lobe but SPECULAR so far */
     unsigned n_followed; /* specular or glossy bounces */
     unsigned n_diffuse;
     chunk_store *out; /* NULL when telling */
@@ -95,6 +97,9 @@ static bool emit(photon_path *path)
     path->lane = ALL_LANES;
     path->from_delta = scene_light(task->scene, at.light)->kind->is_delta;
     path->specular_only = true;
+    path->primitive = at.primitive;
+    path->end = (caustic_end){
+        .light = at.light, .p = at.ray.origin, .n = at.n, .direction = at.ray.direction};
     return true;
 }
 
@@ -172,6 +177,33 @@ static float power_of(const settings *how, spectrum flux)
     return how->roulette == ROULETTE_MAX ? spectrum_max(flux) : spectrum_mean(flux);
 }
 
+/* What paths from the eye leave to a photon that scatters first at this hit. */
+static float share_at(photon_path *path, const surface_hit *hit, const bsdf *b,
+                      const bsdf_sample *next)
+{
+    const trace_task *task = path->task;
+    if (!task->share || path->n_followed + path->n_diffuse > 0)
+        return 1.0f;
+    caustic_end *end = &path->end;
+    vec3 to_light = -end->direction;
+    end->distance = length3(hit->p - end->p);
+    end->specular = (next->lobe & LOBE_SPECULAR) != 0;
+    if (!end->specular) {
+        const surface_hit on_light = {
+            .p = end->p, .n_geom = end->n, .primitive = path->primitive};
+        const light *from = scene_light(task->scene, end->light);
+        end->pdf_lights =
+            light_tree_probability(task->scene->light_tree, hit->p, end->light);
+        if (!from->kind->is_delta)
+            end->pdf_lights *= from->kind->pdf(from->self, hit->p, to_light, &on_light);
+        end->pdf_scatter = bsdf_pdf(b, next->wi, to_light, LOBE_ALL, TRANSPORT_RADIANCE);
+    }
+    return caustic_share_of(task->share, end);
+}
+
+/* A photon whose share is smaller than this is one of few that carry as much. */
+#define LEAST_SHARE 0.25f
+
 /* Scatters at the hit. @return false if the photon's way ends here. */
 static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
 {
@@ -190,6 +222,11 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
         path->out->n_not_finite++;
     float survival =
         minf(1.0f, power_of(task->how, flux) / power_of(task->how, path->flux));
+    if (scattered) {
+        float share = share_at(path, hit, b, &next);
+        flux *= share;
+        survival *= minf(1.0f, share / LEAST_SHARE);
+    }
     if (!(u.roulette < survival)) {
         tell(path, PHOTON_ABSORBED, hit, 0);
         return false;

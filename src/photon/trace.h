@@ -21,6 +21,7 @@
 #include "base/parallel.h"
 #include "photon/emit.h"
 #include "photon/photon.h"
+#include "photon/share.h"
 
 /** @brief What to trace. A plain value; the pass is a pure function of it. */
 typedef struct trace_task {
@@ -30,6 +31,8 @@ typedef struct trace_task {
     uint32_t pass;
     photon_class photon_class;
     const emission_guide *guide; /**< for EMISSION_GUIDED caustics; NULL: uniform */
+    const caustic_share *share;  /**< of caustics: what they leave to paths from the eye;
+                                    NULL: nothing */
     uint64_t n_photons;          /**< to emit */
     const cancel_flag *cancel;   /**< may be NULL */
 } trace_task;

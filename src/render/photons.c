@@ -32,7 +32,7 @@ static bool make_plan(transport_plan *plan, const scene *s, const settings *how,
         bool possible = c != PHOTON_CAUSTIC || s->n_caustic_shapes > 0;
         plan->n_photons[c] = possible ? budget(how, (photon_class)c) : 0;
     }
-    return aim_caustics(plan, cancel, error);
+    return aim_caustics(plan, NULL, cancel, error);
 }
 
 static trace_task task_for(const transport_plan *plan, photon_class c)

@@ -5,8 +5,8 @@
 
 enum {
     ROUNDS = 4,
-    TRIALS = 1 << 15,     /* photons a round */
-    MAX_TRIALS = 1 << 20, /* in the first round, if hardly any arrives */
+    TRIALS = 1 << 14,     /* photons a round */
+    MAX_TRIALS = 1 << 18, /* in the first round, if hardly any arrives */
     ENOUGH_ARRIVALS = 1000,
     VISIBLE_POINTS = 4096,
     CHUNK = 1024,
@@ -29,6 +29,7 @@ typedef struct trials {
     photon_map *visible;      /* visible points; flux[0] is the reach of each */
     emission_record *records; /* one per trial, value 0 if it did not arrive */
     size_t first;             /* index of the first trial of the round */
+    aim_result *result;       /* NULL: not asked for */
 } trials;
 
 /* ---- Where the camera looks ---- */
@@ -106,6 +107,30 @@ static size_t keep_arrivals(emission_record *records, size_t n)
     return kept;
 }
 
+/* What the trials of the last round brought, and how much denser than uniform ones they
+   were where it counts. */
+static void note_result(const trials *all, size_t n_arrived, size_t n_traced)
+{
+    const scene *s = all->task.scene;
+    guint n_lights = s->lights->len;
+    g_autofree double *value = g_new0(double, n_lights);
+    g_autofree double *dense = g_new0(double, n_lights);
+    aim_result *out = all->result;
+    out->flux = 0.0;
+    out->boost = g_new(float, n_lights);
+    for (size_t i = 0; i < n_arrived; i++) {
+        const emission_record *r = &all->records[i];
+        float u_light = r->u[0];
+        size_t from = distribution_sample(&s->caustic_power, &u_light);
+        value[from] += (double)r->value;
+        dense[from] += (double)(r->value * r->density);
+    }
+    for (guint i = 0; i < n_lights; i++) {
+        out->flux += value[i] * TRIALS / (double)n_traced;
+        out->boost[i] = value[i] > 0.0 ? (float)(dense[i] / value[i]) : 1.0f;
+    }
+}
+
 /* Traces trial photons of one round until enough arrived, and teaches the guide. */
 static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError **error)
 {
@@ -124,6 +149,8 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
     }
     bool done = !cancelled(all->task.cancel);
     all->records = records;
+    if (done && all->result && round == ROUNDS - 1)
+        note_result(all, kept, all->first);
     if (done)
         emission_guide_learn(guide, records, kept);
     return done;
@@ -140,7 +167,8 @@ static bool learn(trials *all, emission_guide *guide, GError **error)
     return ok;
 }
 
-bool aim_caustics(transport_plan *plan, const cancel_flag *cancel, GError **error)
+bool aim_caustics(transport_plan *plan, aim_result *result, const cancel_flag *cancel,
+                  GError **error)
 {
     if (plan->how.caustic_emission != EMISSION_GUIDED ||
         plan->n_photons[PHOTON_CAUSTIC] == 0)
@@ -151,6 +179,7 @@ bool aim_caustics(transport_plan *plan, const cancel_flag *cancel, GError **erro
     g_autoptr(emission_guide) guide = emission_guide_new();
     trials all = {
         .visible = visible,
+        .result = result,
         .task =
             {
                 .scene = plan->scene,
@@ -158,6 +187,7 @@ bool aim_caustics(transport_plan *plan, const cancel_flag *cancel, GError **erro
                 .w = wavelengths_at(0.5f),
                 .photon_class = PHOTON_CAUSTIC,
                 .guide = guide,
+                .share = plan->shares ? &plan->share : NULL,
                 .n_photons = TRIALS,
                 .cancel = cancel,
             },

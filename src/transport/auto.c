@@ -1,16 +1,52 @@
 #include "transport/auto.h"
 
 #include "transport/aim.h"
+#include "transport/budget.h"
 #include "transport/path.h"
 #include "transport/photonmap.h"
+#include "transport/visible.h"
+
+/* Before radii are known: so many pixels, for the share that trial photons take. */
+#define TRIAL_PIXELS 4.0
+
+enum { VISIBLE_POINTS = 64 };
+
+/* The share of trial photons, as of a pass with a radius of a few pixels. */
+static caustic_share trial_share(const transport_plan *plan)
+{
+    visible_point points[VISIBLE_POINTS];
+    size_t n = find_visible_points(plan, VISIBLE_POINTS, points);
+    double sum = 0.0, radius = plan->how.radius;
+    for (size_t i = 0; i < n; i++)
+        sum += (double)points[i].pixel;
+    if (!(radius > 0.0))
+        radius =
+            n > 0 ? TRIAL_PIXELS * sum / (double)n : 0.01 * (double)plan->scene->radius;
+    return (caustic_share){.scene = plan->scene, .discs = caustic_discs(plan, radius)};
+}
+
+/* Sends trial photons, and from what they bring decides how many a pass has. */
+static bool plan_photons(transport_plan *plan, const cancel_flag *cancel, GError **error)
+{
+    aim_result found = {.flux = (double)INFINITY};
+    if (!aim_caustics(plan, &found, cancel, error)) {
+        g_free(found.boost);
+        return false;
+    }
+    plan->boost = found.boost;
+    plan->share.boost = found.boost;
+    caustic_budget_decide(plan, found.flux);
+    return true;
+}
 
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
-    int64_t own = plan->how.class_photons[PHOTON_CAUSTIC];
-    bool needed = plan->scene->n_caustic_shapes > 0;
-    plan->n_photons[PHOTON_CAUSTIC] =
-        needed ? (uint64_t)(own > 0 ? own : plan->how.photons) : 0;
-    return aim_caustics(plan, cancel, error) &&
+    plan->n_photons[PHOTON_CAUSTIC] = caustic_budget(plan);
+    if (plan->n_photons[PHOTON_CAUSTIC] == 0)
+        return true;
+    plan->shares = true;
+    plan->share = trial_share(plan);
+    return plan_photons(plan, cancel, error) &&
            photonmap_choose_radii(plan, cancel, error);
 }
 

@@ -3,10 +3,11 @@
  * photons for the light that only photons find (caustics, seen directly or through
  * glass).
  *
- * The partition is by path. Light that goes lamp → specular or glossy → diffuse surface
- * comes from the caustic map, at whatever diffuse surface the camera path stands and
- * however it got there; every other path is traced from the camera. Without a surface
- * that casts caustics there is no map, and this is `path`.
+ * Light that goes lamp → specular or glossy → diffuse surface is found by photons and by
+ * paths from the eye; at whatever diffuse surface the camera path stands, and however it
+ * got there, each takes the share that it finds better (photon/share.h). Every other path
+ * is traced from the camera. Trial photons tell how many a pass is worth (budget.h);
+ * where that is none, this is `path`.
  */
 #pragma once
 

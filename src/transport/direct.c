@@ -40,13 +40,37 @@ static spectrum weighed_lobe(const direct_query *query, const light_sample *to_l
     return f * (1.0f - followed_weight(pdf, to_light->pdf));
 }
 
+/* What photons leave of the light that a glossy lobe sends. */
+static float glossy_share(const direct_query *query, const light_sample *to_light,
+                          int lamp, bool each)
+{
+    const scene *s = query->scene;
+    const bool far = isinf(to_light->distance);
+    const vec3 here = query->hit->p, wi = to_light->wi;
+    caustic_end end = {
+        .light = lamp,
+        .p = far ? here : here + wi * to_light->distance,
+        .n = to_light->n,
+        .direction = -wi,
+        .distance = to_light->distance,
+        .pdf_lights = to_light->pdf,
+        .pdf_scatter =
+            bsdf_pdf(query->all_lanes, query->wo, wi, LOBE_ALL, TRANSPORT_RADIANCE),
+    };
+    if (each)
+        end.pdf_lights *= light_tree_probability(s->light_tree, here, lamp);
+    return 1.0f - caustic_share_of(query->share, &end);
+}
+
 /* What a light sample gives. @return false if that is nothing. */
 static bool radiance_of(const direct_query *query, const light_sample *to_light,
-                        bool is_delta, direct_radiance *found,
-                        uint64_t *shadow_rays_traced)
+                        bool each, direct_radiance *found, uint64_t *shadow_rays_traced)
 {
+    bool is_delta = scene_light(query->scene, found->light)->kind->is_delta;
     spectrum diffuse = weighed_lobe(query, to_light, is_delta, LOBE_DIFFUSE);
     spectrum glossy = weighed_lobe(query, to_light, is_delta, LOBE_GLOSSY);
+    if (query->share && !spectrum_is_black(glossy))
+        glossy *= glossy_share(query, to_light, found->light, each);
     if (spectrum_is_black(diffuse + glossy))
         return false;
     if (query->shadow_rays) {
@@ -84,10 +108,9 @@ int direct_light(const direct_query *query, sampler *random,
                                                  u.primitive, u.place, &index, &to_light);
         if (!reached)
             continue;
-        bool is_delta = scene_light(s, index)->kind->is_delta;
         found[n_found].light = index;
         n_found +=
-            radiance_of(query, &to_light, is_delta, &found[n_found], shadow_rays_traced);
+            radiance_of(query, &to_light, each, &found[n_found], shadow_rays_traced);
     }
     return n_found;
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "math/sampler.h"
+#include "photon/share.h"
 #include "scene/scene.h"
 
 /** @brief What to evaluate at a surface, and how its lobes find light otherwise. */
@@ -22,6 +23,9 @@ typedef struct direct_query {
                           work with light sampling, for the others it is the only way */
     bool by_side;      /**< the path takes each side apart ... */
     float p_side[2];   /**< ... with this probability: reflection, transmission */
+    /** Of what glossy lobes send, photons carry this share; NULL: none of it. */
+    const caustic_share *share;
+    const bsdf *all_lanes; /**< for the share: the bsdf, whatever lane the path keeps */
 } direct_query;
 
 /** @brief Up to so many lights are few. */

@@ -227,7 +227,7 @@ static spectrum gather_along(const photonmap_pass *pass, gather_path path,
             path.ray = hit_ray(&hit, path.ray.direction);
             continue;
         }
-        const shading_point at = {&hit, &b, -path.ray.direction};
+        const shading_point at = {.hit = &hit, .bsdf = &b, .wo = -path.ray.direction};
         if (b.lobes & LOBE_DIFFUSE)
             sum += path.beta * outgoing(pass, &at, path.beta, random, scratch);
         if (!gather_on(&path, &hit, &b, random))

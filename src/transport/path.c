@@ -17,6 +17,8 @@ typedef struct camera_path {
     float eta2;         /* takes refraction's scale of radiance out of roulette */
     float pdf; /* pdf_solid_angle of the direction; 0: specular or from the camera */
     vec3 from;
+    float
+        pdf_scatter; /* of the direction, by the bsdf of all lanes; where photons share */
     bool every_light; /* how lights were sampled there */
 } camera_path;
 
@@ -55,9 +57,9 @@ static void count_bounce(camera_path *path, unsigned lobe)
     }
 }
 
-/* True if light that comes by followed bounces from a lamp to a diffuse surface of this
-   path is the caustic map's. */
-static bool left_to_caustics(const path_walk *walk, const camera_path *path)
+/* True if photons too carry light that comes by followed bounces from a lamp to a diffuse
+   surface of this path. */
+static bool photons_share(const path_walk *walk, const camera_path *path)
 {
     return walk->pass->caustics && path->n_diffuse > 0 && path->n_after > 0;
 }
@@ -94,26 +96,47 @@ static float met_light_weight(const path_walk *walk, const camera_path *path, in
     return followed_weight(path->pdf, pdf);
 }
 
+/* What photons leave of the light of a lamp that the path ran into. hit NULL: an
+   environment. */
+static float left_by_photons(const path_walk *walk, const camera_path *path, int lamp,
+                             const surface_hit *hit)
+{
+    vec3 d = path->ray.direction;
+    if (!photons_share(walk, path))
+        return 1.0f;
+    const caustic_end end = {
+        .light = lamp,
+        .p = hit ? hit->p : path->from,
+        .n = hit ? hit->n_geom : -d,
+        .direction = -d,
+        .specular = !(path->pdf > 0.0f),
+        .pdf_scatter = path->pdf_scatter,
+        .pdf_lights = scene_light_pdf(walk->scene, lamp, path->from, d, hit),
+    };
+    return 1.0f - caustic_share_of(&walk->pass->caustics->share, &end);
+}
+
 static void meet_lamp(path_walk *walk, const camera_path *path, const surface_hit *hit)
 {
     spectrum radiance =
         scene_emitted(walk->scene, hit, -path->ray.direction, &walk->pass->w);
-    if (!spectrum_is_black(radiance) && !left_to_caustics(walk, path))
-        add_from(walk, path, radiance * met_light_weight(walk, path, hit->light, hit),
-                 hit->light);
+    if (spectrum_is_black(radiance))
+        return;
+    float weight = met_light_weight(walk, path, hit->light, hit) *
+                   left_by_photons(walk, path, hit->light, hit);
+    add_from(walk, path, radiance * weight, hit->light);
 }
 
 static void meet_sky(path_walk *walk, const camera_path *path)
 {
     const scene *s = walk->scene;
-    if (left_to_caustics(walk, path))
-        return;
     for (int i = 0; i < s->n_environments; i++) {
         int index = s->environments[i];
         const light *l = scene_light(s, index);
         spectrum radiance =
             l->kind->environment(l->self, path->ray.direction, &walk->pass->w);
-        float weight = met_light_weight(walk, path, index, NULL);
+        float weight = met_light_weight(walk, path, index, NULL) *
+                       left_by_photons(walk, path, index, NULL);
         add_from(walk, path, radiance * weight, index);
     }
 }
@@ -124,11 +147,27 @@ static bool samples_every_light(const camera_path *path)
     return path->n_diffuse == 0;
 }
 
+/* The bsdf whatever lane the path has kept: b, or made in room. */
+static const bsdf *all_lanes(const path_walk *walk, const camera_path *path,
+                             const surface_hit *hit, const bsdf *b, bsdf *room)
+{
+    const path_pass *pass = walk->pass;
+    if (path->lane == ALL_LANES)
+        return b;
+    scene_bsdf(walk->scene, hit, &pass->w, ALL_LANES, &pass->options, room);
+    return room;
+}
+
 static void sample_lights(path_walk *walk, const camera_path *path,
                           const surface_hit *hit, const bsdf *b)
 {
     if (!walk->how->direct_illumination || !(b->lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)))
         return;
+    bsdf room;
+    camera_path by_diffuse = *path, by_glossy = *path;
+    count_bounce(&by_diffuse, LOBE_DIFFUSE);
+    count_bounce(&by_glossy, LOBE_GLOSSY);
+    bool share = (b->lobes & LOBE_GLOSSY) && photons_share(walk, &by_glossy);
     const direct_query query = {
         .scene = walk->scene,
         .w = &walk->pass->w,
@@ -138,39 +177,54 @@ static void sample_lights(path_walk *walk, const camera_path *path,
         .every_light = samples_every_light(path),
         .shadow_rays = walk->how->shadow_rays,
         .followed = LOBE_ALL,
+        .share = share ? &walk->pass->caustics->share : NULL,
+        .all_lanes = share ? all_lanes(walk, path, hit, b, &room) : NULL,
     };
     direct_radiance found[FEW_LIGHTS];
     int n = direct_light(&query, walk->random, found, &walk->scratch->shadow_rays);
-    camera_path by_diffuse = *path, by_glossy = *path;
-    count_bounce(&by_diffuse, LOBE_DIFFUSE);
-    count_bounce(&by_glossy, LOBE_GLOSSY);
     for (int i = 0; i < n; i++) {
         add_from(walk, &by_diffuse, found[i].diffuse, found[i].light);
-        if (!left_to_caustics(walk, &by_glossy))
-            add_from(walk, &by_glossy, found[i].glossy, found[i].light);
+        add_from(walk, &by_glossy, found[i].glossy, found[i].light);
     }
 }
 
-/* What the caustic map says of this surface. Light that a lobe of n_diffuse > 0 would
-   take from photons of delta lights on glossy lobes has been counted at the diffuse
-   surface before. */
+/* What the caustic map says of this surface; a photon there has scattered once at least.
+   Light that a lobe of n_diffuse > 0 would take from photons of delta lights on glossy
+   lobes has been counted at the diffuse surface before. */
 static void gather_caustics(path_walk *walk, const camera_path *path,
                             const surface_hit *hit, const bsdf *b)
 {
     const photonmap_pass *photons = walk->pass->caustics;
     unsigned delta = path->n_diffuse == 0 && photons->has_delta_lights ? LOBE_GLOSSY : 0;
     camera_path seen = *path;
-    if (!(b->lobes & (LOBE_DIFFUSE | delta)))
+    int64_t limit = walk->how->max_backward_bounces;
+    if (!(b->lobes & (LOBE_DIFFUSE | delta)) || (limit >= 0 && path->bounces + 2 > limit))
+        return;
+    const shading_point at = {hit, b, -path->ray.direction, path->n_diffuse > 0};
+    float p = at.blurred ? walk->pass->plan->p_blurred : 1.0f;
+    if (p < 1.0f && !(sampler_1d(walk->random) < p))
         return;
     count_bounce(&seen, LOBE_DIFFUSE);
     seen.n_after = 1;
-    const shading_point at = {hit, b, -path->ray.direction};
+    seen.beta /= p;
     spectrum radiance =
         photonmap_gather(photons, PHOTON_CAUSTIC, &at, delta, walk->scratch);
     if (!add(walk, &seen, radiance) || !walk->out->groups)
         return;
     for (int i = 0; i < walk->scene->n_light_groups; i++)
-        walk->out->groups[i] += path->beta * walk->scratch->estimate.groups[i];
+        walk->out->groups[i] += seen.beta * walk->scratch->estimate.groups[i];
+}
+
+/* Keeps what the share of photons depends on, where they may have one. */
+static void note_density(const path_walk *walk, camera_path *path, const surface_hit *hit,
+                         const bsdf *b, const bsdf_sample *next)
+{
+    bsdf room;
+    if (!walk->pass->caustics || path->n_diffuse == 0 || !(next->lobe & LOBE_GLOSSY))
+        return;
+    const bsdf *all = all_lanes(walk, path, hit, b, &room);
+    path->pdf_scatter =
+        bsdf_pdf(all, -path->ray.direction, next->wi, LOBE_ALL, TRANSPORT_RADIANCE);
 }
 
 static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
@@ -182,6 +236,7 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     if (!bsdf_sample_direction(b, -path->ray.direction, u_lobe, u, LOBE_ALL,
                                TRANSPORT_RADIANCE, &next))
         return false;
+    note_density(walk, path, hit, b, &next);
     path->beta *= next.weight;
     path->lane = next.lane;
     path->eta2 *= next.eta * next.eta;

@@ -62,7 +62,7 @@ static void share_photons(transport_plan *plan)
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
     share_photons(plan);
-    return aim_caustics(plan, cancel, error) &&
+    return aim_caustics(plan, NULL, cancel, error) &&
            photonmap_choose_radii(plan, cancel, error);
 }
 
@@ -92,6 +92,7 @@ static trace_task trace_task_for(const photonmap_pass *pass, uint32_t index,
         .pass = index,
         .photon_class = c,
         .guide = pass->plan->guide,
+        .share = pass->plan->shares ? &pass->share : NULL,
         .n_photons = pass->plan->n_photons[c],
         .cancel = cancel,
     };
@@ -203,6 +204,12 @@ static void end_pass(void *data)
     g_aligned_free(pass);
 }
 
+float caustic_discs(const transport_plan *plan, double radius)
+{
+    return (float)(G_PI * radius * radius * (double)plan->n_photons[PHOTON_CAUSTIC] /
+                   (double)plan->how.spp);
+}
+
 static void *begin_pass(const transport_plan *plan, uint32_t index,
                         const cancel_flag *cancel, transport_counts *counts,
                         GError **error)
@@ -220,6 +227,9 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
             photonmap_estimate_options(&plan->how, (photon_class)c, radius);
         counts->radius[c] = radius;
     }
+    double r = photonmap_radius(plan->radius[PHOTON_CAUSTIC], plan->how.alpha, index);
+    pass->share = plan->share;
+    pass->share.discs = caustic_discs(plan, r);
     if (!make_maps(pass, index, cancel, counts, error)) {
         end_pass(pass);
         return NULL;
@@ -264,7 +274,7 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
     }
     estimate_options options = pass->estimates[c];
     options.radius = local_radius(pass, c, at->hit->p, &scratch->estimate.hits);
-    options.scene = pass->how->edges ? pass->scene : NULL;
+    options.scene = pass->how->edges && !at->blurred ? pass->scene : NULL;
     options.delta_lobes = delta_lobes ? delta_lobes | LOBE_ANY_SIDE : 0;
     bool timed = scratch->n_gathers++ % TIMED_SHARE == 0;
     double start = timed ? seconds() : 0.0;

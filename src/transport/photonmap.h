@@ -25,11 +25,15 @@ typedef struct photonmap_pass {
     spectrum *irradiance_groups; /**< [tag * n_light_groups + group], of the photons of
                                     that map; owned; NULL without groups */
     estimate_options estimates[N_PHOTON_CLASSES];
+    caustic_share share; /**< if plan->shares */
     bool has_delta_lights;
 } photonmap_pass;
 
 /** @brief Radius of pass i from that of pass 0 (Knaus & Zwicker 2011, eq. 20). */
 double photonmap_radius(double radius, double alpha, uint32_t pass);
+
+/** @brief caustic_share.discs of a pass with that radius. */
+float caustic_discs(const transport_plan *plan, double radius);
 
 /** @brief How the given class is to be estimated with radius r. */
 estimate_options photonmap_estimate_options(const settings *how, photon_class c,

@@ -136,6 +136,7 @@ static photon_map *pilot_map(const pilot *p, photon_class c, const cancel_flag *
         .pass = PILOT_PASS,
         .photon_class = c,
         .guide = plan->guide,
+        .share = plan->shares ? &plan->share : NULL,
         .n_photons = MIN(plan->n_photons[c], PILOT_PHOTONS),
         .cancel = cancel,
     };

@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "math/sampler.h"
 #include "photon/estimate.h"
+#include "photon/share.h"
 #include "photon/trace.h"
 #include "scene/scene.h"
 
@@ -54,7 +55,8 @@ typedef struct splat_list {
 typedef struct shading_point {
     const surface_hit *hit;
     const bsdf *bsdf;
-    vec3 wo; /**< to where the path came from */
+    vec3 wo;      /**< to where the path came from */
+    bool blurred; /**< seen by way of a diffuse bounce: edges need not be exact */
 } shading_point;
 
 /** @brief What a pass did, summed over its threads. */
@@ -77,6 +79,11 @@ typedef struct transport_plan {
      * pass 0 around there; owned. NULL: the same everywhere. */
     photon_map *radius_map[N_PHOTON_CLASSES];
     emission_guide *guide; /**< owned; NULL: none was learned */
+    bool shares;           /**< photons share caustics with paths from the eye */
+    caustic_share share;   /**< what they share before radii are known, for trials */
+    float *boost;          /**< share.boost; owned */
+    float p_blurred;       /**< probability of a gather that is seen by way of a diffuse
+                              bounce, where photons share */
 } transport_plan;
 
 /** @brief Frees what the plan owns. */

@@ -1,0 +1,35 @@
+#include "photon/share.h"
+
+#include "photon/emit.h"
+
+/* Density of the emission in the measure that p_scatter and p_lights are compared in. */
+static float emission_density(const caustic_share *share, const caustic_end *end)
+{
+    const scene *s = share->scene;
+    const light *l = scene_light(s, end->light);
+    float position, direction;
+    l->kind->emit_pdf(l->self, end->p, end->n, end->direction, &position, &direction);
+    if (l->is_apart && direction > 0.0f)
+        direction = photon_cone_pdf(s, end->p);
+    float e = distribution_pdf(&s->caustic_power, (size_t)end->light) * direction;
+    if (share->boost)
+        e *= share->boost[end->light];
+    if (l->kind->is_parallel)
+        return e / (PI_F * square(s->caustic_radius));
+    if (l->kind->is_delta)
+        return e / square(end->distance);
+    return e * position / fabsf(dot3(end->n, end->direction));
+}
+
+float caustic_share_of(const caustic_share *share, const caustic_end *end)
+{
+    if (!share)
+        return 1.0f;
+    bool is_delta = scene_light(share->scene, end->light)->kind->is_delta;
+    float scatter = end->specular ? 1.0f : end->pdf_scatter;
+    float merged = scatter * PI_F * share->discs * emission_density(share, end);
+    float others = (is_delta ? 0.0f : scatter) + (end->specular ? 0.0f : end->pdf_lights);
+    if (!(others > 0.0f) || isinf(merged))
+        return 1.0f;
+    return merged > 0.0f ? merged / (merged + others) : 0.0f;
+}
