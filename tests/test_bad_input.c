@@ -32,10 +32,10 @@ static void test_files(void)
     g_assert_cmpstr(missing->message, ==,
                     "/nowhere/a.pbrt: cannot open '/nowhere/a.pbrt': No such file or "
                     "directory");
-    g_assert_null(format_load("/nowhere/a.blend", 1, NULL, &unknown));
+    g_assert_null(format_load("/nowhere/a.scene", 1, NULL, &unknown));
     g_assert_true(g_str_has_prefix(unknown->message,
-                                   "/nowhere/a.blend: expected a scene file: pbrt"));
-    g_assert_true(g_str_has_suffix(unknown->message, ", found .blend"));
+                                   "/nowhere/a.scene: expected a scene file: pbrt"));
+    g_assert_true(g_str_has_suffix(unknown->message, ", found .scene"));
     scene_folder f = folder_new("");
     g_autofree char *name = g_build_filename(f.path, "x.pbrt", NULL);
     g_mkdir(name, 0700);

@@ -8,7 +8,8 @@
 #include <glib/gstdio.h>
 #include <string.h>
 
-static const format_reader *const readers[] = {&pbrt_reader, &gltf_reader};
+static const format_reader *const readers[] = {&pbrt_reader, &gltf_reader, &ply_reader,
+                                               &assimp_reader_kind};
 
 /* A format that knows its files by what is in them. */
 static const format_reader *recognise(const char *path)

@@ -16,3 +16,5 @@ typedef struct format_reader {
 
 extern const format_reader pbrt_reader;
 extern const format_reader gltf_reader;
+extern const format_reader ply_reader;
+extern const format_reader assimp_reader_kind;
