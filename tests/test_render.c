@@ -439,6 +439,7 @@ static const char *const group_layers[] = {"light.key", "light.fill", "light.sky
 static const char *const grouped_ways[] = {
     "integrator=path passes=2 spp=4",
     "integrator=auto passes=2 spp=2 photons=5000",
+    "integrator=vcm passes=2 spp=2 photons=5000",
     "passes=2 spp=2 photons=5000",
     "passes=2 spp=2 photons=5000 direct_illumination=off radius=0.3",
     "passes=1 spp=2 photons=5000 indirect_nearest=50 caustic_nearest=20 "

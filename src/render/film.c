@@ -132,6 +132,15 @@ static void add_splat_to(pass_pixel *pixel, const float xyz[3], radiance_layer l
         color[i] += xyz[i] * share * weight;
 }
 
+static void add_splat_to_group(film *f, size_t pixel, const float xyz[3], int group,
+                               float share)
+{
+    float weight = f->pass[pixel].number[offsetof(film_sum, weight) / sizeof(double)];
+    float *to = f->pass_groups + group_offset(f, pixel) + 3 * (size_t)group;
+    for (int i = 0; i < 3; i++)
+        to[i] += xyz[i] * share * weight;
+}
+
 static void add_splat(film *f, const film_pass *pass, const pixel_filter *filter,
                       const splat *s)
 {
@@ -147,7 +156,10 @@ static void add_splat(film *f, const film_pass *pass, const pixel_filter *filter
         for (int x = x0; x <= x1; x++) {
             size_t i = (size_t)(y - f->y0) * (size_t)f->width + (size_t)(x - f->x0);
             vec2 offset = {at.x - (float)x, at.y - (float)y};
-            add_splat_to(&f->pass[i], xyz, s->layer, filter_density(filter, offset));
+            float share = filter_density(filter, offset);
+            add_splat_to(&f->pass[i], xyz, s->layer, share);
+            if (f->n_groups > 0)
+                add_splat_to_group(f, i, xyz, s->group, share);
         }
     }
 }

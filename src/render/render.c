@@ -50,11 +50,7 @@ render *render_new(const scene *s, const settings *how, GError **error)
     r->statistics.noise = (double)INFINITY;
     bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
     r->statistics.passes_wanted = open_end ? 0 : settings_most_passes(how);
-    if (s->n_light_groups > 0 && !r->transport->light_groups)
-        error_set(error, ERROR_INPUT,
-                  "the scene has light groups, which integrator '%s' does not make",
-                  r->transport->name);
-    else if (film_open(&r->film, s, error))
+    if (film_open(&r->film, s, error))
         return r;
     render_free(r);
     return NULL;

@@ -99,7 +99,7 @@ static const setting_row table[] = {
     {"direct_kernel", SETTING_CHOICE, AT(class_kernel[0]), "", 0, 3, KERNEL_EPANECHNIKOV,
      kernel_words, "", "photonmap", "How a direct photon's weight falls with distance."},
     {"indirect_kernel", SETTING_CHOICE, AT(class_kernel[1]), "", 0, 3,
-     KERNEL_EPANECHNIKOV, kernel_words, "", "photonmap",
+     KERNEL_EPANECHNIKOV, kernel_words, "", "photonmap vcm",
      "How an indirect photon's weight falls with distance."},
     {"caustic_kernel", SETTING_CHOICE, AT(class_kernel[2]), "", 0, 3, KERNEL_EPANECHNIKOV,
      kernel_words, "", "photonmap", "How a caustic photon's weight falls with distance."},
@@ -108,7 +108,7 @@ static const setting_row table[] = {
      "Slope of the direct cone kernel 1 - d/(k r). The alias also chooses the kernel: "
      "below 1 constant, else cone."},
     {"indirect_cone_k", SETTING_REAL, AT(class_cone_k[1]), "", 1, 1e6, 1, NULL,
-     "INDIRECT_CONE_FILTER_PARAM", "photonmap",
+     "INDIRECT_CONE_FILTER_PARAM", "photonmap vcm",
      "Slope of the indirect cone kernel 1 - d/(k r). The alias also chooses the kernel: "
      "below 1 constant, else cone."},
     {"caustic_cone_k", SETTING_REAL, AT(class_cone_k[2]), "", 1, 1e6, 1, NULL,
@@ -121,7 +121,7 @@ static const setting_row table[] = {
     {"flatten", SETTING_REAL, AT(flatten), "", 0.001, 1, 1, NULL, "", "photonmap vcm",
      "Height of the neighbourhood along the normal over its radius; below 1 it leaks "
      "less light through corners."},
-    {"edges", SETTING_BOOL, AT(edges), "", 0, 1, 1, NULL, "", "photonmap auto",
+    {"edges", SETTING_BOOL, AT(edges), "", 0, 1, 1, NULL, "", "photonmap auto vcm",
      "Probes the surroundings of an estimate, so that edges and corners are not dark and "
      "no light leaks through thin walls."},
     {"roulette", SETTING_CHOICE, AT(roulette), "", 0, 1, ROULETTE_MEAN, roulette_words,

@@ -9,19 +9,14 @@
 /* Before radii are known: so many pixels, for the share that trial photons take. */
 #define TRIAL_PIXELS 4.0
 
-enum { VISIBLE_POINTS = 64 };
-
 /* The share of trial photons, as of a pass with a radius of a few pixels. */
 static caustic_share trial_share(const transport_plan *plan)
 {
-    visible_point points[VISIBLE_POINTS];
-    size_t n = find_visible_points(plan, VISIBLE_POINTS, points);
-    double sum = 0.0, radius = plan->how.radius;
-    for (size_t i = 0; i < n; i++)
-        sum += (double)points[i].pixel;
+    double radius = plan->how.radius;
     if (!(radius > 0.0))
-        radius =
-            n > 0 ? TRIAL_PIXELS * sum / (double)n : 0.01 * (double)plan->scene->radius;
+        radius = TRIAL_PIXELS * (double)visible_pixel(plan);
+    if (!(radius > 0.0))
+        radius = 0.01 * (double)plan->scene->radius;
     return (caustic_share){.scene = plan->scene, .discs = caustic_discs(plan, radius)};
 }
 
@@ -80,7 +75,6 @@ static const wavelengths *pass_wavelengths(const void *pass)
 
 const transport_kind transport_auto = {
     .name = "auto",
-    .light_groups = true,
     .prepare = prepare,
     .begin_pass = begin_pass,
     .radiance = path_radiance,

@@ -335,7 +335,6 @@ static void end_pass(void *pass)
 
 const transport_kind transport_path = {
     .name = "path",
-    .light_groups = true,
     .prepare = prepare,
     .begin_pass = begin_pass,
     .radiance = path_radiance,

@@ -287,7 +287,6 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
 
 const transport_kind transport_photonmap = {
     .name = "photonmap",
-    .light_groups = true,
     .prepare = prepare,
     .begin_pass = begin_pass,
     .radiance = photonmap_radiance,

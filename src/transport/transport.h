@@ -43,6 +43,7 @@ typedef struct splat {
                        integral of radiance over it */
     vec2 raster;
     radiance_layer layer;
+    int group; /**< of the lamp it came from: scene_light_group */
 } splat;
 
 /** @brief The splats of a pass, in an order that does not depend on threads. Borrowed. */
@@ -102,8 +103,7 @@ bool transport_scratch_init(transport_scratch *scratch, size_t n_groups, GError 
 void transport_scratch_clear(transport_scratch *scratch);
 
 typedef struct transport_kind {
-    const char *name;  /**< as the setting `integrator` says it */
-    bool light_groups; /**< fills radiance_sample.groups */
+    const char *name; /**< as the setting `integrator` says it */
     /** Fills the plan's budgets and radii. */
     bool (*prepare)(transport_plan *plan, const cancel_flag *cancel, GError **error);
     /** Makes pass number `index`; counts are added to. */

@@ -2,10 +2,14 @@
 
 #include "base/memory.h"
 #include "transport/photonmap.h"
+#include "transport/visible.h"
 
-/* The automatic radius over that of photon mapping's indirect light: merging is for what
-   connections do not find, and a smaller disc blurs less. */
+/* The automatic radius over that of photon mapping's indirect light, and in pixels at
+   most: merging is for what connections do not find, and that is sharp. The same in every
+   scene, so that no material makes it jump (where paths are merged only, there is no such
+   bound). */
 #define RADIUS_SHARE 0.25
+#define MOST_PIXELS 3.0
 
 vcm_strategies vcm_strategies_of(int choice)
 {
@@ -21,21 +25,17 @@ vcm_strategies vcm_strategies_of(int choice)
 
 /* ---- Planning ---- */
 
-/* The radius that suits indirect light, but no more than suits caustics. */
+/* Where connections find smooth light a few pixels, but no more than photons ask for. */
 static bool choose_radius(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
-    int emission = plan->how.caustic_emission;
-    if (plan->scene->n_caustic_shapes > 0)
-        plan->n_photons[PHOTON_CAUSTIC] = plan->n_photons[PHOTON_INDIRECT];
-    plan->how.caustic_emission = EMISSION_UNIFORM;
     bool ok = photonmap_choose_radii(plan, cancel, error);
-    plan->how.caustic_emission = emission;
     double *radius = &plan->radius[PHOTON_INDIRECT];
+    double pixel = (double)visible_pixel(plan);
     if (!(plan->how.radius > 0.0))
         *radius *= RADIUS_SHARE;
-    if (plan->n_photons[PHOTON_CAUSTIC] > 0)
-        *radius = fmin(*radius, plan->radius[PHOTON_CAUSTIC]);
-    plan->n_photons[PHOTON_CAUSTIC] = 0;
+    bool connects = vcm_strategies_of(plan->how.vcm_strategies).connect;
+    if (!(plan->how.radius > 0.0) && connects && pixel > 0.0)
+        *radius = fmin(*radius, MOST_PIXELS * pixel);
     return ok;
 }
 

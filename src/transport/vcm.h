@@ -54,6 +54,7 @@ typedef struct light_vertex {
     spectrum flux; /**< that arrived; one of N */
     partial_weights weights;
     scattering_counts before; /**< what scattered between lamp and here */
+    int light;                /**< that it left */
 } light_vertex;
 
 /** @brief The light subpaths of a pass. */

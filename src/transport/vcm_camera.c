@@ -1,4 +1,5 @@
 /* Camera subpaths: each vertex meets lamps, is connected, and merges. */
+#include "photon/neighbourhood.h"
 #include "transport/vcm.h"
 
 enum { ROULETTE_BOUNCES = 4 };
@@ -14,24 +15,33 @@ typedef struct camera_walk {
     size_t first_light, end_light; /* the light subpath that it connects to */
 } camera_walk;
 
-static void add(camera_walk *c, scattering_counts counts, spectrum radiance)
+static void add(camera_walk *c, scattering_counts counts, int lamp, spectrum radiance)
 {
     spectrum value = c->walk.carried * radiance;
-    if (spectrum_is_finite(value))
-        c->out->layers[vcm_layer(counts)] += value;
-    else
+    if (!spectrum_is_finite(value)) {
         c->scratch->n_not_finite++;
+        return;
+    }
+    c->out->layers[vcm_layer(counts)] += value;
+    if (c->out->groups)
+        c->out->groups[scene_light_group(c->pass->scene, lamp)] += value;
 }
+
+/* Which lamp light came from, and what it scattered by on its way. */
+typedef struct arrival {
+    scattering_counts before;
+    int lamp;
+} arrival;
 
 /* Adds what this surface scatters by its two classes of lobes, f, of light that itself
    came by a light subpath. */
-static void add_scattered(camera_walk *c, const lobe_pair *f, scattering_counts lamp,
+static void add_scattered(camera_walk *c, const lobe_pair *f, arrival from,
                           spectrum arriving)
 {
     for (int i = 0; i < 2; i++) {
         scattering_counts seen = vcm_count(c->walk.counts, i == 0);
         if (!spectrum_is_black(f->value[i]))
-            add(c, vcm_join(seen, lamp), f->value[i] * arriving);
+            add(c, vcm_join(seen, from.before), from.lamp, f->value[i] * arriving);
     }
 }
 
@@ -68,7 +78,8 @@ static void meet_light(camera_walk *c, int index, const surface_hit *hit,
     bool counted, alone = meets_alone(c, &counted);
     if (!counted || spectrum_is_black(radiance))
         return;
-    add(c, c->walk.counts, alone ? radiance : radiance * met_weight(c, index, hit));
+    add(c, c->walk.counts, index,
+        alone ? radiance : radiance * met_weight(c, index, hit));
 }
 
 static void meet_lamp(camera_walk *c, const surface_hit *hit, vec3 wo)
@@ -136,7 +147,7 @@ static void connect_to_lamp(camera_walk *c, const vcm_vertex *v)
         return;
     float weight = lamp_weight(c, v, index, &to_light);
     add_scattered(
-        c, &f, (scattering_counts){0},
+        c, &f, (arrival){.lamp = index},
         to_light.radiance * (weight / to_light.pdf) *
             hit_transmittance_to(v->hit, to_light.wi, to_light.distance, &c->pass->w));
 }
@@ -180,7 +191,8 @@ static void add_pair(camera_walk *c, const vertex_pair *p)
         before.n++;
         before.n_diffuse += i == 0;
         if (!spectrum_is_black(g.value[i]))
-            add_scattered(c, &f, before, p->light->flux * g.value[i] * scale);
+            add_scattered(c, &f, (arrival){before, p->light->light},
+                          p->light->flux * g.value[i] * scale);
     }
 }
 
@@ -223,7 +235,8 @@ static float merge_weight(const camera_walk *c, const vcm_vertex *v,
 
 /* Light vertices are a density over the true surface; light sees the shading normal by
    the cosine that is in f. */
-static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *l)
+static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *l,
+                       float kernel_over_area)
 {
     float cosine = fabsf(dot3(l->wi, v->hit->n_geom));
     if (!(cosine > 0.0f) ||
@@ -232,28 +245,72 @@ static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *
     lobe_pair f = vcm_scatter(v, l->wi, TRANSPORT_RADIANCE);
     if (lobe_pair_is_black(&f))
         return;
-    float area = PI_F * square(c->pass->radius) * (float)c->pass->light.n;
-    add_scattered(c, &f, l->before, l->flux * (merge_weight(c, v, l) / (area * cosine)));
+    float density = kernel_over_area / ((float)c->pass->light.n * cosine);
+    add_scattered(c, &f, (arrival){l->before, l->light},
+                  l->flux * (merge_weight(c, v, l) * density));
+}
+
+/* The light vertices around v. @return false: none, or memory is refused. */
+static bool find_vertices(camera_walk *c, const vcm_vertex *v,
+                          const photon_filter *filter)
+{
+    photon_hits *hits = &c->scratch->estimate.hits;
+    bool done = photon_map_within(c->pass->map, v->hit->p, c->pass->radius, filter, hits);
+    c->scratch->estimate.failed |= !done;
+    return done && hits->n > 0;
+}
+
+/* Where the camera looks, only the part of the disc counts that is surface in sight.
+   @return its share; the hits are then those of that part. */
+static float keep_surface(camera_walk *c, const vcm_vertex *v, photon_filter *filter,
+                          const kernel *kappa)
+{
+    photon_hits *hits = &c->scratch->estimate.hits;
+    neighbourhood hood = {.scene = c->pass->scene,
+                          .p = v->hit->p,
+                          .n = filter->n,
+                          .radius = c->pass->radius};
+    if (!c->pass->plan->how.edges || c->walk.counts.n_diffuse > 0 ||
+        neighbourhood_is_whole(&hood))
+        return 1.0f;
+    float share = neighbourhood_coverage(&hood, kappa);
+    filter->flatten = NEIGHBOURHOOD_FLATTEN;
+    if (!find_vertices(c, v, filter))
+        return 1.0f;
+    size_t kept = 0;
+    for (size_t i = 0; i < hits->n; i++) {
+        photon p = photon_store_get(photon_map_store(c->pass->map), hits->index[i]);
+        if (!neighbourhood_sees(&hood, p.p))
+            continue;
+        hits->index[kept] = hits->index[i];
+        hits->distance2[kept++] = hits->distance2[i];
+    }
+    hits->n = kept;
+    return share;
 }
 
 static void merge(camera_walk *c, const vcm_vertex *v)
 {
     const vcm_pass *pass = c->pass;
-    photon_hits *hits = &c->scratch->estimate.hits;
-    const photon_filter filter = {
+    const settings *how = &pass->plan->how;
+    const photon_hits *hits = &c->scratch->estimate.hits;
+    const kernel kappa = {(kernel_choice)how->class_kernel[PHOTON_INDIRECT],
+                          (float)how->class_cone_k[PHOTON_INDIRECT]};
+    photon_filter filter = {
         .n = face_forward(v->hit->n_geom, v->wo),
         .one_sided = !(v->bsdf.lobes & LOBE_TRANSMISSION),
-        .flatten = (float)pass->plan->how.flatten,
+        .flatten = (float)how->flatten,
     };
+    float r2 = square(pass->radius);
     c->scratch->n_gathers++;
-    if (!photon_map_within(pass->map, v->hit->p, pass->radius, &filter, hits)) {
-        c->scratch->estimate.failed = true;
+    if (!find_vertices(c, v, &filter))
         return;
-    }
+    float area = kernel_area(&kappa, r2) * keep_surface(c, v, &filter, &kappa);
     const photon_store *store = photon_map_store(pass->map);
     for (size_t i = 0; i < hits->n; i++) {
         size_t vertex = vcm_payload_vertex(store->flux[hits->index[i]]);
-        merge_with(c, v, &pass->light.vertices[vertex]);
+        merge_with(c, v, &pass->light.vertices[vertex],
+                   kernel_eval(&kappa, hits->distance2[i], r2) / area);
     }
 }
 
@@ -346,7 +403,7 @@ void vcm_radiance(const void *data, const ray *r, sampler *random,
                   transport_scratch *scratch, radiance_sample *out)
 {
     const vcm_pass *pass = data;
-    *out = (radiance_sample){0};
+    *out = (radiance_sample){.groups = out->groups};
     camera_walk c = {.pass = pass, .random = random, .scratch = scratch, .out = out};
     c.walk = (vcm_walk){.ray = *r,
                         .from = r->origin,

@@ -65,6 +65,7 @@ static void keep(light_walk *l, const vcm_vertex *v)
         .flux = l->walk.carried,
         .weights = l->walk.weights,
         .before = l->walk.counts,
+        .light = l->light,
     };
 }
 
@@ -157,6 +158,7 @@ static void connect_to_eye(light_walk *l, const vcm_vertex *v)
                      (weight * density / (float)pass->light.n),
             .raster = eye.raster,
             .layer = vcm_layer(vcm_join(scattered, l->walk.counts)),
+            .group = scene_light_group(pass->scene, l->light),
         };
         if (!spectrum_is_black(s.value))
             keep_splat(l, &s);

@@ -1,6 +1,8 @@
 #include "transport/visible.h"
 
-enum { MAX_BOUNCES = 16 };
+#include <stdlib.h>
+
+enum { MAX_BOUNCES = 16, PIXEL_POINTS = 128 };
 
 /* What all camera rays share. */
 typedef struct lookout {
@@ -56,4 +58,18 @@ size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point
         found += find_one(&from, r, &random, &out[found]);
     }
     return found;
+}
+
+static int by_pixel(const void *a, const void *b)
+{
+    float x = ((const visible_point *)a)->pixel, y = ((const visible_point *)b)->pixel;
+    return (x > y) - (x < y);
+}
+
+float visible_pixel(const transport_plan *plan)
+{
+    visible_point points[PIXEL_POINTS];
+    size_t n = find_visible_points(plan, PIXEL_POINTS, points);
+    qsort(points, n, sizeof *points, by_pixel);
+    return n > 0 ? points[n / 2].pixel : 0.0f;
 }

@@ -13,3 +13,7 @@ typedef struct visible_point {
 
 /** @brief Up to n points into out. @return how many. */
 size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point *out);
+
+/** @brief The median width of a pixel's footprint on what the camera sees, m; 0 if that
+ * is nothing. */
+float visible_pixel(const transport_plan *plan);
