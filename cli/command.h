@@ -16,6 +16,7 @@ typedef struct command {
 int command_render(int argc, char **argv);
 int command_photons(int argc, char **argv);
 int command_info(int argc, char **argv);
+int command_convert(int argc, char **argv);
 int command_compare(int argc, char **argv);
 int command_settings(int argc, char **argv);
 int command_bsdf(int argc, char **argv);

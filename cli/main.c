@@ -14,6 +14,8 @@ static const command commands[] = {
     {"photons", "trace photons only: count them, save them, tell their story",
      command_photons},
     {"info", "say what is in a scene", command_info},
+    {"convert", "write any scene as pbrt-v4 text with its meshes and images",
+     command_convert},
     {"compare", "measure how far an image is from a reference", command_compare},
     {"settings", "list all settings", command_settings},
     {"bsdf", "draw how a material scatters light", command_bsdf},

@@ -99,7 +99,7 @@ NEPH_API char *neph_settings_describe(bool json);
 
 /** @brief A loaded scene; immutable but for its size. */
 typedef struct NephScene NephScene;
-/** @brief Loads a pbrt-v4 file. log may be NULL. threads 0 = all. On failure the error
+/** @brief Loads a scene (pbrt, glTF, OBJ ...). log may be NULL. threads 0 = all. On failure the error
  * holds up to 20 messages, one a line. */
 NEPH_API NephScene *neph_scene_load(const char *path, unsigned threads, NephLogFunc log,
                                     void *log_data, GError **error);
@@ -111,6 +111,10 @@ NEPH_API void neph_scene_size(const NephScene *scene, int *width, int *height);
 NEPH_API bool neph_scene_resize(NephScene *scene, int width, int height, GError **error);
 /** @brief The output name in the file, or NULL. Owned by the scene. */
 NEPH_API const char *neph_scene_output(const NephScene *scene);
+/** @brief Writes a scene of any format as pbrt-v4 text (out ends in .pbrt), its meshes as
+ * PLY and its images into a folder beside it. log may be NULL. */
+NEPH_API bool neph_scene_convert(const char *in, const char *out, NephLogFunc log,
+                                 void *log_data, GError **error);
 /** @brief What is in the scene, for people (json false) or programs. Owned by caller. */
 NEPH_API char *neph_scene_describe(const NephScene *scene, bool json);
 

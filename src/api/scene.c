@@ -1,5 +1,6 @@
 #include "api/objects.h"
 
+#include "format/convert.h"
 #include "format/format.h"
 
 /* Beyond it the film alone would not fit into any machine. */
@@ -23,6 +24,14 @@ NephScene *neph_scene_load(const char *path, unsigned threads, NephLogFunc log,
     if (!s->scene)
         g_clear_pointer(&s, neph_scene_free);
     return s;
+}
+
+bool neph_scene_convert(const char *in, const char *out, NephLogFunc log, void *log_data,
+                        GError **error)
+{
+    NephScene to = {.log = log, .log_data = log_data};
+    const log_sink sink = {forward_log, &to};
+    return format_convert(in, out, &sink, error);
 }
 
 void neph_scene_free(NephScene *s)

@@ -70,16 +70,20 @@ static bool commit(scene *s, const char *path, unsigned threads, GError **error)
     return false;
 }
 
+bool format_read(scene *s, const char *path, GError **error)
+{
+    const format_reader *reader = find_reader(path);
+    if (reader)
+        return reader->read(s, path, error);
+    refuse(path, error);
+    return false;
+}
+
 scene *format_load(const char *path, unsigned threads, const log_sink *log,
                    GError **error)
 {
-    const format_reader *reader = find_reader(path);
-    if (!reader) {
-        refuse(path, error);
-        return NULL;
-    }
     g_autoptr(scene) s = scene_new(log);
-    if (!reader->read(s, path, error) || !commit(s, path, threads, error))
+    if (!format_read(s, path, error) || !commit(s, path, threads, error))
         return NULL;
     return g_steal_pointer(&s);
 }

@@ -5,6 +5,10 @@
 
 #include "scene/scene.h"
 
+/** @brief Builds a scene from a file, without the commit; false with an error as
+ * format_load has it. */
+bool format_read(scene *s, const char *path, GError **error);
+
 /**
  * @brief Reads a scene file and commits the scene.
  * @param threads for the acceleration structure; 0 = all

@@ -91,6 +91,13 @@ static bool is_open(const scene *s, GError **error)
 
 /* ---- Adding ---- */
 
+/* Calls one of the listener's functions, if it has it. */
+#define TELL(s, call, ...)                                                               \
+    do {                                                                                 \
+        if ((s)->listener && (s)->listener->call)                                        \
+            (s)->listener->call((s)->listener->data, __VA_ARGS__);                       \
+    } while (0)
+
 void scene_add_file(scene *s, const char *path, GBytes *bytes)
 {
     g_hash_table_insert(s->files, g_strdup(path), g_bytes_ref(bytes));
@@ -114,6 +121,7 @@ bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spe
         error_at(error, p->place, "texture \"%s\" is there already", name);
         return false;
     }
+    TELL(s, texture, name, kind, is_spectrum, p);
     texture *t = texture_new(s, kind, is_spectrum, p, error);
     if (t)
         g_hash_table_insert(table, g_strdup(name), t);
@@ -129,6 +137,7 @@ int scene_add_material(scene *s, const char *name, const char *kind, const param
         error_at(error, p->place, "material \"%s\" is there already", name);
         return NO_INDEX;
     }
+    TELL(s, material, (int)s->materials->len, name, kind, p);
     material *m = material_new(s, kind, p, error);
     if (!m)
         return NO_INDEX;
@@ -154,6 +163,7 @@ bool scene_add_light(scene *s, const char *kind, const params *p,
 {
     if (!is_open(s, error))
         return false;
+    TELL(s, light, kind, p, to_world);
     light *l = light_new(s, kind, p, to_world, NULL, error);
     if (l)
         g_ptr_array_add(s->lights, l);
@@ -187,16 +197,21 @@ static bool take_shape(scene *s, shape *made, const shape_place *at, GError **er
 bool scene_add_shape(scene *s, const char *kind, const params *p, const shape_place *at,
                      GError **error)
 {
-    return is_open(s, error) && take_shape(s, shape_new(kind, p, at, error), at, error);
+    if (!is_open(s, error))
+        return false;
+    TELL(s, shape, kind, p, at);
+    return take_shape(s, shape_new(kind, p, at, error), at, error);
 }
 
 bool scene_add_mesh(scene *s, mesh *m, const shape_place *at, source_place place,
                     GError **error)
 {
-    if (is_open(s, error))
-        return take_shape(s, shape_new_mesh(m, at, place, error), at, error);
-    mesh_clear(m);
-    return false;
+    if (!is_open(s, error)) {
+        mesh_clear(m);
+        return false;
+    }
+    TELL(s, mesh, m, at);
+    return take_shape(s, shape_new_mesh(m, at, place, error), at, error);
 }
 
 bool scene_set_film(scene *s, const char *kind, const params *p, GError **error)
@@ -206,6 +221,7 @@ bool scene_set_film(scene *s, const char *kind, const params *p, GError **error)
         return false;
     g_free(s->film.filename);
     s->film = film;
+    TELL(s, film, kind, p);
     return true;
 }
 
@@ -216,6 +232,7 @@ bool scene_set_filter(scene *s, const char *kind, const params *p, GError **erro
         return false;
     filter_clear(&s->filter);
     s->filter = filter;
+    TELL(s, filter, kind, p);
     return true;
 }
 
@@ -225,6 +242,8 @@ bool scene_set_camera(scene *s, const char *kind, const params *p,
     s->has_camera =
         is_open(s, error) &&
         camera_init(&s->camera, kind, p, to_world, s->film.width, s->film.height, error);
+    if (s->has_camera)
+        TELL(s, camera, kind, p, to_world);
     return s->has_camera;
 }
 

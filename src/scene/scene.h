@@ -16,6 +16,7 @@
 #include "scene/camera.h"
 #include "scene/filter.h"
 #include "scene/light.h"
+#include "scene/listener.h"
 #include "scene/material.h"
 #include "scene/medium.h"
 #include "scene/settings.h"
@@ -46,6 +47,7 @@ typedef struct scene {
     pixel_filter filter;
     settings settings; /**< defaults, then what the file asks for */
     log_sink log;
+    const scene_listener *listener; /**< borrowed; NULL: nobody */
 
     /* From here on valid once committed. */
     bool committed;

@@ -1,0 +1,425 @@
+/*
+ * Writing a scene down while it is built: every call that a reader makes becomes the
+ * directive that makes pbrt's reader do the same.
+ *
+ *   reader ─► scene_add_* ─► listener ─► world, options (text) ─► OUT.pbrt
+ *                                  └──► OUT-files/  meshes as PLY, images as they were
+ *
+ * The options (film, camera ...) may come last, so both texts are kept till the end.
+ * Meshes stay in their own space and transforms keep all digits, so that the scene that
+ * is read back is the same to the last bit, or nearly.
+ */
+#include "format/convert.h"
+
+#include "base/output.h"
+#include "format/format.h"
+#include "format/pbrt_text.h"
+#include "format/ply_write.h"
+
+#include <glib/gstdio.h>
+#include <string.h>
+
+typedef struct converter {
+    scene *scene;             /**< being built; its tables name textures */
+    char *directory, *folder; /**< of the files, and its name beside the scene */
+    GString *world, *film, *filter, *camera;
+    GPtrArray *materials; /**< names by index, owned */
+    GHashTable *files;    /**< absolute path -> name below the scene's folder */
+    unsigned n_meshes;
+    GError *error; /**< the first one */
+} converter;
+
+static bool is_identity(const transform *t)
+{
+    const transform identity = transform_identity();
+    return transform_equal(t, &identity);
+}
+
+/* ---- Files beside the scene ---- */
+
+static bool make_folder(converter *c)
+{
+    if (c->error || g_mkdir_with_parents(c->directory, 0777) == 0)
+        return !c->error;
+    error_set(&c->error, ERROR_INPUT, "%s: cannot make this folder: %s", c->directory,
+              g_strerror(errno));
+    return false;
+}
+
+/* A name that no other file here has. */
+static char *free_name(converter *c, const char *path)
+{
+    g_autofree char *base = g_path_get_basename(path);
+    char *name = g_strdup_printf("%s/%s", c->folder, base);
+    GHashTableIter iter;
+    gpointer value;
+    g_hash_table_iter_init(&iter, c->files);
+    while (g_hash_table_iter_next(&iter, NULL, &value))
+        if (strcmp(value, name) == 0) {
+            g_free(name);
+            return g_strdup_printf("%s/%u-%s", c->folder, g_hash_table_size(c->files),
+                                   base);
+        }
+    return name;
+}
+
+static GBytes *bytes_of(converter *c, const char *path)
+{
+    char *data;
+    gsize size;
+    GBytes *inside = g_hash_table_lookup(c->scene->files, path);
+    if (inside)
+        return g_bytes_ref(inside);
+    return g_file_get_contents(path, &data, &size, NULL) ? g_bytes_new_take(data, size)
+                                                         : NULL;
+}
+
+/* Where a file now is, relative to the scene; NULL if there is no such file. */
+static const char *copy_file(converter *c, const char *path)
+{
+    const char *known = g_hash_table_lookup(c->files, path);
+    g_autoptr(GBytes) bytes = known ? NULL : bytes_of(c, path);
+    if (!bytes || !make_folder(c))
+        return known;
+    char *name = free_name(c, path);
+    g_autofree char *base = g_path_get_basename(name);
+    g_autofree char *to = g_build_filename(c->directory, base, NULL);
+    g_autoptr(GError) inner = NULL;
+    if (!g_file_set_contents_full(to, g_bytes_get_data(bytes, NULL),
+                                  (gssize)g_bytes_get_size(bytes),
+                                  G_FILE_SET_CONTENTS_CONSISTENT, 0666, &inner))
+        error_set(&c->error, ERROR_FAILED, "%s", inner->message);
+    g_hash_table_insert(c->files, g_strdup(path), name);
+    return name;
+}
+
+/* ---- Parameters ---- */
+
+/* Strings that name files, in all the directives that know any. */
+static bool names_file(const param *q)
+{
+    static const char *const names[] = {"filename", "normalmap", "lensfile", NULL};
+    return q->type == PARAM_STRING && q->n == 1 && g_strv_contains(names, q->name);
+}
+
+static void append_params(converter *c, GString *out, const params *p,
+                          const char *without)
+{
+    for (guint i = 0; i < p->list->len; i++) {
+        const param *q = p->list->pdata[i];
+        const char *moved = NULL;
+        if (without && strcmp(q->name, without) == 0)
+            continue;
+        if (names_file(q)) {
+            g_autofree char *path =
+                g_canonicalize_filename(q->strings[0], p->base_directory);
+            moved = copy_file(c, path);
+        }
+        char *strings[] = {(char *)moved, NULL};
+        pbrt_text_param(out, q, moved ? strings : NULL);
+    }
+    g_string_append_c(out, '\n');
+}
+
+static bool is_srgb(const params *p)
+{
+    return !p->space || p->space == color_space_srgb();
+}
+
+/* A directive that stands in a space of its own, as all those here. */
+static void begin(GString *out, const params *p, const transform *to_world)
+{
+    g_string_append(out, "AttributeBegin\n");
+    if (!is_srgb(p))
+        g_string_append_printf(out, "ColorSpace \"%s\"\n", color_space_name(p->space));
+    if (!is_identity(to_world))
+        pbrt_text_transform(out, to_world->m);
+}
+
+static void end(GString *out)
+{
+    g_string_append(out, "AttributeEnd\n");
+}
+
+/* ---- The calls ---- */
+
+static void on_texture(void *data, const char *name, const char *kind, bool is_spectrum,
+                       const params *p)
+{
+    converter *c = data;
+    begin(c->world, p, &p->to_world);
+    g_string_append(c->world, "Texture ");
+    pbrt_text_string(c->world, name);
+    g_string_append_printf(c->world, " \"%s\" \"%s\"", is_spectrum ? "spectrum" : "float",
+                           kind);
+    append_params(c, c->world, p, NULL);
+    end(c->world);
+}
+
+static void on_material(void *data, int index, const char *name, const char *kind,
+                        const params *p)
+{
+    converter *c = data;
+    char *known = name ? g_strdup(name) : g_strdup_printf("material-%d", index);
+    const transform identity = transform_identity();
+    g_ptr_array_set_size(c->materials, MAX((int)c->materials->len, index + 1));
+    g_free(c->materials->pdata[index]);
+    c->materials->pdata[index] = known;
+    begin(c->world, p, &identity);
+    g_string_append(c->world, "MakeNamedMaterial ");
+    pbrt_text_string(c->world, known);
+    g_string_append_printf(c->world, " \"string type\" \"%s\"", kind);
+    append_params(c, c->world, p, "type");
+    end(c->world);
+}
+
+static void on_light(void *data, const char *kind, const params *p,
+                     const transform *to_world)
+{
+    converter *c = data;
+    begin(c->world, p, to_world);
+    g_string_append_printf(c->world, "LightSource \"%s\"", kind);
+    append_params(c, c->world, p, NULL);
+    end(c->world);
+}
+
+/* What stands before a shape: its material, light and transform. */
+static void begin_shape(converter *c, const shape_place *at, const params *p)
+{
+    const params *light_is = at->area_light;
+    g_string_append(c->world, "AttributeBegin\n");
+    if (at->material == NO_INDEX) {
+        g_string_append(c->world, "Material \"interface\"\n");
+    } else {
+        g_string_append(c->world, "NamedMaterial ");
+        pbrt_text_string(c->world, c->materials->pdata[at->material]);
+        g_string_append_c(c->world, '\n');
+    }
+    if (light_is) {
+        g_string_append_printf(
+            c->world, "ColorSpace \"%s\"\nAreaLightSource \"diffuse\"",
+            color_space_name(light_is->space ? light_is->space : color_space_srgb()));
+        append_params(c, c->world, light_is, NULL);
+    }
+    if (p && p->space)
+        g_string_append_printf(c->world, "ColorSpace \"%s\"\n",
+                               color_space_name(p->space));
+    if (at->reverse_orientation)
+        g_string_append(c->world, "ReverseOrientation\n");
+    if (!is_identity(&at->to_world))
+        pbrt_text_transform(c->world, at->to_world.m);
+}
+
+static void on_shape(void *data, const char *kind, const params *p, const shape_place *at)
+{
+    converter *c = data;
+    begin_shape(c, at, p);
+    g_string_append_printf(c->world, "Shape \"%s\"", kind);
+    append_params(c, c->world, p, NULL);
+    end(c->world);
+}
+
+/* The name of a float texture. */
+static const char *texture_name(const converter *c, const texture *t)
+{
+    GHashTableIter iter;
+    gpointer name, value;
+    g_hash_table_iter_init(&iter, c->scene->float_textures);
+    while (g_hash_table_iter_next(&iter, &name, &value))
+        if (value == t)
+            return name;
+    return "";
+}
+
+/* What a mesh's parameters would have said. */
+static void append_place(converter *c, const shape_place *at)
+{
+    if (at->camera_hidden)
+        g_string_append(c->world, " \"bool camera_visible\" false");
+    if (at->alpha && at->alpha->texture) {
+        g_string_append(c->world, " \"texture alpha\" ");
+        pbrt_text_string(c->world, texture_name(c, at->alpha->texture));
+    } else if (at->alpha && at->alpha->constant < 1.0f) {
+        g_autoptr(params) p = params_new((source_place){0}, "/", NULL);
+        params_add_numbers(p, p->place, PARAM_FLOAT, "alpha", &at->alpha->constant, 1,
+                           NULL);
+        pbrt_text_param(c->world, p->list->pdata[0], NULL);
+    }
+    g_string_append_c(c->world, '\n');
+}
+
+/* PLY has no place for tangents: such meshes are text. */
+static void append_mesh_text(converter *c, const mesh *m)
+{
+    g_autoptr(params) p = params_new((source_place){0}, "/", NULL);
+    params_add_numbers(p, p->place, PARAM_POINT3, "P", m->positions, 3 * m->n_vertices,
+                       &c->error);
+    if (m->normals)
+        params_add_numbers(p, p->place, PARAM_NORMAL, "N", m->normals, 3 * m->n_vertices,
+                           NULL);
+    params_add_numbers(p, p->place, PARAM_VECTOR3, "S", m->tangents, 3 * m->n_vertices,
+                       NULL);
+    if (m->uvs)
+        params_add_numbers(p, p->place, PARAM_POINT2, "uv", &m->uvs[0].x,
+                           2 * m->n_vertices, NULL);
+    params_add_integers(p, p->place, PARAM_INTEGER, "indices", (const int *)m->indices,
+                        3 * m->n_triangles, NULL);
+    g_string_append(c->world, "Shape \"trianglemesh\"");
+    for (guint i = 0; i < p->list->len; i++)
+        pbrt_text_param(c->world, p->list->pdata[i], NULL);
+}
+
+static void on_mesh(void *data, const mesh *m, const shape_place *at)
+{
+    converter *c = data;
+    begin_shape(c, at, NULL);
+    if (m->tangents) {
+        append_mesh_text(c, m);
+    } else if (make_folder(c)) {
+        g_autofree char *name = g_strdup_printf("mesh-%u.ply", ++c->n_meshes);
+        g_autofree char *path = g_build_filename(c->directory, name, NULL);
+        g_autofree char *shown = g_strdup_printf("%s/%s", c->folder, name);
+        GError *error = NULL;
+        if (!ply_write(path, m, &error))
+            c->error = error;
+        g_string_append(c->world, "Shape \"plymesh\" \"string filename\" ");
+        pbrt_text_string(c->world, shown);
+    }
+    append_place(c, at);
+    end(c->world);
+}
+
+static void on_option(converter *c, GString *out, const char *directive, const char *kind,
+                      const params *p)
+{
+    g_string_truncate(out, 0);
+    if (!is_srgb(p))
+        g_string_append_printf(out, "ColorSpace \"%s\"\n", color_space_name(p->space));
+    g_string_append_printf(out, "%s \"%s\"", directive, kind);
+    append_params(c, out, p, NULL);
+    if (!is_srgb(p))
+        g_string_append(out, "ColorSpace \"srgb\"\n");
+}
+
+static void on_film(void *data, const char *kind, const params *p)
+{
+    converter *c = data;
+    g_string_truncate(c->film, 0);
+    g_string_append_printf(c->film, "Film \"%s\"", kind);
+    for (guint i = 0; i < p->list->len; i++)
+        pbrt_text_param(c->film, p->list->pdata[i], NULL);
+    g_string_append_c(c->film, '\n');
+    if (!is_srgb(p)) {
+        g_autofree char *space =
+            g_strdup_printf("ColorSpace \"%s\"\n", color_space_name(p->space));
+        g_string_prepend(c->film, space);
+        g_string_append(c->film, "ColorSpace \"srgb\"\n");
+    }
+}
+
+static void on_filter(void *data, const char *kind, const params *p)
+{
+    converter *c = data;
+    on_option(c, c->filter, "PixelFilter", kind, p);
+}
+
+static void on_camera(void *data, const char *kind, const params *p,
+                      const transform *to_world)
+{
+    converter *c = data;
+    on_option(c, c->camera, "Camera", kind, p);
+    g_autoptr(GString) look = g_string_new(NULL);
+    pbrt_text_transform(look, to_world->inverse);
+    g_string_prepend(c->camera, look->str);
+    g_string_append(c->camera, "Identity\n");
+}
+
+/* ---- Settings ---- */
+
+/* Types as the settings' table has them; all that is not its default. */
+static void append_settings(GString *out, const settings *s)
+{
+    static const char *const types[] = {[SETTING_BOOL] = "bool",
+                                        [SETTING_COUNT] = "integer",
+                                        [SETTING_REAL] = "float",
+                                        [SETTING_CHOICE] = "string"};
+    size_t n;
+    const setting_row *rows = settings_table(&n);
+    const settings defaults = settings_default();
+    g_string_append(out, "Integrator \"auto\"");
+    for (size_t i = 0; i < n; i++) {
+        g_autofree char *value = settings_get(s, &rows[i]);
+        g_autofree char *initial = settings_get(&defaults, &rows[i]);
+        const char *quote = rows[i].type == SETTING_CHOICE ? "\"" : "";
+        if (strcmp(value, initial) != 0)
+            g_string_append_printf(out, " \"%s %s\" %s%s%s", types[rows[i].type],
+                                   rows[i].name, quote, value, quote);
+    }
+    g_string_append_c(out, '\n');
+}
+
+/* ---- All of it ---- */
+
+static bool write_scene(converter *c, const char *in, const char *path, GError **error)
+{
+    g_autofree char *base = g_path_get_basename(in);
+    g_autoptr(GString) text = g_string_new(NULL);
+    g_string_append_printf(text, "# %s\n", g_strdelimit(base, "\r\n", ' '));
+    g_string_append_len(text, c->film->str, (gssize)c->film->len);
+    g_string_append(text, c->filter->str);
+    append_settings(text, &c->scene->settings);
+    g_string_append(text, c->camera->str);
+    g_string_append(text, "WorldBegin\n");
+    g_string_append_len(text, c->world->str, (gssize)c->world->len);
+    return output_write_text(path, text->str, error);
+}
+
+static void converter_init(converter *c, const char *out)
+{
+    const char *dot = strrchr(out, '.');
+    g_autofree char *stem = g_strndup(out, dot ? (size_t)(dot - out) : strlen(out));
+    *c = (converter){.directory = g_strconcat(stem, "-files", NULL),
+                     .world = g_string_new(NULL),
+                     .film = g_string_new(NULL),
+                     .filter = g_string_new(NULL),
+                     .camera = g_string_new(NULL),
+                     .materials = g_ptr_array_new_with_free_func(g_free)};
+    c->folder = g_path_get_basename(c->directory);
+    c->files = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+}
+
+static void converter_clear(converter *c)
+{
+    g_free(c->directory);
+    g_free(c->folder);
+    g_string_free(c->world, TRUE);
+    g_string_free(c->film, TRUE);
+    g_string_free(c->filter, TRUE);
+    g_string_free(c->camera, TRUE);
+    g_ptr_array_unref(c->materials);
+    g_hash_table_unref(c->files);
+    g_clear_error(&c->error);
+}
+
+bool format_convert(const char *in, const char *out, const log_sink *log, GError **error)
+{
+    if (!g_str_has_suffix(out, ".pbrt")) {
+        error_set(error, ERROR_USAGE, "%s: expected a name that ends in .pbrt", out);
+        return false;
+    }
+    converter c;
+    converter_init(&c, out);
+    const scene_listener listener = {&c,      on_texture, on_material, on_light, on_shape,
+                                     on_mesh, on_film,    on_filter,   on_camera};
+    g_autoptr(scene) s = scene_new(log);
+    s->listener = &listener;
+    c.scene = s;
+    bool done = output_possible(out, error) && format_read(s, in, error);
+    if (done && c.error) {
+        g_propagate_error(error, g_steal_pointer(&c.error));
+        done = false;
+    }
+    done = done && write_scene(&c, in, out, error);
+    converter_clear(&c);
+    return done;
+}

@@ -1,0 +1,155 @@
+/*
+ * convert: a scene written as pbrt text and read again renders to the same image, to the
+ * last bit, whatever it is made of.
+ */
+#include "format/convert.h"
+#include "rooms.h"
+
+#include <string.h>
+
+#define HOW "integrator=photonmap passes=1 spp=1 photons=3000"
+
+static void remove_tree(const char *path)
+{
+    g_autoptr(GDir) dir = g_dir_open(path, 0, NULL);
+    for (const char *name; dir && (name = g_dir_read_name(dir));) {
+        g_autofree char *inside = g_build_filename(path, name, NULL);
+        remove_tree(inside);
+    }
+    g_remove(path);
+}
+
+static image *picture_of(const char *path)
+{
+    g_autoptr(GError) error = NULL;
+    g_autoptr(scene) s = format_load(path, 1, NULL, &error);
+    g_assert_no_error(error);
+    scene_resize(s, 16, 12);
+    return render_with(s, HOW);
+}
+
+static void check_same(const char *in)
+{
+    g_autofree char *folder = g_dir_make_tmp("nephroid-convert-XXXXXX", NULL);
+    g_autofree char *out = g_build_filename(folder, "b.pbrt", NULL);
+    g_autoptr(GError) error = NULL;
+    g_assert_true(format_convert(in, out, NULL, &error));
+    g_assert_no_error(error);
+    g_autoptr(image) a = picture_of(in), b = picture_of(out);
+    g_test_message("%s: mean %g", in, mean_of(a, ""));
+    g_assert_cmpfloat(mean_of(a, ""), >, 0.0);
+    g_assert_cmpmem(a->pixels, sizeof(float) * 16 * 12 * (size_t)a->n_channels, b->pixels,
+                    sizeof(float) * 16 * 12 * (size_t)b->n_channels);
+    remove_tree(folder);
+}
+
+static void check_text(const char *world)
+{
+    g_autofree char *text = g_strdup_printf(
+        "LookAt 0 -5 3  0 0 0.5  0 0 1 Film \"rgb\" \"float iso\" 150 \"string "
+        "filename\" "
+        "\"x.exr\" PixelFilter \"triangle\" \"float xradius\" 1.5\n"
+        "Sampler \"independent\" \"integer seed\" 7\n"
+        "Camera \"perspective\" \"float fov\" 42 \"float lensradius\" 0.01 \"float "
+        "focaldistance\" 5\nWorldBegin\nLightSource \"point\" \"rgb I\" [9 8 7] \"point3 "
+        "from\" [1 -2 4]\n%s",
+        world);
+    scene_folder f = folder_new(text);
+    static const char *const names[] = {"R", "G", "B"};
+    g_autoptr(image) img = image_new(4, 4, 3, names, NULL);
+    for (int i = 0; i < 48; i++)
+        img->pixels[i] = (float)(i * 7 % 11) / 11.0f;
+    g_autofree char *picture = g_build_filename(f.path, "p.png", NULL);
+    g_assert_true(image_write(img, picture, NULL, NULL));
+    check_same(f.main);
+    g_ptr_array_add(f.files, g_steal_pointer(&picture));
+    folder_remove(&f);
+}
+
+static void test_shapes(void)
+{
+    check_text(
+        "Material \"diffuse\" \"rgb reflectance\" [.7 .2 .1] Rotate 30 1 2 3 Scale 1 "
+        "1.5 -1\nShape \"sphere\" \"float radius\" 0.7\nAttributeBegin Translate 1 0 "
+        "0 ReverseOrientation Shape \"cylinder\" AttributeEnd\nShape \"disk\" \"float "
+        "height\" -1 \"float radius\" 4 \"bool camera_visible\" true\n");
+    check_text(
+        "Translate 0.1 0.2 0.3 Rotate 20 0 0 1\n"
+        "Shape \"trianglemesh\" \"point3 P\" [-3 -3 0 3 -3 0 3 3 0 -3 3 0] \"integer "
+        "indices\" [0 1 2 0 2 3] \"vector3 S\" [1 0 0 1 0 0 1 1 0 1 0 0] \"point2 uv\" "
+        "[0 0 1 0 1 1 0 1] \"normal N\" [0 0 1 0 .1 1 0 0 1 0 0 1] \"float alpha\" "
+        "0.7\n");
+}
+
+static void test_materials(void)
+{
+    check_text(
+        "MakeNamedMaterial \"a \\\"b\\\"\" \"string type\" \"conductor\" \"spectrum "
+        "eta\" \"metal-Ag-eta\" \"spectrum k\" \"metal-Ag-k\" \"float roughness\" .1\n"
+        "NamedMaterial \"a \\\"b\\\"\" Shape \"sphere\" \"float radius\" .8\n"
+        "Material \"dielectric\" \"spectrum eta\" [300 1.6 900 1.5] Translate 2 0 0 "
+        "Shape \"sphere\" \"float radius\" .6 Material \"interface\" Shape \"disk\"\n"
+        "ColorSpace \"rec2020\" Material \"diffuse\" \"rgb reflectance\" [.2 .5 .1] "
+        "Translate 0 0 -1 Shape \"disk\" \"float radius\" 5\n");
+}
+
+static void test_textures_and_lights(void)
+{
+    check_text(
+        "Translate .3 .2 0 Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" "
+        "\"p.png\" \"float uscale\" 2\nTexture \"f\" \"float\" \"imagemap\" \"string "
+        "filename\" \"p.png\" \"string mapping\" \"planar\"\n"
+        "Material \"diffuse\" \"texture reflectance\" \"t\" \"string normalmap\" "
+        "\"p.png\"\nShape \"disk\" \"float radius\" 3 \"texture alpha\" \"f\"\n"
+        "LightSource \"infinite\" \"blackbody L\" 4000 \"float scale\" .01\n"
+        "LightSource \"spot\" \"point3 from\" [2 2 3] \"string group\" \"key\"\n"
+        "AreaLightSource \"diffuse\" \"rgb L\" [3 2 1] \"bool twosided\" true "
+        "Translate 0 0 2 Shape \"sphere\" \"float radius\" .2\n");
+}
+
+static void test_files(void)
+{
+    static const char ply[] =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+        "property float y\nproperty float z\nelement face 1\n"
+        "property list uchar int vertex_indices\nend_header\n"
+        "-3 -3 0\n3 -3 0\n3 3 0\n-3 3 0.5\n4 0 1 2 3\n";
+    scene_folder f = folder_new("");
+    folder_write(&f, "a.ply", ply, -1);
+    g_autofree char *path = g_build_filename(f.path, "a.ply", NULL);
+    check_same(path); /* with the sky and the camera it gets */
+    folder_remove(&f);
+    check_same(SOURCE_ROOT "/scenes/glass-ball/glass-ball.pbrt");
+    static const char shared[] = SOURCE_ROOT
+        "/../shared/data/gltf/EmissiveStrengthTest/glTF/EmissiveStrengthTest.gltf";
+    if (g_file_test(shared, G_FILE_TEST_EXISTS))
+        check_same(shared);
+}
+
+static void refuse(const char *in, const char *out, const char *message)
+{
+    g_autoptr(GError) error = NULL;
+    g_assert_false(format_convert(in, out, NULL, &error));
+    if (!strstr(error->message, message))
+        g_error("%s does not say %s", error->message, message);
+}
+
+static void test_refused(void)
+{
+    const char *in = SOURCE_ROOT "/scenes/ring/ring.pbrt";
+    refuse(in, "/tmp/a.obj", "expected a name that ends in .pbrt");
+    refuse(in, "/nowhere/a.pbrt", "/nowhere/a.pbrt");
+    refuse("/nowhere/b.pbrt", "/tmp/nephroid-none.pbrt", "No such file");
+    g_assert_false(g_file_test("/tmp/nephroid-none.pbrt", G_FILE_TEST_EXISTS));
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/convert/shapes", test_shapes);
+    g_test_add_func("/convert/materials", test_materials);
+    g_test_add_func("/convert/textures-and-lights", test_textures_and_lights);
+    g_test_add_func("/convert/files", test_files);
+    g_test_add_func("/convert/refused", test_refused);
+    return g_test_run();
+}
