@@ -522,6 +522,38 @@ static void test_groups_change_nothing(void)
     }
 }
 
+/* The whole picture can be seen, coarsely, long before the first pass is done. */
+typedef struct glance {
+    const render *render;
+    size_t
+        size; /* of the smallest squares of one colour when all was seen first; 0: not */
+} glance;
+
+static bool look_for_whole(double fraction, const render_statistics *st, void *data)
+{
+    glance *g = data;
+    g_autoptr(image) img = image_of(g->render);
+    size_t n = pixels_of(img), black = 0, same = 0;
+    (void)fraction;
+    g_assert_cmpuint(st->passes, ==, 0);
+    for (size_t i = 0; i < n; i++) {
+        black += !(at(img, i, 0) > 0);
+        same += i % 2 == 1 && !(fabs(at(img, i, 0) - at(img, i - 1, 0)) > 0);
+    }
+    g->size = black > 0 ? 0 : same == n / 2 ? 2 : 1;
+    return g->size == 0;
+}
+
+static void test_picture_is_seen_soon(void)
+{
+    g_autoptr(scene) s =
+        scene_of(ROOM_CAMERA SIZE(64) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    g_autoptr(render) r = render_of(s, "integrator=path passes=1 spp=1024");
+    glance g = {.render = r};
+    g_assert_false(render_run(r, look_for_whole, &g, NULL));
+    g_assert_cmpuint(g.size, ==, 2);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -532,6 +564,7 @@ int main(int argc, char **argv)
     g_test_add_func("/render/bits/stopping", test_stopping_changes_nothing);
     g_test_add_func("/render/bits/half-a-pass", test_half_a_pass_is_no_pass);
     g_test_add_func("/render/progress/photons", test_progress_while_photons_fly);
+    g_test_add_func("/render/progress/soon", test_picture_is_seen_soon);
     g_test_add_func("/render/progress/cancel", test_cancel_is_quick);
     for (size_t i = 0; i < G_N_ELEMENTS(noise_cases); i++) {
         g_autofree char *path = g_strconcat("/render/noise/", noise_cases[i].name, NULL);

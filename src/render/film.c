@@ -323,8 +323,24 @@ static void write_groups(const film *f, size_t i, double weight, float *out)
     }
 }
 
+/* The pixel itself if it has been put in the first pass, or the nearest on a coarser grid
+   of its tile that has. */
+static size_t pixel_put(const film *f, size_t i)
+{
+    size_t width = (size_t)f->width, x = i % width, y = i / width;
+    const size_t weight = offsetof(film_sum, weight) / sizeof(double);
+    for (size_t step = 1; step <= FILM_COARSE; step *= 2) {
+        size_t at = (y - y % FILM_TILE % step) * width + x - x % FILM_TILE % step;
+        if (fabsf(f->pass[at].number[weight]) > 0.0f)
+            return at;
+    }
+    return i;
+}
+
 static void write_pixel(const film *f, size_t i, float *out)
 {
+    if (f->n_passes == 0)
+        i = pixel_put(f, i);
     film_sum begun = {0};
     if (f->n_passes == 0)
         add_numbers(&begun, &f->pass[i]);

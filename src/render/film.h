@@ -18,7 +18,12 @@
 #include "image/image.h"
 #include "transport/transport.h"
 
-enum { FILM_COLORS = N_LAYERS + 1 /* albedo */ };
+enum {
+    FILM_COLORS = N_LAYERS + 1 /* albedo */,
+    FILM_TILE = 16,  /**< pixels are rendered in squares of this size */
+    FILM_COARSE = 8, /**< of whose first pass every so manieth comes first, then the half,
+                        and so on */
+};
 
 /** @brief Sums of one pixel in one pass, weighed by the pixel filter. Zero to begin. */
 typedef struct film_sum {
@@ -95,5 +100,5 @@ double film_noise(const film *f);
 /** @brief The picture: R G B, the layers' R G B, albedo, normal, depth; linear, film's
  * space. With two passes or more also variance.Y, the square of the standard error of
  * the luminance; with light groups their layers light.NAME. Before the first pass is
- * done, what was put of it. */
+ * done, what was put of it, pixels that are still to come looking like those beside. */
 image *film_image(const film *f, GError **error);

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { TILE = 16, SAMPLES_BETWEEN_BEATS = 64 };
+enum { SAMPLES_BETWEEN_BEATS = 64 };
 
 /* The caller hears of progress no more often than this, s. */
 #define BEAT_INTERVAL 0.1
@@ -118,6 +118,8 @@ static void beat(void *data)
 /* The camera's half of a pass, shared by all threads. */
 typedef struct camera_loop {
     render *render;
+    int step;  /* of every step-th pixel in both directions ... */
+    bool fill; /* ... those that are not at every 2 step-th, which are done */
     const void *pass;
     film_pass film_pass;
     uint32_t index;
@@ -191,14 +193,20 @@ static void render_tile(size_t begin, size_t end, unsigned thread, void *data)
     camera_loop *loop = data;
     render *r = loop->render;
     const film *f = &r->film;
-    int x0 = f->x0 + TILE * (int)(begin % (size_t)loop->n_tiles_x);
-    int y0 = f->y0 + TILE * (int)(begin / (size_t)loop->n_tiles_x);
-    int x1 = MIN(x0 + TILE, f->x0 + f->width), y1 = MIN(y0 + TILE, f->y0 + f->height);
-    for (int y = y0; y < y1; y++) {
-        for (int x = x0; x < x1; x++)
-            render_pixel(loop, x, y, thread);
+    int x0 = f->x0 + FILM_TILE * (int)(begin % (size_t)loop->n_tiles_x);
+    int y0 = f->y0 + FILM_TILE * (int)(begin / (size_t)loop->n_tiles_x);
+    int x1 = MIN(x0 + FILM_TILE, f->x0 + f->width),
+        y1 = MIN(y0 + FILM_TILE, f->y0 + f->height);
+    int step = loop->step, coarse = 2 * step;
+    for (int y = y0; y < y1; y += step) {
+        for (int x = x0; x < x1; x += step) {
+            bool done = loop->fill && (x - x0) % coarse == 0 && (y - y0) % coarse == 0;
+            if (!done)
+                render_pixel(loop, x, y, thread);
+        }
     }
-    atomic_fetch_add(&r->tiles_done, 1);
+    if (step == 1)
+        atomic_fetch_add(&r->tiles_done, 1);
 }
 
 static bool collect(render *r, transport_scratch *scratch, GError **error)
@@ -257,6 +265,21 @@ static void close_loop(camera_loop *loop)
     big_free(loop->groups);
 }
 
+/* Renders all pixels; in the first pass every eighth comes first, then the fourth and so
+   on, so that the whole picture can be seen soon. */
+static bool render_tiles(camera_loop *loop)
+{
+    render *r = loop->render;
+    const int first_step = r->passes_done == 0 ? FILM_COARSE : 1;
+    bool done = true;
+    for (loop->step = first_step; loop->step >= 1 && done; loop->step /= 2) {
+        loop->fill = loop->step < first_step;
+        atomic_store(&r->tiles_done, 0);
+        done = parallel_for(r->n_tiles, 1, r->n_threads, &r->cancel, render_tile, loop);
+    }
+    return done;
+}
+
 static bool look(render *r, const void *pass, GError **error)
 {
     const film *f = &r->film;
@@ -265,14 +288,13 @@ static bool look(render *r, const void *pass, GError **error)
         .pass = pass,
         .film_pass = film_pass_for(r->transport->pass_wavelengths(pass)),
         .index = r->passes_done,
-        .n_tiles_x = (f->width + TILE - 1) / TILE,
+        .n_tiles_x = (f->width + FILM_TILE - 1) / FILM_TILE,
     };
     bool ready = open_loop(&loop, error);
     double start = seconds();
-    atomic_store(&r->tiles_done, 0);
-    r->n_tiles = (size_t)loop.n_tiles_x * (size_t)((f->height + TILE - 1) / TILE);
-    bool done = ready &&
-                parallel_for(r->n_tiles, 1, r->n_threads, &r->cancel, render_tile, &loop);
+    r->n_tiles =
+        (size_t)loop.n_tiles_x * (size_t)((f->height + FILM_TILE - 1) / FILM_TILE);
+    bool done = ready && render_tiles(&loop);
     r->n_tiles = 0;
     r->statistics.time_camera += seconds() - start;
     bool collected = ready && collect(r, loop.scratch, error);
