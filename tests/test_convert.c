@@ -71,7 +71,8 @@ static void test_shapes(void)
     check_text(
         "Material \"diffuse\" \"rgb reflectance\" [.7 .2 .1] Rotate 30 1 2 3 Scale 1 "
         "1.5 -1\nShape \"sphere\" \"float radius\" 0.7\nAttributeBegin Translate 1 0 "
-        "0 ReverseOrientation Shape \"cylinder\" AttributeEnd\nShape \"disk\" \"float "
+        "0 AreaLightSource \"diffuse\" ReverseOrientation Shape \"cylinder\" "
+        "AttributeEnd\nShape \"disk\" \"float "
         "height\" -1 \"float radius\" 4 \"bool camera_visible\" true\n");
     check_text(
         "Translate 0.1 0.2 0.3 Rotate 20 0 0 1\n"
