@@ -4,6 +4,7 @@
  */
 #include "scene/light_kinds.h"
 #include "scene/scene.h"
+#include "scene_text.h"
 #include "shape_subjects.h"
 
 static params *no_params(void)
@@ -424,6 +425,24 @@ static void test_memory_refused(void)
     }
 }
 
+/* Half a pixel's width at the hit; none for rays that do not come from the eye. */
+static void test_footprint(void)
+{
+    g_autoptr(scene) s = scene_of(
+        "Camera \"perspective\" \"float fov\" 90 Film \"rgb\" \"integer xresolution\" 64 "
+        "\"integer yresolution\" 64 WorldBegin LightSource \"point\" Translate 0 0 4 "
+        "Shape \"disk\" \"float radius\" 9");
+    surface_hit hit;
+    for (int size = 64; size <= 128; size *= 2) {
+        scene_resize(s, size, size);
+        ray r = camera_ray(&s->camera, (vec2){32, 32}, (vec2){0.5f, 0.5f}, 0.5f);
+        g_assert_true(scene_see(s, &r, &hit));
+        g_assert_cmpfloat(fabsf(hit.footprint / (hit.t / (float)size) - 1), <, 0.01f);
+        g_assert_true(scene_intersect(s, &r, &hit));
+        g_assert_cmpfloat(hit.footprint, <=, 0);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -432,6 +451,7 @@ int main(int argc, char **argv)
     g_test_add_func("/scene/lights/density", test_sampling_agrees_with_density);
     g_test_add_func("/scene/lights/tree", test_light_tree);
     g_test_add_func("/scene/lights/sum", test_one_light_for_all);
+    g_test_add_func("/scene/footprint", test_footprint);
     g_test_add_func("/scene/scale", test_scale_by_thousand);
     g_test_add_func("/scene/refused", test_what_only_the_whole_can_tell);
     g_test_add_func("/scene/names", test_names);

@@ -208,7 +208,7 @@ static void refuse(params *p, const char *kind, const char *part)
 
 static void test_refusals(void)
 {
-    refuse(list(colour_path), "marble", "found 'marble'");
+    refuse(list(colour_path), "plasma", "found 'plasma'");
     refuse(list(NULL), "imagemap", "\"string filename\"");
     refuse(list("none.png"), "imagemap", "none.png");
     refuse(with_word(list(colour_path), "filter", "cubic"), "imagemap", "found 'cubic'");

@@ -21,6 +21,9 @@ typedef struct texture_point2 {
 
 struct mapping_kind;
 
+/** @brief The parameters that mappings to the plane read. */
+#define MAPPING_PARAMETERS "mapping uscale vscale udelta vdelta v1 v2"
+
 /** @brief A mapping to the plane. Plain value. */
 typedef struct mapping2 {
     const struct mapping_kind *kind;

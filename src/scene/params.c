@@ -270,6 +270,29 @@ bool params_path(const params *p, const char *name, char **out, GError **error)
     return true;
 }
 
+/* True if a name is one of a list's words. */
+static bool is_listed(const char *name, const char *list)
+{
+    size_t length = strlen(name);
+    for (const char *at = list; at && (at = strstr(at, name)); at += length)
+        if ((at == list || at[-1] == ' ') && (!at[length] || at[length] == ' '))
+            return true;
+    return false;
+}
+
+bool params_known(const params *p, const char *what, const char *names, const char *more,
+                  GError **error)
+{
+    for (guint i = 0; i < p->list->len; i++) {
+        const param *q = p->list->pdata[i];
+        if (q->used || is_listed(q->name, names) || is_listed(q->name, more))
+            continue;
+        error_at(error, q->place, "unknown parameter '%s' of %s", q->name, what);
+        return false;
+    }
+    return true;
+}
+
 bool params_all_used(const params *p, const char *what, GError **error)
 {
     for (guint i = 0; i < p->list->len; i++) {

@@ -87,6 +87,11 @@ bool params_choice(const params *p, const char *name, const char *const *words, 
  * the caller; NULL if absent. */
 bool params_path(const params *p, const char *name, char **out, GError **error);
 
+/** @brief false with ERROR_INPUT at the first parameter that is in none of two lists of
+ * names (with spaces between; either may be NULL) and that nobody asked for:
+ *  "unknown parameter 'x' of <what>". */
+bool params_known(const params *p, const char *what, const char *names, const char *more,
+                  GError **error);
 /** @brief false with ERROR_INPUT at the first parameter nobody asked for:
  *  "unknown parameter 'x' of <what>". */
 bool params_all_used(const params *p, const char *what, GError **error);

@@ -409,6 +409,18 @@ static void forget_commit(scene *s)
     s->n_environments = s->n_caustic_shapes = 0;
 }
 
+/* By two rays half a pixel apart: with several samples a pixel each has to see no more.
+ */
+static void find_pixel_width(scene *s)
+{
+    vec2 middle = {0.5f * (float)s->film.width, 0.5f * (float)s->film.height};
+    ray a = camera_ray(&s->camera, middle, (vec2){0.5f, 0.5f}, 0.5f);
+    middle.x += 0.5f;
+    ray b = camera_ray(&s->camera, middle, (vec2){0.5f, 0.5f}, 0.5f);
+    s->pixel_width = length3(b.origin - a.origin);
+    s->pixel_spread = length3(b.direction - a.direction);
+}
+
 bool scene_commit(scene *s, unsigned threads, GError **error)
 {
     if (!is_open(s, error))
@@ -427,6 +439,7 @@ bool scene_commit(scene *s, unsigned threads, GError **error)
     s->committed = s->accel != NULL;
     if (s->committed) {
         find_light_groups(s);
+        find_pixel_width(s);
         find_interiors(s);
         g_hash_table_remove_all(s->files);
     } else {
@@ -443,6 +456,8 @@ void scene_resize(scene *s, int width, int height)
     s->film.height = height;
     if (s->has_camera)
         camera_resize(&s->camera, width, height);
+    if (s->committed)
+        find_pixel_width(s);
 }
 
 bool scene_see(const scene *s, const ray *r, surface_hit *hit)
@@ -452,6 +467,7 @@ bool scene_see(const scene *s, const ray *r, surface_hit *hit)
         const shape *on = s->shapes->pdata[hit->shape];
         if (!on->camera_hidden) {
             hit->t = length3(hit->p - r->origin);
+            hit->footprint = s->pixel_width + hit->t * s->pixel_spread;
             return true;
         }
         left = hit_ray(hit, r->direction);

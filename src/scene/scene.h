@@ -51,6 +51,7 @@ typedef struct scene {
 
     /* From here on valid once committed. */
     bool committed;
+    float pixel_width, pixel_spread; /**< m, and m a metre: how wide a pixel sees */
     accel *accel;
     box3 bounds;  /**< of all shapes */
     vec3 center;  /**< of the bounding sphere */

@@ -13,8 +13,17 @@ struct texture {
     bool is_spectrum;
 };
 
-static const texture_kind *const kinds[] = {&texture_constant, &texture_imagemap,
-                                            &texture_gltf};
+static const texture_kind *const kinds[] = {
+    &texture_bilerp,   &texture_checkerboard, &texture_constant, &texture_direction_mix,
+    &texture_dots,     &texture_fbm,          &texture_gltf,     &texture_imagemap,
+    &texture_marble,   &texture_mix,          &texture_scale,    &texture_windy,
+    &texture_wrinkled,
+};
+
+const texture_kind *texture_kind_at(size_t i)
+{
+    return i < G_N_ELEMENTS(kinds) ? kinds[i] : NULL;
+}
 
 static const texture_kind *find_kind(const char *name, const params *p, GError **error)
 {
@@ -33,12 +42,14 @@ texture *texture_new(const struct scene *s, const char *kind, bool is_spectrum,
                      const params *p, GError **error)
 {
     const texture_kind *k = find_kind(kind, p, error);
-    void *self = k ? k->create(s, is_spectrum, p, error) : NULL;
+    g_autofree char *what = g_strdup_printf("texture '%s'", kind);
+    if (!k || !params_known(p, what, k->parameters, NULL, error))
+        return NULL;
+    void *self = k->create(s, is_spectrum, p, error);
     if (!self)
         return NULL;
     texture *t = g_new0(texture, 1);
     *t = (texture){k, self, is_spectrum};
-    g_autofree char *what = g_strdup_printf("texture '%s'", kind);
     if (!params_all_used(p, what, error)) {
         texture_free(t);
         return NULL;
@@ -54,17 +65,32 @@ void texture_free(texture *t)
     g_free(t);
 }
 
+float texture_eval_float(const texture *t, const surface_hit *hit)
+{
+    return t->kind->eval_float(t->self, hit);
+}
+
+spectrum texture_eval_spectrum(const texture *t, const surface_hit *hit,
+                               const wavelengths *w, curve_role role)
+{
+    return t->kind->eval_spectrum(t->self, hit, w, role);
+}
+
 bool texture_is_spectrum(const texture *t)
 {
     return t->is_spectrum;
 }
 
 /* The texture that parameter q names, in the table of its type. */
-static const texture *find_texture(const struct scene *s, const param *q,
-                                   bool is_spectrum, GError **error)
+const texture *texture_find(const struct scene *s, const param *q, bool is_spectrum,
+                            GError **error)
 {
-    GHashTable *table = is_spectrum ? s->spectrum_textures : s->float_textures;
-    GHashTable *other = is_spectrum ? s->float_textures : s->spectrum_textures;
+    GHashTable *table = !s            ? NULL
+                        : is_spectrum ? s->spectrum_textures
+                                      : s->float_textures;
+    GHashTable *other = !s            ? NULL
+                        : is_spectrum ? s->float_textures
+                                      : s->spectrum_textures;
     const char *type = is_spectrum ? "spectrum" : "float";
     const texture *t =
         q->n == 1 && table ? g_hash_table_lookup(table, q->strings[0]) : NULL;
@@ -95,7 +121,7 @@ bool spectrum_input_init(spectrum_input *in, const struct scene *s, const params
     }
     curve_unref(fallback);
     if (q->type == PARAM_TEXTURE)
-        return (in->texture = find_texture(s, q, true, error)) != NULL;
+        return (in->texture = texture_find(s, q, true, error)) != NULL;
     return params_curve(p, name, role, &in->constant, error);
 }
 
@@ -115,7 +141,7 @@ spectrum spectrum_input_eval(const spectrum_input *in, const surface_hit *hit,
 {
     if (in->constant)
         return curve_eval(in->constant, w);
-    return in->texture->kind->eval_spectrum(in->texture->self, hit, w, in->role);
+    return texture_eval_spectrum(in->texture, hit, w, in->role);
 }
 
 bool float_input_init(float_input *in, const struct scene *s, const params *p,
@@ -124,7 +150,7 @@ bool float_input_init(float_input *in, const struct scene *s, const params *p,
     *in = (float_input){.constant = fallback};
     const param *q = params_find(p, name);
     if (q && q->type == PARAM_TEXTURE)
-        return (in->texture = find_texture(s, q, false, error)) != NULL;
+        return (in->texture = texture_find(s, q, false, error)) != NULL;
     return params_float(p, name, &in->constant, error);
 }
 
@@ -132,5 +158,5 @@ float float_input_eval(const float_input *in, const surface_hit *hit)
 {
     if (!in->texture)
         return in->constant;
-    return in->texture->kind->eval_float(in->texture->self, hit);
+    return texture_eval_float(in->texture, hit);
 }

@@ -15,6 +15,8 @@ typedef struct texture texture;
 /** @brief What a kind of texture must do. `create` reads the parameters it knows. */
 typedef struct texture_kind {
     const char *name; /**< "constant", "imagemap" */
+    const char
+        *parameters; /**< those it reads, with spaces between; others are unknown */
     void *(*create)(const struct scene *s, bool is_spectrum, const params *p,
                     GError **error);
     void (*free)(void *self);
@@ -27,6 +29,15 @@ texture *texture_new(const struct scene *s, const char *kind, bool is_spectrum,
                      const params *p, GError **error);
 void texture_free(texture *t);
 bool texture_is_spectrum(const texture *t);
+/** @brief The texture that parameter q names, of the type wanted; NULL with ERROR_INPUT
+ * at its place. */
+const texture *texture_find(const struct scene *s, const param *q, bool is_spectrum,
+                            GError **error);
+float texture_eval_float(const texture *t, const surface_hit *hit);
+spectrum texture_eval_spectrum(const texture *t, const surface_hit *hit,
+                               const wavelengths *w, curve_role role);
+/** @brief Kind number i of the table; NULL behind the last. */
+const texture_kind *texture_kind_at(size_t i);
 
 /**
  * @brief A material's input: a constant curve or number, or a texture (borrowed from the

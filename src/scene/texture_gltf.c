@@ -152,6 +152,8 @@ static spectrum gltf_eval_spectrum(const void *self, const surface_hit *hit,
 
 const texture_kind texture_gltf = {
     .name = "gltf",
+    .parameters = "filename uwrap vwrap filter channel uscale vscale udelta vdelta "
+                  "rotation factor cutoff",
     .create = gltf_create,
     .free = gltf_free,
     .eval_float = gltf_eval_float,

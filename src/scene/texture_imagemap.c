@@ -177,6 +177,8 @@ static spectrum imagemap_eval_spectrum(const void *self, const surface_hit *hit,
 
 const texture_kind texture_imagemap = {
     .name = "imagemap",
+    .parameters =
+        "filename wrap filter maxanisotropy encoding scale invert " MAPPING_PARAMETERS,
     .create = imagemap_create,
     .free = imagemap_free,
     .eval_float = imagemap_eval_float,
