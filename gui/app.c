@@ -1,5 +1,6 @@
 #include "app.h"
 
+#include "screenshot.h"
 #include "window.h"
 
 #include <nephroid/nephroid.h>
@@ -10,9 +11,10 @@ static const char style[] =
     ".canvas { background-color: #1a1a1c; }\n"
     ".canvas:focus-visible { outline: 2px solid alpha(@accent_color, 0.7);"
     " outline-offset: -2px; }\n"
+    ".pages > button { min-width: 40px; padding: 5px 6px; }\n"
     ".statusbar-line { padding: 5px 12px; }\n"
     ".numeric { font-feature-settings: \"tnum\"; }\n"
-    ".group > row { padding: 4px 4px 4px 12px; min-height: 38px; }\n"
+    ".group > row { padding: 4px 10px 4px 12px; min-height: 38px; }\n"
     ".group { border-radius: 10px; }\n"
     ".group > row:first-child { border-radius: 10px 10px 0 0; }\n"
     ".group > row:last-child { border-radius: 0 0 10px 10px; }\n"
@@ -60,12 +62,29 @@ static void add_keys(GtkApplication *app)
 {
     static const char *const keys[][3] = {
         {"app.quit", "<Control>q", NULL},
+        {"win.show-help-overlay", "<Control>question", "F1"},
         {"win.open", "<Control>o", NULL},
         {"win.reload", "<Control>r", NULL},
         {"win.save-picture", "<Control>s", NULL},
         {"win.play", "space", NULL},
         {"win.stop", "<Control>period", NULL},
         {"win.restart", "F5", NULL},
+        {"win.trace-photons", "<Control>t", NULL},
+        {"win.reset-view", "Home", NULL},
+        {"win.frame-view", "End", NULL},
+        {"win.copy-view", "<Control><Shift>c", NULL},
+        {"win.save-view", "<Control><Shift>s", NULL},
+        {"win.focus-tool", "<Control>d", NULL},
+        {"win.brighter", "<Control>Up", NULL},
+        {"win.darker", "<Control>Down", NULL},
+        {"win.view::picture", "<Alt>1", NULL},
+        {"win.view::photons", "<Alt>2", NULL},
+        {"win.view::materials", "<Alt>3", NULL},
+        {"win.page::settings", "<Alt>s", NULL},
+        {"win.page::camera", "<Alt>c", NULL},
+        {"win.page::inspect", "<Alt>i", NULL},
+        {"win.page::photons", "<Alt>p", NULL},
+        {"win.page::numbers", "<Alt>n", NULL},
         {"win.zoom-fit", "<Control>0", NULL},
         {"win.zoom-one", "<Control>1", NULL},
         {"win.zoom-in", "<Control>plus", "<Control>equal"},
@@ -90,17 +109,71 @@ static void startup(GtkApplication *app)
     load_style();
 }
 
+/* ---- Command line ---- */
+
+/* What the options ask for; one program, one command line. */
+static struct {
+    char *screenshot, *view, *page, *theme;
+    double after; /* s */
+    gboolean version;
+} given = {.after = 4.0};
+
+static const GOptionEntry options[] = {
+    {"view", 0, 0, G_OPTION_ARG_STRING, &given.view,
+     "Begin with this view: picture, photons or materials", "NAME"},
+    {"page", 0, 0, G_OPTION_ARG_STRING, &given.page,
+     "Begin with this page beside it, e.g. settings", "NAME"},
+    {"theme", 0, 0, G_OPTION_ARG_STRING, &given.theme, "system, light or dark", "NAME"},
+    {"screenshot", 0, 0, G_OPTION_ARG_FILENAME, &given.screenshot,
+     "Take a picture of the window and end", "FILE.png"},
+    {"after", 0, 0, G_OPTION_ARG_DOUBLE, &given.after,
+     "Seconds after which the picture is taken", "SECONDS"},
+    {"version", 'V', 0, G_OPTION_ARG_NONE, &given.version, "Show the version", NULL},
+    G_OPTION_ENTRY_NULL};
+
+static int local_options(void)
+{
+    if (!given.version)
+        return -1;
+    g_print("nephroid-view %s\n", neph_version());
+    return 0;
+}
+
+static gboolean take_screenshot(void *data)
+{
+    GtkWindow *shown = data;
+    g_autoptr(GError) error = NULL;
+    if (!screenshot_take(shown, given.screenshot, &error))
+        g_printerr("nephroid-view: %s\n", error->message);
+    gtk_window_destroy(shown);
+    return G_SOURCE_REMOVE;
+}
+
+static window *show_window(GtkApplication *app)
+{
+    window *w = window_new(app);
+    GtkWidget *gtk = GTK_WIDGET(window_gtk(w));
+    const char *const wishes[][2] = {
+        {"win.theme", given.theme}, {"win.view", given.view}, {"win.page", given.page}};
+    for (size_t i = 0; i < G_N_ELEMENTS(wishes); i++)
+        if (wishes[i][1])
+            gtk_widget_activate_action(gtk, wishes[i][0], "s", wishes[i][1]);
+    gtk_window_present(GTK_WINDOW(gtk));
+    if (given.screenshot)
+        g_timeout_add((guint)(1000.0 * given.after), take_screenshot, gtk);
+    return w;
+}
+
 static void activate(GtkApplication *app)
 {
-    gtk_window_present(window_gtk(window_new(app)));
+    show_window(app);
 }
 
 static void open_files(GtkApplication *app, GFile **files, int n)
 {
     for (int i = 0; i < n; i++) {
         g_autofree char *path = g_file_get_path(files[i]);
-        window *w = window_new(app);
-        gtk_window_present(window_gtk(w));
+        window *w = show_window(app);
         if (path)
             window_open(w, path);
     }
@@ -113,5 +186,8 @@ GtkApplication *app_new(void)
     g_signal_connect(app, "startup", G_CALLBACK(startup), NULL);
     g_signal_connect(app, "activate", G_CALLBACK(activate), NULL);
     g_signal_connect(app, "open", G_CALLBACK(open_files), NULL);
+    g_application_add_main_option_entries(G_APPLICATION(app), options);
+    g_signal_connect_swapped(app, "handle-local-options", G_CALLBACK(local_options),
+                             NULL);
     return app;
 }

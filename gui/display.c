@@ -253,7 +253,8 @@ size_t display_histogram(const NephImage *image, const char *layer, float low, f
                 continue;
             float at = (log2f(v) - low) / (high - low) * (float)n;
             size_t bin = (size_t)fminf(fmaxf(at, 0.0f), (float)n - 1.0f);
-            largest = MAX(largest, ++counts[k][bin]);
+            counts[k][bin]++;
+            largest = MAX(largest, counts[k][bin]);
         }
     return largest;
 }

@@ -25,6 +25,7 @@ typedef struct panel_group {
 
 struct settings_panel {
     GtkWidget *root, *search, *content, *empty;
+    GtkWidget *switch_over;              /* shown when another integrator is at work */
     GtkWidget *width, *height, *threads; /* of the picture */
     GPtrArray *controls;                 /* setting_control */
     GArray *groups;                      /* panel_group */
@@ -87,10 +88,10 @@ static void show_used(settings_panel *p)
         const NephSettingInfo *info = setting_control_info(c);
         g_auto(GStrv) users = g_strsplit(info->users, " ", -1);
         bool used = g_strv_contains((const char *const *)users, "all") ||
-                    g_strv_contains((const char *const *)users, integrator) ||
-                    strcmp(integrator, "auto") == 0;
+                    g_strv_contains((const char *const *)users, integrator);
         setting_control_set_used(c, used);
     }
+    gtk_widget_set_visible(p->switch_over, strcmp(integrator, "photonmap") != 0);
 }
 
 static void show_threads(settings_panel *p)
@@ -209,6 +210,9 @@ static void add_picture(settings_panel *p)
     gtk_widget_set_name(p->width, "width");
     gtk_widget_set_name(p->height, "height");
     gtk_widget_set_name(p->threads, "multithreading");
+    gtk_widget_set_margin_end(p->width, 34);
+    gtk_widget_set_margin_end(p->height, 34);
+    gtk_widget_set_margin_end(p->threads, 34);
     row_add(g->list, "Width (pixels)", p->width);
     row_add(g->list, "Height (pixels)", p->height);
     gtk_widget_set_tooltip_text(row_add(g->list, "Multithreading", p->threads),
@@ -247,6 +251,26 @@ static GtkWidget *buttons_make(settings_panel *p)
     return box;
 }
 
+static void on_switch_over(settings_panel *p)
+{
+    setting_control *c = settings_panel_find(p, "integrator");
+    setting_control_show(c, "photonmap");
+    on_changed(setting_control_info(c), "photonmap", p);
+}
+
+static GtkWidget *switch_over_make(settings_panel *p)
+{
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 6);
+    GtkWidget *button =
+        text_button_make("Use photon mapping", "Sets the integrator to photonmap", NULL);
+    gtk_box_append(GTK_BOX(box), text_make("The integrator of this scene leaves some "
+                                           "settings unused; those are dimmed.",
+                                           "dim-label"));
+    gtk_box_append(GTK_BOX(box), button);
+    g_signal_connect_swapped(button, "clicked", G_CALLBACK(on_switch_over), p);
+    return box;
+}
+
 static void build(settings_panel *p)
 {
     p->root = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
@@ -257,6 +281,8 @@ static void build(settings_panel *p)
     g_signal_connect_swapped(p->search, "search-changed", G_CALLBACK(on_search), p);
     gtk_box_append(GTK_BOX(top), p->search);
     gtk_box_append(GTK_BOX(top), buttons_make(p));
+    p->switch_over = switch_over_make(p);
+    gtk_box_append(GTK_BOX(top), p->switch_over);
     gtk_box_append(GTK_BOX(p->root), top);
     GtkWidget *scroller = gtk_scrolled_window_new();
     gtk_scrolled_window_set_policy(GTK_SCROLLED_WINDOW(scroller), GTK_POLICY_NEVER,

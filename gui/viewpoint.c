@@ -131,7 +131,7 @@ void viewpoint_orbit(viewpoint *v, double right, double up)
     memcpy(axes[2], c->direction, sizeof axes[2]);
     for (int k = 0; k < 3; k++)
         along[k] = dot(to_pivot, axes[k]);
-    turn(v, -right, -up);
+    turn(v, right, up);
     right_of(c, axes[0]);
     memcpy(c->position, v->pivot, sizeof c->position);
     add(c->position, -along[0], axes[0]);

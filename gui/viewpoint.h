@@ -18,7 +18,8 @@ typedef struct viewpoint {
 /** @brief A camera in a scene with these bounds (low NULL: none). */
 void viewpoint_init(viewpoint *v, const NephCamera *camera, const double low[3],
                     const double high[3]);
-/** @brief Around the pivot by so many radians to the right and up. */
+/** @brief Around the pivot, so that what is before it turns by so many radians to the
+ * right and up in the picture. */
 void viewpoint_orbit(viewpoint *v, double right, double up);
 /** @brief Across by fractions of the picture's height at the pivot's distance; the pivot
  * comes along. */

@@ -20,6 +20,15 @@ GtkWidget *label_make(const char *text, const char *css_class)
     return label;
 }
 
+GtkWidget *text_make(const char *text, const char *css_class)
+{
+    GtkWidget *label = label_make(text, css_class);
+    gtk_label_set_wrap(GTK_LABEL(label), TRUE);
+    gtk_label_set_wrap_mode(GTK_LABEL(label), PANGO_WRAP_WORD_CHAR);
+    gtk_label_set_max_width_chars(GTK_LABEL(label), 40);
+    return label;
+}
+
 GtkWidget *icon_button_make(const char *icon, const char *tooltip, const char *action)
 {
     GtkWidget *button = gtk_button_new_from_icon_name(icon);
@@ -94,6 +103,7 @@ GtkWidget *value_row_add(GtkWidget *list, const char *title)
     gtk_label_set_xalign(GTK_LABEL(value), 1.0f);
     gtk_widget_add_css_class(value, "numeric");
     gtk_widget_set_can_focus(value, FALSE);
+    gtk_label_set_ellipsize(GTK_LABEL(value), PANGO_ELLIPSIZE_MIDDLE);
     row_add(list, title, value);
     return value;
 }

@@ -9,6 +9,8 @@
 void widget_name(GtkWidget *widget, const char *name);
 /** @brief A label, left-aligned, with a CSS class (NULL: none). */
 GtkWidget *label_make(const char *text, const char *css_class);
+/** @brief The same, of several lines. */
+GtkWidget *text_make(const char *text, const char *css_class);
 /** @brief A button with an icon, named by its tooltip; action as in "win.play", or NULL.
  */
 GtkWidget *icon_button_make(const char *icon, const char *tooltip, const char *action);

@@ -1,5 +1,6 @@
 #include "window_parts.h"
 
+#include "help.h"
 #include "widgets.h"
 
 #include <stdarg.h>
@@ -70,6 +71,7 @@ static void settings_changed(const NephSettings *settings, void *data)
 {
     window *w = data;
     session_set_settings(w->session, settings);
+    window_photons_settings_changed(w);
 }
 
 static void size_changed(int width, int height, void *data)
@@ -162,6 +164,15 @@ static GtkWidget *welcome_make(void)
     return box;
 }
 
+static void make_photon_panel(window *w)
+{
+    const photon_panel_events events = {window_photon_style, window_pick_radius, w};
+    GtkWidget *photons =
+        setting_control_input(settings_panel_find(w->settings, "photons"));
+    w->photon_panel = photon_panel_new(
+        gtk_spin_button_get_adjustment(GTK_SPIN_BUTTON(photons)), &events);
+}
+
 static GtkWidget *sidebar_make(window *w)
 {
     GtkWidget *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
@@ -171,9 +182,20 @@ static GtkWidget *sidebar_make(window *w)
     gtk_widget_set_margin_top(switcher, 12);
     gtk_widget_set_margin_start(switcher, 12);
     gtk_widget_set_margin_end(switcher, 12);
+    gtk_widget_add_css_class(switcher, "pages");
     gtk_widget_set_halign(switcher, GTK_ALIGN_FILL);
     gtk_stack_add_titled(GTK_STACK(w->pages), settings_panel_widget(w->settings),
                          "settings", "Settings");
+    const struct {
+        GtkWidget *widget;
+        const char *name, *title;
+    } pages[] = {{camera_panel_widget(w->camera_panel), "camera", "Camera"},
+                 {inspector_widget(w->inspector), "inspect", "Inspect"},
+                 {photon_panel_widget(w->photon_panel), "photons", "Photons"},
+                 {numbers_panel_widget(w->numbers), "numbers", "Numbers"}};
+    for (size_t i = 0; i < G_N_ELEMENTS(pages); i++)
+        gtk_stack_add_titled(GTK_STACK(w->pages), pages[i].widget, pages[i].name,
+                             pages[i].title);
     gtk_box_append(GTK_BOX(box), switcher);
     gtk_box_append(GTK_BOX(box), w->pages);
     gtk_widget_set_size_request(box, SIDEBAR_LEAST, -1);
@@ -188,6 +210,17 @@ static GtkWidget *views_make(window *w)
     w->navigation = navigation_new(canvas_widget(w->canvas), &w->view, &events);
     gtk_stack_add_titled(GTK_STACK(w->views), canvas_widget(w->canvas), "picture",
                          "Picture");
+    const navigation_events photon_events = {window_view_moved, window_photon_clicked, w};
+    w->photon_view = photon_view_new(&w->view);
+    w->photon_navigation =
+        navigation_new(photon_view_widget(w->photon_view), &w->view, &photon_events);
+    gtk_stack_add_titled(GTK_STACK(w->views), photon_view_widget(w->photon_view),
+                         "photons", "Photons");
+    w->lobes = lobe_view_new();
+    gtk_stack_add_titled(GTK_STACK(w->views), lobe_view_widget(w->lobes), "materials",
+                         "Materials");
+    g_signal_connect_swapped(w->views, "notify::visible-child",
+                             G_CALLBACK(window_view_switched), w);
     GtkWidget *overlay = gtk_overlay_new();
     w->toast = gtk_revealer_new();
     GtkWidget *label = gtk_label_new("");
@@ -204,21 +237,38 @@ static GtkWidget *views_make(window *w)
     return overlay;
 }
 
+/* The sidebar gets its remembered width once the whole has one. */
+static gboolean place_divider(GtkWidget *paned, GdkFrameClock *clock, void *data)
+{
+    (void)clock;
+    const window *w = data;
+    int width = gtk_widget_get_width(paned);
+    if (width <= 0)
+        return G_SOURCE_CONTINUE;
+    gtk_paned_set_position(GTK_PANED(paned), width - w->remembered.sidebar_width);
+    return G_SOURCE_REMOVE;
+}
+
 static GtkWidget *main_make(window *w)
 {
     GtkWidget *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
     w->paned = gtk_paned_new(GTK_ORIENTATION_HORIZONTAL);
     w->settings = settings_panel_new(settings_changed, size_changed, w);
+    GtkWidget *views = views_make(w);
+    make_photon_panel(w);
+    w->camera_panel = camera_panel_new(window_camera_changed, w);
+    w->inspector = inspector_new(w->canvas, window_ask_reference, w);
+    w->numbers = numbers_panel_new();
     w->status = status_new();
     GtkPaned *paned = GTK_PANED(w->paned);
-    gtk_paned_set_start_child(paned, views_make(w));
+    gtk_paned_set_start_child(paned, views);
     w->sidebar = sidebar_make(w);
     gtk_paned_set_end_child(paned, w->sidebar);
     gtk_paned_set_resize_end_child(paned, FALSE);
     gtk_paned_set_shrink_end_child(paned, FALSE);
     gtk_paned_set_shrink_start_child(paned, FALSE);
     gtk_widget_set_vexpand(w->paned, TRUE);
-    gtk_widget_set_size_request(w->sidebar, w->remembered.sidebar_width, -1);
+    gtk_widget_add_tick_callback(w->paned, place_divider, w, NULL);
     gtk_widget_set_visible(w->sidebar, w->remembered.sidebar);
     gtk_box_append(GTK_BOX(box), w->paned);
     gtk_box_append(GTK_BOX(box), status_widget(w->status));
@@ -267,6 +317,15 @@ static void destroyed(window *w)
     document_free(w->document);
     g_clear_handle_id(&w->toast_timer, g_source_remove);
     navigation_free(w->navigation);
+    navigation_free(w->photon_navigation);
+    window_stop_tracing(w);
+    held_photons_unref(w->photons);
+    photon_view_free(w->photon_view);
+    photon_panel_free(w->photon_panel);
+    camera_panel_free(w->camera_panel);
+    inspector_free(w->inspector);
+    numbers_panel_free(w->numbers);
+    lobe_view_free(w->lobes);
     canvas_free(w->canvas);
     settings_panel_free(w->settings);
     error_page_free(w->errors);
@@ -274,6 +333,12 @@ static void destroyed(window *w)
     held_scene_unref(w->scene);
     neph_settings_free(w->of_scene);
     g_free(w);
+}
+
+static void set_help(window *w)
+{
+    g_autoptr(GtkShortcutsWindow) help = help_make();
+    gtk_application_window_set_help_overlay(GTK_APPLICATION_WINDOW(w->gtk), help);
 }
 
 window *window_new(GtkApplication *app)
@@ -288,6 +353,8 @@ window *window_new(GtkApplication *app)
     w->document = document_new(file_changed, w);
     w->session = session_new(window_on_news, w);
     window_add_actions(w);
+    set_help(w);
+    window_add_view_actions(w);
     build(w);
     window_apply_theme(w);
     window_update_actions(w);

@@ -1,43 +1,24 @@
 #include "window_parts.h"
 
+#include "file_dialog.h"
+
 #include <string.h>
 
 /* ---- Files ---- */
 
-static void scene_chosen(GtkNativeDialog *dialog, int response, window *w)
+static void scene_chosen(const char *path, void *data)
 {
-    if (response == GTK_RESPONSE_ACCEPT) {
-        g_autoptr(GFile) file = gtk_file_chooser_get_file(GTK_FILE_CHOOSER(dialog));
-        g_autofree char *path = g_file_get_path(file);
-        if (path)
-            window_open(w, path);
-    }
-    g_object_unref(dialog);
-}
-
-static void add_filter(GtkFileChooser *chooser, const char *name,
-                       const char *const *patterns)
-{
-    g_autoptr(GtkFileFilter) filter = gtk_file_filter_new();
-    gtk_file_filter_set_name(filter, name);
-    for (size_t i = 0; patterns[i]; i++)
-        gtk_file_filter_add_pattern(filter, patterns[i]);
-    gtk_file_chooser_add_filter(chooser, filter);
+    window_open(data, path);
 }
 
 static void open_scene(GSimpleAction *action, GVariant *parameter, void *data)
 {
     (void)action, (void)parameter;
+    static const char *const scenes[] = {"*.pbrt", "*.pbrt.gz", "*.gltf",
+                                         "*.glb",  "*.obj",     NULL};
+    const file_question question = {"Open a scene", false, NULL, "Scenes", scenes};
     window *w = data;
-    GtkFileChooserNative *dialog = gtk_file_chooser_native_new(
-        "Open a scene", w->gtk, GTK_FILE_CHOOSER_ACTION_OPEN, "_Open", "_Cancel");
-    static const char *const scenes[] = {"*.pbrt", "*.gltf", "*.glb", "*.obj", NULL};
-    static const char *const all[] = {"*", NULL};
-    add_filter(GTK_FILE_CHOOSER(dialog), "Scenes", scenes);
-    add_filter(GTK_FILE_CHOOSER(dialog), "All files", all);
-    gtk_native_dialog_set_modal(GTK_NATIVE_DIALOG(dialog), TRUE);
-    g_signal_connect(dialog, "response", G_CALLBACK(scene_chosen), w);
-    gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
+    file_dialog_ask(w->gtk, &question, scene_chosen, w);
 }
 
 static void open_path(GSimpleAction *action, GVariant *parameter, void *data)
@@ -61,8 +42,9 @@ static void dismiss_error(GSimpleAction *action, GVariant *parameter, void *data
     window_show_content(w, w->scene ? "main" : "welcome");
 }
 
-static void save_to(window *w, const char *path)
+static void save_to(const char *path, void *data)
 {
+    window *w = data;
     g_autoptr(GError) error = NULL;
     const held_picture *picture = canvas_picture(w->canvas);
     float exposure = canvas_options(w->canvas)->exposure;
@@ -74,41 +56,56 @@ static void save_to(window *w, const char *path)
         window_toast(w, "%s", error->message);
 }
 
-static void picture_chosen(GtkNativeDialog *dialog, int response, window *w)
+/* The scene's name with another ending; owned by the caller. */
+static char *name_with(window *w, const char *ending)
 {
-    if (response == GTK_RESPONSE_ACCEPT) {
-        g_autoptr(GFile) file = gtk_file_chooser_get_file(GTK_FILE_CHOOSER(dialog));
-        g_autofree char *path = g_file_get_path(file);
-        if (path)
-            save_to(w, path);
-    }
-    g_object_unref(dialog);
+    g_autofree char *base = g_path_get_basename(document_path(w->document));
+    char *dot = strrchr(base, '.');
+    if (dot)
+        *dot = '\0';
+    return g_strconcat(base, ending, NULL);
 }
 
 static void save_picture(GSimpleAction *action, GVariant *parameter, void *data)
 {
     (void)action, (void)parameter;
-    window *w = data;
-    GtkFileChooserNative *dialog = gtk_file_chooser_native_new(
-        "Save the picture", w->gtk, GTK_FILE_CHOOSER_ACTION_SAVE, "_Save", "_Cancel");
-    g_autofree char *base = g_path_get_basename(document_path(w->document));
-    char *dot = strrchr(base, '.');
-    if (dot)
-        *dot = '\0';
-    g_autofree char *name = g_strconcat(base, ".png", NULL);
     static const char *const images[] = {"*.png", "*.exr", "*.jpg",
                                          "*.hdr", "*.pfm", NULL};
-    add_filter(GTK_FILE_CHOOSER(dialog), "Pictures (png, exr, jpg, hdr, pfm)", images);
-    gtk_file_chooser_set_current_name(GTK_FILE_CHOOSER(dialog), name);
-    gtk_native_dialog_set_modal(GTK_NATIVE_DIALOG(dialog), TRUE);
-    g_signal_connect(dialog, "response", G_CALLBACK(picture_chosen), w);
-    gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
+    window *w = data;
+    g_autofree char *name = name_with(w, ".png");
+    const file_question question = {"Save the picture", true, name,
+                                    "Pictures (png, exr, jpg, hdr, pfm)", images};
+    file_dialog_ask(w->gtk, &question, save_to, w);
+}
+
+static void save_diagram_to(const char *path, void *data)
+{
+    window *w = data;
+    g_autoptr(GError) error = NULL;
+    g_autofree char *svg = lobe_view_svg(w->lobes);
+    if (!svg)
+        return;
+    if (neph_file_write(path, svg, &error))
+        window_toast(w, "Saved %s", path);
+    else
+        window_toast(w, "%s", error->message);
+}
+
+static void save_diagram(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    static const char *const diagrams[] = {"*.svg", NULL};
+    window *w = data;
+    g_autofree char *name = name_with(w, "-material.svg");
+    const file_question question = {"Save the diagram", true, name, "Drawings (svg)",
+                                    diagrams};
+    file_dialog_ask(w->gtk, &question, save_diagram_to, w);
 }
 
 static void save_picture_as(GSimpleAction *action, GVariant *parameter, void *data)
 {
     (void)action;
-    save_to(data, g_variant_get_string(parameter, NULL));
+    save_to(g_variant_get_string(parameter, NULL), data);
 }
 
 /* ---- Rendering ---- */
@@ -135,6 +132,14 @@ static void restart(GSimpleAction *action, GVariant *parameter, void *data)
 {
     (void)action, (void)parameter;
     session_restart(((window *)data)->session);
+}
+
+static void trace_photons(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    window *w = data;
+    gtk_stack_set_visible_child_name(GTK_STACK(w->views), "photons");
+    window_trace_photons(w);
 }
 
 /* ---- The view ---- */
@@ -248,9 +253,11 @@ static const GActionEntry entries[] = {
     {.name = "dismiss-error", .activate = dismiss_error},
     {.name = "save-picture", .activate = save_picture},
     {.name = "save-picture-as", .activate = save_picture_as, .parameter_type = "s"},
+    {.name = "save-diagram", .activate = save_diagram},
     {.name = "play", .activate = play},
     {.name = "stop", .activate = stop},
     {.name = "restart", .activate = restart},
+    {.name = "trace-photons", .activate = trace_photons},
     {.name = "zoom-fit", .activate = zoom},
     {.name = "zoom-one", .activate = zoom},
     {.name = "zoom-in", .activate = zoom},
@@ -280,9 +287,9 @@ static void enable(window *w, const char *name, bool enabled)
 
 void window_update_actions(window *w)
 {
-    static const char *const of_scene[] = {"play",     "restart",      "zoom-fit",
-                                           "zoom-one", "zoom-in",      "zoom-out",
-                                           "search",   "save-picture", "save-picture-as"};
+    static const char *const of_scene[] = {
+        "play",     "restart", "zoom-fit",     "zoom-one",        "zoom-in",
+        "zoom-out", "search",  "save-picture", "save-picture-as", "trace-photons"};
     bool rendering = w->state == SESSION_RENDERING;
     for (size_t i = 0; i < G_N_ELEMENTS(of_scene); i++)
         enable(w, of_scene[i], w->scene != NULL);

@@ -76,6 +76,9 @@ static void scene_loaded(window *w, held_scene *scene)
     take_view(w, scene);
     held_scene_unref(w->scene);
     w->scene = held_scene_ref(scene);
+    window_photons_new_scene(w);
+    lobe_view_set_scene(w->lobes, scene);
+    camera_panel_show(w->camera_panel, &w->view.camera);
     document_remember(w->document);
     show_name(w);
     window_show_content(w, "main");
@@ -95,6 +98,12 @@ static void failed(window *w, const session_news *news)
     }
 }
 
+static void show_picture(window *w, held_picture *picture)
+{
+    canvas_set_picture(w->canvas, picture);
+    inspector_picture_changed(w->inspector);
+}
+
 void window_on_news(const session_news *news, void *data)
 {
     window *w = data;
@@ -107,8 +116,10 @@ void window_on_news(const session_news *news, void *data)
     if (news->error)
         failed(w, news);
     if (news->picture)
-        canvas_set_picture(w->canvas, news->picture);
+        show_picture(w, news->picture);
     status_show(w->status, news);
+    numbers_panel_show(w->numbers, &news->statistics,
+                       photon_view_frame_time(w->photon_view));
     if (state_changed || news->loaded)
         window_update_actions(w);
 }

@@ -4,14 +4,21 @@
  *   window.c          builds, opens, closes
  *   window_news.c     what the worker tells ─► widgets
  *   window_view.c     hands on the picture ─► the worker
+ *   window_photons.c  photons alone: traced, shown, picked
  *   window_actions.c  what menus, buttons and keys do
  */
 #pragma once
 
+#include "camera_panel.h"
 #include "canvas.h"
 #include "document.h"
 #include "error_page.h"
+#include "inspector.h"
+#include "lobe_view.h"
 #include "navigation.h"
+#include "numbers_panel.h"
+#include "photon_panel.h"
+#include "photon_view.h"
 #include "session.h"
 #include "settings_panel.h"
 #include "state.h"
@@ -34,6 +41,13 @@ struct window {
     canvas *canvas;
     navigation *navigation;
     settings_panel *settings;
+    camera_panel *camera_panel;
+    inspector *inspector;
+    numbers_panel *numbers;
+    lobe_view *lobes;
+    photon_view *photon_view;
+    photon_panel *photon_panel;
+    navigation *photon_navigation;
 
     held_scene *scene;      /* NULL: none yet */
     NephSettings *of_scene; /* settings as the file has them */
@@ -43,6 +57,13 @@ struct window {
     double fraction;
     bool reloading; /* the next scene is the same file: keep what the user changed */
     bool focusing;  /* the next click chooses what is sharp */
+
+    held_photons *photons; /* of the photon view; NULL: none yet */
+    GCancellable *tracing; /* NULL: none are being traced */
+    bool has_pick, picked_is_photon;
+    size_t picked_photon;
+    NephSurfacePoint picked; /* strings are the scene's */
+    double pick_radius;      /* m; 0: each map's own */
 };
 
 /* window.c */
@@ -56,7 +77,23 @@ void window_on_news(const session_news *news, void *data);
 void window_view_moved(const NephCamera *camera, bool moving, void *data);
 void window_view_clicked(double x, double y, int n, void *data);
 void window_hover(bool inside, int x, int y, void *data);
-void window_set_camera(window *w, const NephCamera *camera);
+void window_camera_changed(const NephCamera *camera, void *data);
+/** @brief Makes sharp what is at a place of the picture, 0..1; false: nothing is. */
+bool window_focus_at(window *w, const double place[2]);
+void window_ask_reference(void *data);
+void window_add_view_actions(window *w);
+
+/* window_photons.c */
+void window_trace_photons(window *w);
+void window_stop_tracing(window *w);
+void window_photons_new_scene(window *w);
+void window_photons_settings_changed(window *w);
+void window_view_switched(window *w);
+void window_photon_style(const photon_style *style, void *data);
+void window_photon_clicked(double x, double y, int n, void *data);
+void window_pick_radius(double radius, void *data);
+/** @brief Picks at a place of the picture, 0..1; reach: as share of its height. */
+bool window_pick(window *w, const double place[2], double reach);
 
 /* window_actions.c */
 void window_add_actions(window *w);

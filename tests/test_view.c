@@ -253,11 +253,13 @@ static void test_save(void)
     view_close(w);
 }
 
-/* Each window dies while its worker is busy, at another moment each time. */
+/* Each window dies while its worker is busy, at another moment each time: twenty in the
+   slow mode (-m slow), which is for the address sanitizer. */
 static void test_close_while_rendering(void)
 {
     g_autofree char *path = long_scene();
-    for (int i = 0; i < 20; i++) {
+    int cycles = g_test_slow() ? 20 : 5;
+    for (int i = 0; i < cycles; i++) {
         window *w = open_scene(path);
         for (int k = 0; k < 3 * i; k++) {
             g_main_context_iteration(NULL, FALSE);

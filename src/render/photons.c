@@ -12,14 +12,23 @@ static double seconds(void)
     return (double)g_get_monotonic_time() * 1e-6;
 }
 
-/* All three classes, sharing `photons` where they have no budget of their own. */
-static uint64_t budget(const settings *how, photon_class c)
+static bool is_possible(const scene *s, photon_class c)
 {
+    return c != PHOTON_CAUSTIC || s->n_caustic_shapes > 0;
+}
+
+/* The classes that can be there, sharing `photons` where they have no budget of their
+ * own.
+ */
+static uint64_t budget(const scene *s, const settings *how, photon_class c)
+{
+    int n_sharing = 0;
+    if (!is_possible(s, c))
+        return 0;
     if (how->class_photons[c] > 0)
         return (uint64_t)how->class_photons[c];
-    int n_sharing = 1;
     for (int i = 0; i < N_PHOTON_CLASSES; i++)
-        n_sharing += i != (int)c && how->class_photons[i] == 0;
+        n_sharing += is_possible(s, (photon_class)i) && how->class_photons[i] == 0;
     return (uint64_t)MAX(how->photons / n_sharing, 1);
 }
 
@@ -28,10 +37,8 @@ static bool make_plan(transport_plan *plan, const scene *s, const settings *how,
                       const cancel_flag *cancel, GError **error)
 {
     *plan = (transport_plan){.scene = s, .how = *how};
-    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        bool possible = c != PHOTON_CAUSTIC || s->n_caustic_shapes > 0;
-        plan->n_photons[c] = possible ? budget(how, (photon_class)c) : 0;
-    }
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        plan->n_photons[c] = budget(s, how, (photon_class)c);
     return aim_caustics(plan, NULL, cancel, error);
 }
 

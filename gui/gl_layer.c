@@ -1,0 +1,143 @@
+#include "gl_layer.h"
+
+#include <epoxy/gl.h>
+#include <gio/gio.h>
+#include <stddef.h>
+
+static const char vertex_text[] = "in vec3 position;\n"
+                                  "in vec4 color;\n"
+                                  "uniform mat4 to_clip;\n"
+                                  "uniform float point_size;\n"
+                                  "out vec4 shade;\n"
+                                  "void main() {\n"
+                                  "    gl_Position = to_clip * vec4(position, 1.0);\n"
+                                  "    gl_PointSize = point_size;\n"
+                                  "    shade = color;\n"
+                                  "}\n";
+
+static const char fragment_text[] =
+    "in vec4 shade;\n"
+    "uniform float fade;\n"
+    "out vec4 pixel;\n"
+    "void main() { pixel = vec4(shade.rgb, shade.a * fade); }\n";
+
+static unsigned compile(GLenum kind, bool es, const char *text, GError **error)
+{
+    const char *parts[] = {
+        es ? "#version 300 es\nprecision highp float;\n" : "#version 150\n", text};
+    GLuint shader = glCreateShader(kind);
+    GLint done = 0;
+    glShaderSource(shader, 2, parts, NULL);
+    glCompileShader(shader);
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &done);
+    if (done)
+        return shader;
+    char log[512] = "";
+    glGetShaderInfoLog(shader, sizeof log, NULL, log);
+    g_set_error(error, G_IO_ERROR, G_IO_ERROR_NOT_SUPPORTED, "OpenGL: %s", log);
+    glDeleteShader(shader);
+    return 0;
+}
+
+bool gl_painter_init(gl_painter *p, bool es, GError **error)
+{
+    GLint done = 0;
+    GLuint vertex = compile(GL_VERTEX_SHADER, es, vertex_text, error);
+    GLuint fragment = vertex ? compile(GL_FRAGMENT_SHADER, es, fragment_text, error) : 0;
+    if (fragment) {
+        p->program = glCreateProgram();
+        glAttachShader(p->program, vertex);
+        glAttachShader(p->program, fragment);
+        glBindAttribLocation(p->program, 0, "position");
+        glBindAttribLocation(p->program, 1, "color");
+        glLinkProgram(p->program);
+        glGetProgramiv(p->program, GL_LINK_STATUS, &done);
+        if (!done)
+            g_set_error_literal(error, G_IO_ERROR, G_IO_ERROR_NOT_SUPPORTED,
+                                "OpenGL: the program does not link");
+    }
+    glDeleteShader(vertex);
+    glDeleteShader(fragment);
+    if (!done)
+        return false;
+    p->matrix = glGetUniformLocation(p->program, "to_clip");
+    p->point_size = glGetUniformLocation(p->program, "point_size");
+    p->fade = glGetUniformLocation(p->program, "fade");
+    return true;
+}
+
+void gl_painter_clear(gl_painter *p)
+{
+    glDeleteProgram(p->program);
+    p->program = 0;
+}
+
+void gl_painter_begin(const gl_painter *p, const float matrix[16],
+                      const float background[3])
+{
+    glClearColor(background[0], background[1], background[2], 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    if (epoxy_is_desktop_gl())
+        glEnable(GL_PROGRAM_POINT_SIZE);
+    glUseProgram(p->program);
+    glUniformMatrix4fv(p->matrix, 1, GL_FALSE, matrix);
+}
+
+void gl_layer_set(gl_layer *layer, const cloud_vertex *vertices, size_t n)
+{
+    if (!layer->array) {
+        glGenVertexArrays(1, &layer->array);
+        glGenBuffers(1, &layer->buffer);
+    }
+    glBindVertexArray(layer->array);
+    glBindBuffer(GL_ARRAY_BUFFER, layer->buffer);
+    glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(n * sizeof *vertices), vertices,
+                 GL_STATIC_DRAW);
+    glEnableVertexAttribArray(0);
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof *vertices,
+                          (const void *)offsetof(cloud_vertex, position));
+    glEnableVertexAttribArray(1);
+    glVertexAttribPointer(1, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof *vertices,
+                          (const void *)offsetof(cloud_vertex, color));
+    glBindVertexArray(0);
+    layer->n = n;
+}
+
+void gl_layer_clear(gl_layer *layer)
+{
+    if (layer->array) {
+        glDeleteVertexArrays(1, &layer->array);
+        glDeleteBuffers(1, &layer->buffer);
+    }
+    *layer = (gl_layer){0};
+}
+
+static void draw(const gl_layer *layer, GLenum mode, size_t first, size_t n)
+{
+    if (n == 0)
+        return;
+    glBindVertexArray(layer->array);
+    glDrawArrays(mode, (GLint)first, (GLsizei)n);
+    glBindVertexArray(0);
+}
+
+void gl_layer_lines(const gl_painter *p, const gl_layer *layer, float fade)
+{
+    if (fade < 1.0f) {
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    }
+    glUniform1f(p->fade, fade);
+    draw(layer, GL_LINES, 0, layer->n);
+    glDisable(GL_BLEND);
+}
+
+void gl_layer_points(const gl_painter *p, const gl_layer *layer, size_t first, size_t n,
+                     float size)
+{
+    glUniform1f(p->fade, 1.0f);
+    glUniform1f(p->point_size, size);
+    draw(layer, GL_POINTS, first, n);
+}

@@ -1,0 +1,35 @@
+/*
+ * Points and lines by OpenGL: one program, some buffers. All calls with the context
+ * current.
+ */
+#pragma once
+
+#include "photon_cloud.h"
+
+/** @brief One buffer of vertices. Zero: not made yet. */
+typedef struct gl_layer {
+    unsigned array, buffer;
+    size_t n;
+} gl_layer;
+
+typedef struct gl_painter {
+    unsigned program;
+    int matrix, point_size, fade;
+} gl_painter;
+
+/** @brief Compiles. false with a message in *error. es: for OpenGL ES. */
+bool gl_painter_init(gl_painter *p, bool es, GError **error);
+void gl_painter_clear(gl_painter *p);
+/** @brief Clears the window and begins a picture. column-major matrix to clip space. */
+void gl_painter_begin(const gl_painter *p, const float matrix[16],
+                      const float background[3]);
+
+/** @brief Replaces the vertices. */
+void gl_layer_set(gl_layer *layer, const cloud_vertex *vertices, size_t n);
+void gl_layer_clear(gl_layer *layer);
+/** @brief Vertices first .. first + n as lines, colours multiplied by fade (with alpha).
+ */
+void gl_layer_lines(const gl_painter *p, const gl_layer *layer, float fade);
+/** @brief The same as points of a size in pixels. */
+void gl_layer_points(const gl_painter *p, const gl_layer *layer, size_t first, size_t n,
+                     float size);

@@ -1,0 +1,97 @@
+#include "help.h"
+
+/* One line: an accelerator as GTK writes it, or a gesture in words. */
+typedef struct hint {
+    const char *group, *title, *keys;
+} hint;
+
+static const hint hints[] = {
+    {"Scene", "Open", "<Control>o"},
+    {"Scene", "Read again", "<Control>r"},
+    {"Scene", "Save the picture", "<Control>s"},
+    {"Scene", "Close the window", "<Control>w"},
+    {"Rendering", "Start or pause", "space"},
+    {"Rendering", "Stop", "<Control>period"},
+    {"Rendering", "Render anew", "F5"},
+    {"Rendering", "Trace photons", "<Control>t"},
+    {"Camera", "Fly", "w a s d"},
+    {"Camera", "Rise and sink", "e q"},
+    {"Camera", "Focus on what is clicked", "<Control>d"},
+    {"Camera", "View of the scene file", "Home"},
+    {"Camera", "Whole scene", "End"},
+    {"Camera", "Copy the view", "<Control><Shift>c"},
+    {"Camera", "Save the view in the scene", "<Control><Shift>s"},
+    {"Picture", "Zoom in, out", "<Control>plus <Control>minus"},
+    {"Picture", "Fit, pixel by pixel", "<Control>0 <Control>1"},
+    {"Picture", "Brighter, darker", "<Control>Up <Control>Down"},
+    {"Window", "Picture, photons, materials", "<Alt>1 <Alt>2 <Alt>3"},
+    {"Window", "Settings, camera, inspect", "<Alt>s <Alt>c <Alt>i"},
+    {"Window", "Photons, numbers", "<Alt>p <Alt>n"},
+    {"Window", "Search settings", "<Control>f"},
+    {"Window", "Panels", "F9"},
+    {"Window", "Full screen", "F11"},
+    {"Window", "Menu", "F10"},
+    {"Window", "This help", "<Control>question"},
+};
+
+/* Mouse: what is done, in words. */
+static const char *const mouse[][2] = {
+    {"Go around", "Drag"},
+    {"Move across", "Shift and drag, or drag with the middle button"},
+    {"Look around", "Drag with the right button"},
+    {"Nearer, further", "Wheel"},
+    {"Go around what is clicked", "Double click"},
+    {"Zoom the picture, move it", "Ctrl and wheel, Ctrl and drag"},
+    {"Pick a photon or a surface", "Click in the photon view"},
+};
+
+static void put(GString *out, const char *title, const char *property, const char *value)
+{
+    g_autofree char *line = g_markup_printf_escaped(
+        "<child><object class=\"GtkShortcutsShortcut\">"
+        "<property name=\"title\">%s</property><property name=\"%s\">%s</property>"
+        "</object></child>",
+        title, property, value);
+    g_string_append(out, line);
+}
+
+static void open_group(GString *out, const char *title)
+{
+    g_string_append_printf(out,
+                           "<child><object class=\"GtkShortcutsGroup\">"
+                           "<property name=\"title\">%s</property>",
+                           title);
+}
+
+static char *definition(void)
+{
+    static const char end_group[] = "</object></child>";
+    GString *out = g_string_new("<interface><object class=\"GtkShortcutsWindow\" "
+                                "id=\"help\"><property name=\"modal\">1</property>"
+                                "<child><object class=\"GtkShortcutsSection\">"
+                                "<property name=\"max-height\">12</property>");
+    const char *group = NULL;
+    for (size_t i = 0; i < G_N_ELEMENTS(hints); i++) {
+        if (g_strcmp0(group, hints[i].group) != 0) {
+            if (group)
+                g_string_append(out, end_group);
+            open_group(out, hints[i].group);
+        }
+        group = hints[i].group;
+        put(out, hints[i].title, "accelerator", hints[i].keys);
+    }
+    g_string_append(out, end_group);
+    open_group(out, "Mouse");
+    for (size_t i = 0; i < G_N_ELEMENTS(mouse); i++)
+        put(out, mouse[i][0], "subtitle", mouse[i][1]);
+    g_string_append(out, end_group);
+    g_string_append(out, "</object></child></object></interface>");
+    return g_string_free(out, FALSE);
+}
+
+GtkShortcutsWindow *help_make(void)
+{
+    g_autofree char *text = definition();
+    g_autoptr(GtkBuilder) builder = gtk_builder_new_from_string(text, -1);
+    return g_object_ref(GTK_SHORTCUTS_WINDOW(gtk_builder_get_object(builder, "help")));
+}

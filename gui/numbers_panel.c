@@ -1,0 +1,191 @@
+#include "numbers_panel.h"
+
+#include "status.h"
+#include "widgets.h"
+
+#include <math.h>
+
+enum { MOST_NUMBERS = 32 };
+
+typedef char *(*number_text)(const NephStatistics *s, double frame_time);
+
+/* One line: under which heading, its name, how it is said. */
+typedef struct number {
+    const char *group, *name;
+    number_text text;
+} number;
+
+struct numbers_panel {
+    GtkWidget *root;
+    GtkWidget *values[MOST_NUMBERS];
+};
+
+static char *seconds(double t)
+{
+    return t < 10.0 ? g_strdup_printf("%.3f s", t) : status_duration(t);
+}
+
+static char *count(guint64 n, double time)
+{
+    if (n < 1000 || !(time > 0.0))
+        return g_strdup_printf("%" G_GUINT64_FORMAT, n);
+    return g_strdup_printf("%" G_GUINT64_FORMAT " · %.2f M/s", n,
+                           1e-6 * (double)n / time);
+}
+
+#define TIME(name, field)                                                                \
+    static char *name(const NephStatistics *s, double frame_time)                        \
+    {                                                                                    \
+        (void)frame_time;                                                                \
+        return seconds(s->field);                                                        \
+    }
+TIME(total, time_total)
+TIME(prepare, time_prepare)
+TIME(photon_trace, time_trace)
+TIME(build, time_build)
+TIME(gather, time_gather)
+TIME(look, time_camera)
+#undef TIME
+
+#define CLASS(name, c)                                                                   \
+    static char *name(const NephStatistics *s, double frame_time)                        \
+    {                                                                                    \
+        (void)frame_time;                                                                \
+        return g_strdup_printf("%" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT             \
+                               " · r %.3g m",                                            \
+                               s->stored[c], s->emitted[c], s->radius[c]);               \
+    }
+CLASS(direct, NEPH_PHOTON_DIRECT)
+CLASS(indirect, NEPH_PHOTON_INDIRECT)
+CLASS(caustic, NEPH_PHOTON_CAUSTIC)
+#undef CLASS
+
+static char *passes(const NephStatistics *s, double frame_time)
+{
+    (void)frame_time;
+    return g_strdup_printf("%" G_GINT64_FORMAT, s->passes);
+}
+
+static char *noise(const NephStatistics *s, double frame_time)
+{
+    (void)frame_time;
+    return isfinite(s->noise) ? g_strdup_printf("%.3g %%", 100.0 * s->noise)
+                              : g_strdup("–");
+}
+
+static char *photon_rays(const NephStatistics *s, double frame_time)
+{
+    (void)frame_time;
+    return count(s->photon_rays, s->time_trace);
+}
+
+static char *camera_rays(const NephStatistics *s, double frame_time)
+{
+    (void)frame_time;
+    return count(s->camera_rays, s->time_camera);
+}
+
+static char *shadow_rays(const NephStatistics *s, double frame_time)
+{
+    (void)frame_time;
+    return count(s->shadow_rays, s->time_camera);
+}
+
+static char *stored(const NephStatistics *s, double frame_time)
+{
+    (void)frame_time;
+    return count(s->stored[0] + s->stored[1] + s->stored[2], 0.0);
+}
+
+static char *emitted(const NephStatistics *s, double frame_time)
+{
+    (void)frame_time;
+    return count(s->emitted[0] + s->emitted[1] + s->emitted[2], 0.0);
+}
+
+static char *peak(const NephStatistics *s, double frame_time)
+{
+    (void)frame_time;
+    return g_format_size_full(s->memory_peak, G_FORMAT_SIZE_IEC_UNITS);
+}
+
+static char *photon_memory(const NephStatistics *s, double frame_time)
+{
+    (void)frame_time;
+    return g_format_size_full(s->memory_photons, G_FORMAT_SIZE_IEC_UNITS);
+}
+
+static char *dropped(const NephStatistics *s, double frame_time)
+{
+    (void)frame_time;
+    return count(s->n_not_finite, 0.0);
+}
+
+static char *frame(const NephStatistics *s, double frame_time)
+{
+    (void)s;
+    return frame_time > 0.0 ? g_strdup_printf("%.1f ms", 1e3 * frame_time)
+                            : g_strdup("–");
+}
+
+static const number numbers[] = {
+    {"Render", "Passes", passes},
+    {"Render", "Noise", noise},
+    {"Render", "Samples dropped (not finite)", dropped},
+    {"Time", "All", total},
+    {"Time", "Preparing", prepare},
+    {"Time", "Photon trace time", photon_trace},
+    {"Time", "Building the maps", build},
+    {"Time", "Looking from the camera", look},
+    {"Time", "of that, gathering", gather},
+    {"Time", "Frame of the photon view", frame},
+    {"Rays", "Photon rays traced", photon_rays},
+    {"Rays", "Camera rays", camera_rays},
+    {"Rays", "Shadow rays", shadow_rays},
+    {"Photons", "Emitted", emitted},
+    {"Photons", "Stored", stored},
+    {"Photons", "Direct map", direct},
+    {"Photons", "Indirect map", indirect},
+    {"Photons", "Caustic map", caustic},
+    {"Memory", "Photons", photon_memory},
+    {"Memory", "Most of the program", peak},
+};
+
+G_STATIC_ASSERT(G_N_ELEMENTS(numbers) <= MOST_NUMBERS);
+
+numbers_panel *numbers_panel_new(void)
+{
+    numbers_panel *p = g_new0(numbers_panel, 1);
+    GtkWidget *content = box_make(GTK_ORIENTATION_VERTICAL, 18, 12), *list = NULL;
+    const char *group = NULL;
+    p->root = gtk_scrolled_window_new();
+    gtk_scrolled_window_set_policy(GTK_SCROLLED_WINDOW(p->root), GTK_POLICY_NEVER,
+                                   GTK_POLICY_AUTOMATIC);
+    gtk_widget_set_vexpand(p->root, TRUE);
+    gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(p->root), content);
+    for (size_t i = 0; i < G_N_ELEMENTS(numbers); i++) {
+        if (g_strcmp0(group, numbers[i].group) != 0)
+            gtk_box_append(GTK_BOX(content), group_make(numbers[i].group, &list));
+        group = numbers[i].group;
+        p->values[i] = value_row_add(list, numbers[i].name);
+    }
+    return p;
+}
+
+void numbers_panel_free(numbers_panel *p)
+{
+    g_free(p);
+}
+
+GtkWidget *numbers_panel_widget(numbers_panel *p)
+{
+    return p->root;
+}
+
+void numbers_panel_show(numbers_panel *p, const NephStatistics *s, double frame_time)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(numbers); i++) {
+        g_autofree char *text = numbers[i].text(s, frame_time);
+        gtk_label_set_text(GTK_LABEL(p->values[i]), text);
+    }
+}

@@ -1,0 +1,16 @@
+/*
+ * The page of numbers: what the render did so far, and how long each part took.
+ */
+#pragma once
+
+#include <gtk/gtk.h>
+#include <nephroid/nephroid.h>
+
+typedef struct numbers_panel numbers_panel;
+
+numbers_panel *numbers_panel_new(void);
+/** @brief When the widget has gone. */
+void numbers_panel_free(numbers_panel *p);
+GtkWidget *numbers_panel_widget(numbers_panel *p);
+/** @brief frame_time: s of the photon view's last frame, 0: none. */
+void numbers_panel_show(numbers_panel *p, const NephStatistics *s, double frame_time);

@@ -1,0 +1,163 @@
+#include "photon_cloud.h"
+
+#include <math.h>
+#include <string.h>
+
+const char *const cloud_coloring_names[] = {"Flux", "Map", "Bounces", NULL};
+
+static const uint8_t map_colors[NEPH_N_PHOTON_CLASSES][4] = {
+    {255, 210, 90, 255}, {95, 170, 255, 255}, {255, 95, 160, 255}};
+
+static const uint8_t bounce_colors[][4] = {
+    {255, 240, 180, 255}, {255, 190, 80, 255}, {245, 120, 60, 255}, {210, 70, 110, 255},
+    {140, 80, 190, 255},  {85, 110, 220, 255}, {60, 170, 200, 255}};
+
+void photon_cloud_map_color(int c, uint8_t color[4])
+{
+    memcpy(color, map_colors[c], 4);
+}
+
+/* Linear to the screen's. */
+static uint8_t encode(float x)
+{
+    float y = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1.0f / 2.4f) - 0.055f;
+    return (uint8_t)(255.0f * fminf(fmaxf(y, 0.0f), 1.0f) + 0.5f);
+}
+
+static void flux_color(const float rgb[3], uint8_t color[4])
+{
+    float most = fmaxf(fmaxf(rgb[0], rgb[1]), fmaxf(rgb[2], 1e-30f));
+    for (int k = 0; k < 3; k++)
+        color[k] = encode(rgb[k] / most);
+    color[3] = 255;
+}
+
+void photon_cloud_color(photon_cloud *cloud, cloud_coloring coloring)
+{
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
+        for (size_t i = cloud->first[c]; i < cloud->first[c + 1]; i++) {
+            uint8_t *color = cloud->vertices[i].color;
+            size_t bounce = MIN(cloud->bounces[i], G_N_ELEMENTS(bounce_colors) - 1);
+            if (coloring == COLOR_FLUX)
+                flux_color(cloud->rgb[i], color);
+            else
+                memcpy(color,
+                       coloring == COLOR_MAP ? map_colors[c] : bounce_colors[bounce], 4);
+        }
+}
+
+photon_cloud *photon_cloud_new(const NephPhotons *photons)
+{
+    photon_cloud *cloud = g_new0(photon_cloud, 1);
+    size_t n = cloud->n = neph_photons_count(photons);
+    cloud->vertices = g_new(cloud_vertex, n);
+    cloud->direction = g_malloc_n(n, sizeof *cloud->direction);
+    cloud->rgb = g_malloc_n(n, sizeof *cloud->rgb);
+    cloud->bounces = g_new(uint8_t, n);
+    for (size_t i = 0; i < n; i++) {
+        NephPhoton p;
+        neph_photons_get(photons, i, &p);
+        memcpy(cloud->vertices[i].position, p.position, sizeof p.position);
+        memcpy(cloud->direction[i], p.direction, sizeof p.direction);
+        memcpy(cloud->rgb[i], p.rgb, sizeof p.rgb);
+        cloud->bounces[i] = (uint8_t)MIN(p.bounces, 255);
+        for (int c = (int)p.photon_class; c < NEPH_N_PHOTON_CLASSES; c++)
+            cloud->first[c + 1] = i + 1;
+    }
+    photon_cloud_color(cloud, COLOR_FLUX);
+    return cloud;
+}
+
+void photon_cloud_free(photon_cloud *cloud)
+{
+    if (!cloud)
+        return;
+    g_free(cloud->vertices);
+    g_free(cloud->direction);
+    g_free(cloud->rgb);
+    g_free(cloud->bounces);
+    g_free(cloud);
+}
+
+size_t photon_cloud_count(const photon_cloud *cloud, unsigned mask)
+{
+    size_t n = 0;
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
+        n += mask & (1u << c) ? cloud->first[c + 1] - cloud->first[c] : 0;
+    return n;
+}
+
+/* ---- Arrows ---- */
+
+enum { ARROW_VERTICES = 6 };
+
+/* A shaft and two barbs: the head is where the photon landed. */
+static void put_arrow(cloud_vertex *out, const cloud_vertex *at, const float d[3],
+                      float length)
+{
+    float side[3] = {d[1], -d[0], 0.0f};
+    if (fabsf(d[2]) > 0.9f) {
+        side[0] = 0.0f;
+        side[1] = d[2];
+        side[2] = -d[1];
+    }
+    float norm = length / sqrtf(side[0] * side[0] + side[1] * side[1] +
+                                side[2] * side[2] + 1e-20f);
+    for (int i = 0; i < ARROW_VERTICES; i++)
+        out[i] = *at;
+    for (int k = 0; k < 3; k++) {
+        out[1].position[k] += length * d[k];
+        out[3].position[k] += 0.25f * length * d[k] + 0.1f * norm * side[k];
+        out[5].position[k] += 0.25f * length * d[k] - 0.1f * norm * side[k];
+    }
+}
+
+cloud_vertex *photon_cloud_arrows(const photon_cloud *cloud, unsigned mask, float length,
+                                  size_t *n)
+{
+    *n = ARROW_VERTICES * photon_cloud_count(cloud, mask);
+    cloud_vertex *arrows = g_new(cloud_vertex, *n), *out = arrows;
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
+        for (size_t i = cloud->first[c]; i < cloud->first[c + 1]; i++) {
+            if (!(mask & (1u << c)))
+                break;
+            put_arrow(out, &cloud->vertices[i], cloud->direction[i], length);
+            out += ARROW_VERTICES;
+        }
+    return arrows;
+}
+
+/* ---- Picking ---- */
+
+static double depth_of(const NephCamera *camera, const double p[3])
+{
+    double depth = 0.0;
+    for (int i = 0; i < 3; i++)
+        depth += (p[i] - camera->position[i]) * camera->direction[i];
+    return depth;
+}
+
+bool photon_cloud_pick(const photon_cloud *cloud, unsigned mask, const NephCamera *camera,
+                       const double place[2], double reach, size_t *index)
+{
+    double nearest = (double)INFINITY;
+    double aspect =
+        (camera->screen[1] - camera->screen[0]) / (camera->screen[3] - camera->screen[2]);
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
+        for (size_t i = cloud->first[c]; i < cloud->first[c + 1]; i++) {
+            const float *at = cloud->vertices[i].position;
+            const double p[3] = {(double)at[0], (double)at[1], (double)at[2]};
+            double x, y;
+            if (!(mask & (1u << c)))
+                break;
+            if (!neph_camera_project(camera, p, &x, &y) ||
+                hypot((x - place[0]) * aspect, y - place[1]) > reach)
+                continue;
+            double depth = depth_of(camera, p);
+            if (depth < nearest) {
+                nearest = depth;
+                *index = i;
+            }
+        }
+    return isfinite(nearest);
+}

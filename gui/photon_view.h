@@ -1,0 +1,49 @@
+/*
+ * The photons in their scene: points or arrows over the wireframe, by OpenGL, from the
+ * same place as the picture.
+ */
+#pragma once
+
+#include "photon_cloud.h"
+#include "viewpoint.h"
+
+#include <gtk/gtk.h>
+
+typedef struct photon_view photon_view;
+
+/** @brief How photons are shown. */
+typedef struct photon_style {
+    unsigned maps; /**< bit c: map c is shown */
+    cloud_coloring coloring;
+    float point_size; /**< pixels */
+    bool wireframe;
+} photon_style;
+
+/** @brief Fewer photons than this are arrows. */
+enum { MOST_ARROWS = 1000 };
+
+/** @brief viewpoint: borrowed, must outlive it. */
+photon_view *photon_view_new(const viewpoint *view);
+/** @brief When the widget has gone. */
+void photon_view_free(photon_view *v);
+/** @brief The area, focusable. */
+GtkWidget *photon_view_widget(photon_view *v);
+/** @brief Another scene: its wireframe, no photons. */
+void photon_view_set_scene(photon_view *v, held_scene *scene);
+/** @brief Takes the cloud; NULL: none. */
+void photon_view_set_cloud(photon_view *v, photon_cloud *cloud);
+const photon_cloud *photon_view_cloud(const photon_view *v);
+void photon_view_set_style(photon_view *v, const photon_style *style);
+const photon_style *photon_view_style(const photon_view *v);
+/** @brief The viewpoint has moved. */
+void photon_view_redraw(photon_view *v);
+/** @brief Drawn over everything: line ends, and points. Copied. */
+void photon_view_set_marks(photon_view *v, const cloud_vertex *lines, size_t n_lines,
+                           const cloud_vertex *points, size_t n_points);
+/** @brief Place in the widget to place in the picture, which the camera's screen spans:
+ * 0..1, y down, beyond it outside of that. */
+void photon_view_place(const photon_view *v, double wx, double wy, double place[2]);
+/** @brief Pixels of the widget for the picture's height. */
+double photon_view_scale(const photon_view *v);
+/** @brief Seconds that the last frame took to draw; 0: none yet. */
+double photon_view_frame_time(const photon_view *v);

@@ -1,0 +1,212 @@
+/*
+ * The hand-over between window and worker, without a window: orders from the main thread
+ * at any moment, news on its main loop. Meant for the thread sanitizer too.
+ */
+#include "session.h"
+
+#include <glib/gstdio.h>
+#include <math.h>
+#include <string.h>
+
+static char *folder, *scene_file;
+
+static const char scene_text[] =
+    "LookAt 0 0 -2  0 0 0  0 1 0\n"
+    "Camera \"perspective\" \"float fov\" 50\n"
+    "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\n"
+    "Integrator \"photonmap\" \"integer passes\" 3 \"integer photons\" 2000\n"
+    "    \"integer spp\" 1 \"string caustic_emission\" \"uniform\"\n"
+    "WorldBegin\n"
+    "LightSource \"point\" \"rgb I\" [10 10 10] \"point3 from\" [0 1.8 0]\n"
+    "Shape \"sphere\" \"float radius\" 3\n";
+
+/* What has been heard so far. */
+typedef struct heard {
+    session_state state;
+    int scenes, pictures, errors;
+    bool coarse; /* the last picture */
+    held_picture *picture;
+    NephStatistics statistics;
+} heard;
+
+static void listen(const session_news *news, void *data)
+{
+    heard *h = data;
+    h->state = news->state;
+    h->scenes += news->loaded != NULL;
+    h->errors += news->error != NULL;
+    h->statistics = news->statistics;
+    if (!news->picture)
+        return;
+    h->pictures++;
+    held_picture_unref(h->picture);
+    h->picture = held_picture_ref(news->picture);
+}
+
+static void wait_until(bool (*done)(const heard *h), const heard *h)
+{
+    gint64 limit = g_get_monotonic_time() + 60 * G_USEC_PER_SEC;
+    while (!done(h)) {
+        g_assert_cmpint(g_get_monotonic_time(), <, limit);
+        if (!g_main_context_iteration(NULL, FALSE))
+            g_usleep(500);
+    }
+}
+
+static bool is_done(const heard *h)
+{
+    return h->scenes > 0 && h->state == SESSION_DONE;
+}
+
+static bool has_picture(const heard *h)
+{
+    return h->pictures > 0;
+}
+
+static bool has_error(const heard *h)
+{
+    return h->errors > 0;
+}
+
+static bool has_moved(const heard *h)
+{
+    return h->pictures > 5;
+}
+
+static void end(session *s, heard *h)
+{
+    session_close(s);
+    while (g_main_context_iteration(NULL, FALSE))
+        ;
+    held_picture_unref(h->picture);
+}
+
+/* The same picture as the library makes without a window. */
+static void test_same_picture(void)
+{
+    heard h = {0};
+    session *s = session_new(listen, &h);
+    session_load(s, scene_file);
+    wait_until(is_done, &h);
+    g_assert_false(h.picture->coarse);
+    g_assert_cmpint(h.statistics.passes, ==, 3);
+    g_autoptr(NephScene) scene = neph_scene_load(scene_file, 0, NULL, NULL, NULL);
+    g_autoptr(NephSettings) settings = neph_scene_settings(scene);
+    g_autoptr(NephRender) render = neph_render_new(scene, settings, NULL);
+    g_assert_true(neph_render_run(render, NULL, NULL, NULL));
+    g_autoptr(NephImage) image = neph_render_image(render, NULL);
+    int width, height, n;
+    neph_image_size(image, &width, &height, &n);
+    g_assert_cmpmem(neph_image_pixels(image),
+                    (size_t)(width * height * n) * sizeof(float),
+                    neph_image_pixels(h.picture->image),
+                    (size_t)(width * height * n) * sizeof(float));
+    end(s, &h);
+}
+
+static void test_missing(void)
+{
+    heard h = {0};
+    session *s = session_new(listen, &h);
+    session_load(s, "/nowhere/at/all.pbrt");
+    wait_until(has_error, &h);
+    g_assert_cmpint(h.state, ==, SESSION_EMPTY);
+    end(s, &h);
+}
+
+/* While the view moves only quick looks come; when it stands still, the whole. */
+static void test_moving(void)
+{
+    heard h = {0};
+    session *s = session_new(listen, &h);
+    session_load(s, scene_file);
+    wait_until(is_done, &h);
+    NephCamera camera = {.position = {0, 0, -2},
+                         .direction = {0, 0, 1},
+                         .up = {0, 1, 0},
+                         .fov = 50.0,
+                         .focal_distance = 1.0};
+    h.pictures = 0;
+    while (!has_moved(&h)) {
+        camera.position[0] += 0.001;
+        session_set_camera(s, &camera, true);
+        g_main_context_iteration(NULL, FALSE);
+        g_usleep(2000);
+    }
+    g_assert_true(h.picture->coarse);
+    session_set_camera(s, &camera, false);
+    h.state = SESSION_RENDERING;
+    wait_until(is_done, &h);
+    g_assert_false(h.picture->coarse);
+    end(s, &h);
+}
+
+/* Orders in every order and at every moment. */
+static void test_any_order(void)
+{
+    heard h = {0};
+    session *s = session_new(listen, &h);
+    GRand *random = g_rand_new_with_seed(7);
+    g_autoptr(NephSettings) settings = neph_settings_new();
+    neph_settings_set(settings, "photons", "500", NULL);
+    neph_settings_set(settings, "passes", "50", NULL);
+    NephCamera camera = {
+        .direction = {0, 0, 1}, .up = {0, 1, 0}, .fov = 50.0, .focal_distance = 1.0};
+    session_load(s, scene_file);
+    wait_until(has_picture, &h);
+    for (int i = 0; i < 150; i++) {
+        switch (g_rand_int_range(random, 0, 8)) {
+        case 0:
+            session_load(s, scene_file);
+            break;
+        case 1:
+            session_set_settings(s, settings);
+            break;
+        case 2:
+            session_set_size(s, g_rand_int_range(random, 1, 30), 12);
+            break;
+        case 3:
+            session_play(s);
+            break;
+        case 4:
+            session_pause(s);
+            break;
+        case 5:
+            session_stop(s);
+            break;
+        case 6:
+            session_set_camera(s, &camera, g_rand_boolean(random));
+            break;
+        default:
+            session_restart(s);
+        }
+        g_main_context_iteration(NULL, FALSE);
+        g_usleep((gulong)g_rand_int_range(random, 0, 3000));
+    }
+    session_set_camera(s, &camera, false);
+    neph_settings_set(settings, "passes", "1", NULL);
+    session_set_settings(s, settings);
+    session_restart(s);
+    h.state = SESSION_RENDERING;
+    wait_until(is_done, &h);
+    g_rand_free(random);
+    end(s, &h);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    folder = g_dir_make_tmp("nephroid-session-XXXXXX", NULL);
+    scene_file = g_build_filename(folder, "scene.pbrt", NULL);
+    g_assert_true(g_file_set_contents(scene_file, scene_text, -1, NULL));
+    g_test_add_func("/session/same-picture", test_same_picture);
+    g_test_add_func("/session/missing", test_missing);
+    g_test_add_func("/session/moving", test_moving);
+    g_test_add_func("/session/any-order", test_any_order);
+    int result = g_test_run();
+    g_remove(scene_file);
+    g_rmdir(folder);
+    g_free(scene_file);
+    g_free(folder);
+    return result;
+}
