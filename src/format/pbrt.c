@@ -62,6 +62,7 @@ static const directive directives[] = {
     {"TransformTimes", ANYWHERE, pbrt_transform_times},
     {"Translate", ANYWHERE, pbrt_translate},
     {"WorldBegin", BEFORE_WORLD, pbrt_world_begin},
+    {"WorldEnd", IN_WORLD, pbrt_world_end},
 };
 
 static const directive *find_directive(const token *t)
@@ -296,6 +297,10 @@ static void check_end(pbrt_parser *parser, source_place end)
 static void read_main(pbrt_parser *parser, const char *path, const input *in)
 {
     g_autofree char *canonical = g_canonicalize_filename(path, NULL);
+    parser->is_v3 = pbrt_v3_recognises(in->data, in->size);
+    if (parser->is_v3)
+        log_message(&parser->scene->log, LOG_NOTE,
+                    "%s: pbrt-v3: its directives are translated to pbrt-v4's", path);
     lexer words = lexer_new(path, in->data, in->size);
     g_ptr_array_add(parser->open_files, canonical);
     read_words(parser, &words);

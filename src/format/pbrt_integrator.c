@@ -228,11 +228,15 @@ static void apply_sppm(pbrt_parser *parser, const sampling *samples)
     integer_of(parser, in->p, "photonsperiteration", &photons);
     if (!params_float(in->p, "radius", &radius, &error))
         pbrt_report(parser, error);
+    int iterations = 0; /* of pbrt-v3 */
+    const param *given = integer_of(parser, in->p, "iterations", &iterations);
     g_autofree char *text = float_text(radius);
     int64_t pixels = (int64_t)film->width * film->height;
     set_count(parser, in->place, "photons", photons > 0 ? photons : MAX(pixels, 1));
     set(parser, in->place, "radius", text);
-    if (samples->where)
+    if (given)
+        set_count(parser, given->place, "passes", iterations);
+    else if (samples->where)
         set_count(parser, samples->where->place, "passes", samples->pixel_samples);
     apply_seed(parser, in->p);
 }

@@ -7,7 +7,8 @@
 #include <string.h>
 
 /** Keeps a directive until WorldBegin; a later one of its kind takes its place. */
-static bool keep(pbrt_parser *parser, pending *d, source_place place)
+static bool keep(pbrt_parser *parser, pending *d, pbrt_v3_target target,
+                 source_place place)
 {
     source_place at = place;
     char *kind = pbrt_read_string(parser, "a kind", &at);
@@ -16,6 +17,8 @@ static bool keep(pbrt_parser *parser, pending *d, source_place place)
         g_free(kind);
         return false;
     }
+    if (parser->is_v3)
+        pbrt_v3_translate(target, &kind, p, &parser->scene->log);
     g_free(d->kind);
     params_free(d->p);
     *d = (pending){kind, p, at, parser->state.ctm};
@@ -24,28 +27,28 @@ static bool keep(pbrt_parser *parser, pending *d, source_place place)
 
 bool pbrt_film(pbrt_parser *parser, source_place place)
 {
-    return keep(parser, &parser->film, place);
+    return keep(parser, &parser->film, V3_FILM, place);
 }
 
 bool pbrt_pixel_filter(pbrt_parser *parser, source_place place)
 {
-    return keep(parser, &parser->filter, place);
+    return keep(parser, &parser->filter, V3_FILTER, place);
 }
 
 bool pbrt_sampler(pbrt_parser *parser, source_place place)
 {
-    return keep(parser, &parser->sampler, place);
+    return keep(parser, &parser->sampler, V3_SAMPLER, place);
 }
 
 bool pbrt_integrator(pbrt_parser *parser, source_place place)
 {
-    return keep(parser, &parser->integrator, place);
+    return keep(parser, &parser->integrator, V3_INTEGRATOR, place);
 }
 
 /** The transform here takes the world to the camera; its inverse is named "camera". */
 bool pbrt_camera(pbrt_parser *parser, source_place place)
 {
-    if (!keep(parser, &parser->camera, place))
+    if (!keep(parser, &parser->camera, V3_CAMERA, place))
         return false;
     parser->camera.ctm = transform_inverse(&parser->state.ctm);
     pbrt_name_transform(parser, "camera", &parser->camera.ctm);
@@ -119,6 +122,8 @@ static const params *given_or_default(pbrt_parser *parser, pending *d, const cha
         d->kind = g_strdup(kind);
         d->p = params_new(place, parser->base_directory, parser->state.space);
         d->place = place;
+        if (parser->is_v3 && d == &parser->film)
+            pbrt_v3_translate(V3_FILM, &d->kind, d->p, &parser->scene->log);
     }
     return d->p;
 }
@@ -136,7 +141,8 @@ static void finish_film(pbrt_parser *parser, source_place place)
 static void finish_filter(pbrt_parser *parser, source_place place)
 {
     GError *error = NULL;
-    const params *p = given_or_default(parser, &parser->filter, "gaussian", place);
+    const params *p = given_or_default(parser, &parser->filter,
+                                       parser->is_v3 ? "box" : "gaussian", place);
     if (scene_set_filter(parser->scene, parser->filter.kind, p, &error))
         pbrt_check_used(parser, p, "PixelFilter", parser->filter.kind);
     else
@@ -167,5 +173,12 @@ bool pbrt_world_begin(pbrt_parser *parser, source_place place)
     parser->state.ctm = transform_identity();
     parser->state.is_animated = false;
     pbrt_name_transform(parser, "world", &parser->state.ctm);
+    return true;
+}
+
+bool pbrt_world_end(pbrt_parser *parser, source_place place)
+{
+    if (!parser->is_v3)
+        pbrt_error(parser, place, "WorldEnd is of pbrt-v3, the scene of pbrt-v4");
     return true;
 }

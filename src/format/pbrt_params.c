@@ -51,7 +51,8 @@ static bool read_declaration(pbrt_parser *parser, declaration *d)
     g_auto(GStrv) words = g_strsplit_set(g_strstrip(text), " \t", 2);
     if (g_strv_length(words) != 2 || strpbrk(g_strstrip(words[1]), " \t"))
         return pbrt_expected(parser, "\"type name\"", &d->token);
-    d->type = find_type(words[0]);
+    bool old_rgb = parser->is_v3 && strcmp(words[0], "color") == 0;
+    d->type = find_type(old_rgb ? "rgb" : words[0]);
     if (!d->type) {
         pbrt_error(
             parser, d->token.place,
@@ -118,8 +119,11 @@ static bool push_integer(pbrt_parser *parser, const declaration *d, const token 
 
 static bool push_bool(pbrt_parser *parser, const declaration *d, const token *t)
 {
-    bool is_true = token_is(t, "true");
-    if (!is_true && !token_is(t, "false"))
+    token word = *t;
+    if (parser->is_v3 && t->kind == TOKEN_STRING)
+        word.kind = TOKEN_WORD; /* pbrt-v3 writes it in quotes */
+    bool is_true = token_is(&word, "true");
+    if (!is_true && !token_is(&word, "false"))
         return wrong_value(parser, d, "true or false", t);
     int *to = push(parser);
     if (to)

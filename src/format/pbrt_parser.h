@@ -16,6 +16,7 @@
 #pragma once
 
 #include "format/lexer.h"
+#include "format/pbrt_v3.h"
 #include "scene/scene.h"
 
 enum { MAX_ERRORS = 20, MAX_DEPTH = 64 };
@@ -76,6 +77,7 @@ typedef struct pbrt_parser {
     GPtrArray *errors; /**< char* */
     GError *fatal;     /**< what made going on pointless, such as no memory */
 
+    bool is_v3; /**< the main file is of pbrt-v3 (pbrt_v3.h) */
     bool in_world;
     bool in_object; /**< between ObjectBegin and ObjectEnd, whose content is skipped */
     graphics_state state;
@@ -157,6 +159,8 @@ bool pbrt_camera(pbrt_parser *parser, source_place place);
 bool pbrt_accelerator(pbrt_parser *parser, source_place place);
 bool pbrt_option(pbrt_parser *parser, source_place place);
 bool pbrt_world_begin(pbrt_parser *parser, source_place place);
+/** @brief pbrt-v3 ends a world explicitly. */
+bool pbrt_world_end(pbrt_parser *parser, source_place place);
 /** @brief Turns the integrator and sampler that were kept into settings. */
 void pbrt_apply_integrator(pbrt_parser *parser);
 

@@ -27,6 +27,13 @@ static bool read_arguments(pbrt_parser *parser, source_place place,
     return false;
 }
 
+/** What a pbrt-v3 file says, in pbrt-v4's words. */
+static void translate(const pbrt_parser *parser, pbrt_v3_target target, arguments *a)
+{
+    if (parser->is_v3)
+        pbrt_v3_translate(target, &a->kind, a->p, &parser->scene->log);
+}
+
 static void clear_arguments(arguments *a)
 {
     g_free(a->kind);
@@ -60,6 +67,7 @@ bool pbrt_material(pbrt_parser *parser, source_place place)
     arguments a;
     if (!read_arguments(parser, place, TARGET_MATERIAL, &a))
         return false;
+    translate(parser, V3_MATERIAL, &a);
     parser->state.material = add_material(parser, NULL, a.kind, a.p);
     clear_arguments(&a);
     return true;
@@ -69,6 +77,15 @@ static bool is_known_material(const pbrt_parser *parser, const char *name)
 {
     return scene_find_material(parser->scene, name) != NO_INDEX ||
            g_hash_table_contains(parser->interfaces, name);
+}
+
+static int add_named(pbrt_parser *parser, const arguments *a, const char *kind)
+{
+    arguments of = {.kind = g_strdup(kind), .at = a->at, .p = a->p};
+    translate(parser, V3_MATERIAL, &of);
+    int index = add_material(parser, a->kind, of.kind, a->p);
+    g_free(of.kind);
+    return index;
 }
 
 static void make_named_material(pbrt_parser *parser, const arguments *a)
@@ -83,7 +100,7 @@ static void make_named_material(pbrt_parser *parser, const arguments *a)
     else if (is_known_material(parser, a->kind))
         pbrt_error(parser, a->at, "expected a new material's name, found \"%s\" again",
                    a->kind);
-    else if (add_material(parser, a->kind, kind, a->p) != NO_INDEX)
+    else if (add_named(parser, a, kind) != NO_INDEX)
         return;
     g_hash_table_add(parser->interfaces, g_strdup(a->kind));
 }
@@ -134,7 +151,9 @@ bool pbrt_texture(pbrt_parser *parser, source_place place)
     arguments a;
     if (!type || !read_arguments(parser, place, TARGET_TEXTURE, &a))
         return false;
-    add_texture(parser, name, type, type_at, &a);
+    translate(parser, V3_TEXTURE, &a);
+    bool is_color = parser->is_v3 && strcmp(type, "color") == 0;
+    add_texture(parser, name, is_color ? "spectrum" : type, type_at, &a);
     clear_arguments(&a);
     return true;
 }
@@ -144,6 +163,7 @@ bool pbrt_light_source(pbrt_parser *parser, source_place place)
     arguments a;
     if (!read_arguments(parser, place, TARGET_LIGHT, &a))
         return false;
+    translate(parser, V3_LIGHT, &a);
     GError *error = NULL;
     if (scene_add_light(parser->scene, a.kind, a.p, &parser->state.ctm, &error))
         pbrt_check_used(parser, a.p, "light", a.kind);
@@ -158,6 +178,7 @@ bool pbrt_area_light_source(pbrt_parser *parser, source_place place)
     arguments a;
     if (!read_arguments(parser, place, TARGET_LIGHT, &a))
         return false;
+    translate(parser, V3_AREA_LIGHT, &a);
     if (strcmp(a.kind, "diffuse") == 0) {
         parser->state.area_light = a.p;
         g_ptr_array_add(parser->kept, g_steal_pointer(&a.p));
@@ -238,6 +259,7 @@ bool pbrt_shape(pbrt_parser *parser, source_place place)
     arguments a;
     if (!read_arguments(parser, place, TARGET_SHAPE, &a))
         return false;
+    translate(parser, V3_SHAPE, &a);
     add_shape(parser, &a);
     clear_arguments(&a);
     return true;

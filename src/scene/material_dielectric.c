@@ -11,13 +11,15 @@
 typedef struct glass {
     curve *eta;
     roughness_input roughness;
-    medium *interior; /* NULL: clear */
+    spectrum_input tint; /* times the light that passes; not given: 1 */
+    medium *interior;    /* NULL: clear */
 } glass;
 
 static void glass_free(void *self)
 {
     glass *g = self;
     curve_unref(g->eta);
+    spectrum_input_clear(&g->tint);
     medium_free(g->interior);
     g_free(g);
 }
@@ -27,6 +29,7 @@ static void *glass_create(const struct scene *s, const params *p, GError **error
     glass *g = g_new0(glass, 1);
     g->eta = eta_input(p, error);
     if (g->eta && roughness_input_init(&g->roughness, s, p, error) &&
+        spectrum_input_init(&g->tint, s, p, "tint", CURVE_ALBEDO, NULL, error) &&
         medium_read(p, &g->interior, error))
         return g;
     glass_free(g);
@@ -41,6 +44,10 @@ static void glass_bsdf(const void *self, const surface_hit *hit, const wavelengt
     bool disperses = !curve_is_constant(g->eta);
     if (options->deterministic)
         bsdf_make_refractor(out, eta, disperses);
+    else if (spectrum_input_given(&g->tint))
+        bsdf_make_tinted_dielectric(
+            out, eta, disperses, roughness_input_eval(&g->roughness, hit),
+            spectrum_clamp(spectrum_input_eval(&g->tint, hit, w), 0.0f, 1.0f));
     else
         bsdf_make_dielectric(out, eta, disperses,
                              roughness_input_eval(&g->roughness, hit));

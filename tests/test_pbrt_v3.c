@@ -1,0 +1,190 @@
+/*
+ * pbrt-v3: scenes in its words against the same written by hand in pbrt-v4's; both must
+ * render alike. And what tells one from the other.
+ */
+#include "format/pbrt_v3.h"
+#include "rooms.h"
+
+#include <math.h>
+#include <string.h>
+
+#define HOW "integrator=path passes=1 spp=4"
+#define LOOK "LookAt 0 -5 2  0 0 0.3  0 0 1 Camera \"perspective\" \"float fov\" 40\n"
+#define FILM3 "Film \"image\" \"integer xresolution\" 8 \"integer yresolution\" 6\n"
+#define FILM4                                                                            \
+    "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6 PixelFilter "      \
+    "\"box\"\n"
+#define LAMP "LightSource \"point\" \"rgb I\" [20 18 16] \"point from\" [1 -2 4]\n"
+#define FLOOR "Shape \"disk\" \"float radius\" 4\n"
+#define BALL "Translate 0 0 .8 Shape \"sphere\" \"float radius\" .7\n"
+
+typedef struct pair {
+    const char *name, *v3, *v4;
+} pair;
+
+static void check_alike(const pair *p)
+{
+    g_autoptr(scene) a = scene_of(p->v3), b = scene_of(p->v4);
+    g_autoptr(image) x = render_with(a, HOW), y = render_with(b, HOW);
+    g_assert_cmpint(x->width, ==, y->width);
+    g_assert_cmpint(x->height, ==, y->height);
+    size_t n = (size_t)x->width * (size_t)x->height * (size_t)x->n_channels;
+    double off = 0, sum = 0;
+    for (size_t i = 0; i < n; i++) {
+        off += fabs((double)x->pixels[i] - (double)y->pixels[i]);
+        sum += fabs((double)y->pixels[i]);
+    }
+    if (!(off <= 2e-4 * sum) || !(mean_of(x, "") > 0.0))
+        g_error("%s: differs by %g of %g", p->name, off, sum);
+}
+
+#define WORLD3(text) LOOK FILM3 "WorldBegin\n" LAMP FLOOR text "WorldEnd\n"
+#define WORLD4(text) LOOK FILM4 "WorldBegin\n" LAMP FLOOR text
+
+static void test_materials(void)
+{
+    static const pair pairs[] = {
+        {"matte",
+         WORLD3("Material \"matte\" \"color Kd\" [.2 .6 .4] \"float sigma\" 0 " BALL),
+         WORLD4("Material \"diffuse\" \"rgb reflectance\" [.2 .6 .4] " BALL)},
+        {"mirror", WORLD3("Material \"mirror\" " BALL),
+         WORLD4("Material \"conductor\" \"rgb reflectance\" [.9 .9 .9] " BALL)},
+        /* x = ln 0.1: 1.62142 + 0.819955 x + 0.1734 x² + 0.0171201 x³ + 0.000640711 x⁴ */
+        {"plastic", WORLD3("Material \"plastic\" \"rgb Kd\" [.5 .1 .1] " BALL),
+         WORLD4("Material \"coateddiffuse\" \"rgb reflectance\" [.5 .1 .1] \"float "
+                "roughness\" 0.461745 \"bool remaproughness\" false " BALL)},
+        {"substrate",
+         WORLD3("Material \"substrate\" \"rgb Kd\" [.5 .1 .1] \"float uroughness\" 0.2 "
+                "\"float vroughness\" 0.2 \"bool remaproughness\" \"false\" " BALL),
+         WORLD4("Material \"coateddiffuse\" \"rgb reflectance\" [.5 .1 .1] \"float "
+                "roughness\" 0.2 \"bool remaproughness\" false " BALL)},
+        {"glass",
+         WORLD3("Material \"glass\" \"float index\" 1.4 \"rgb Kt\" [.5 .9 .9] " BALL),
+         WORLD4(
+             "Material \"dielectric\" \"float eta\" 1.4 \"rgb tint\" [.5 .9 .9] " BALL)},
+        {"metal",
+         WORLD3("Material \"metal\" \"spectrum eta\" \"metal-Ag-eta\" \"spectrum k\" "
+                "\"metal-Ag-k\" \"float roughness\" 0.1 " BALL),
+         WORLD4("Material \"conductor\" \"spectrum eta\" \"metal-Ag-eta\" \"spectrum k\" "
+                "\"metal-Ag-k\" \"float roughness\" 0.461745 \"bool remaproughness\" "
+                "false " BALL)},
+        {"uber",
+         WORLD3("Material \"uber\" \"rgb Kd\" [.1 .5 .1] \"float index\" 1.6 \"rgb "
+                "Kr\" [0 0 0] " BALL),
+         WORLD4("Material \"coateddiffuse\" \"rgb reflectance\" [.1 .5 .1] \"float eta\" "
+                "1.6 \"float roughness\" 0.461745 \"bool remaproughness\" false " BALL)},
+        {"named",
+         WORLD3("MakeNamedMaterial \"a\" \"string type\" \"matte\" \"rgb Kd\" [.1 .5 .1] "
+                "NamedMaterial \"a\" " BALL),
+         WORLD4("Material \"diffuse\" \"rgb reflectance\" [.1 .5 .1] " BALL)},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
+        check_alike(&pairs[i]);
+}
+
+static void test_lights(void)
+{
+    static const pair pairs[] = {
+        {"scale",
+         WORLD3(
+             "LightSource \"distant\" \"rgb L\" [1 2 3] \"rgb scale\" [2 1 .5] \"point "
+             "from\" [0 0 1] \"point to\" [0 0 0]\n"),
+         WORLD4("LightSource \"distant\" \"rgb L\" [2 2 1.5] \"point3 from\" [0 0 1] "
+                "\"point3 to\" [0 0 0]\n")},
+        {"area",
+         WORLD3(
+             "AreaLightSource \"area\" \"rgb L\" [3 3 2] \"integer nsamples\" 4 " BALL),
+         WORLD4("AreaLightSource \"diffuse\" \"rgb L\" [3 3 2] " BALL)},
+        {"infinite",
+         WORLD3("LightSource \"infinite\" \"rgb L\" [1 1 1] \"rgb scale\" [.5 .5 "
+                ".5] \"integer samples\" 4\n"),
+         WORLD4("LightSource \"infinite\" \"rgb L\" [.5 .5 .5]\n")},
+        /* A flat spectrum of 1 has the luminance 1 in v3. */
+        {"spectrum", WORLD3("LightSource \"infinite\" \"spectrum L\" [300 1 900 1]\n"),
+         WORLD4("LightSource \"infinite\" \"spectrum L\" [300 1 900 1]\n")},
+        {"spectrum-3", WORLD3("LightSource \"infinite\" \"spectrum L\" [300 3 900 3]\n"),
+         WORLD4("LightSource \"infinite\" \"spectrum L\" [300 1 900 1] \"float scale\" "
+                "3\n")},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
+        check_alike(&pairs[i]);
+}
+
+static void test_rest(void)
+{
+    static const pair pairs[] = {
+        {"film-scale",
+         LOOK
+         "Film \"image\" \"integer xresolution\" 8 \"integer yresolution\" 6 \"float "
+         "scale\" 2 \"float maxsampleluminance\" 10\nWorldBegin " LAMP FLOOR "WorldEnd\n",
+         LOOK
+         "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6 \"float iso\" "
+         "200 PixelFilter \"box\" WorldBegin " LAMP FLOOR},
+        {"filter",
+         LOOK FILM3 "PixelFilter \"gaussian\" \"float xwidth\" 1.5 \"float ywidth\" 1.5 "
+                    "\"float alpha\" 2\nWorldBegin " LAMP FLOOR "WorldEnd\n",
+         LOOK
+         "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6 PixelFilter "
+         "\"gaussian\" \"float xradius\" 1.5 \"float yradius\" 1.5 \"float sigma\" 0.5 "
+         "WorldBegin " LAMP FLOOR},
+        {"mesh",
+         WORLD3("Material \"matte\" \"rgb Kd\" [.1 .5 .1] Shape \"trianglemesh\" \"point "
+                "P\" "
+                "[-1 0 0 1 0 0 0 0 2] \"normal N\" [0 -1 0 0 -1 0 0 -1 0] \"float uv\" "
+                "[0 0 1 "
+                "0 0 1] \"integer indices\" [0 1 2]\n"),
+         WORLD4(
+             "Material \"diffuse\" \"rgb reflectance\" [.1 .5 .1] Shape \"trianglemesh\" "
+             "\"point3 P\" [-1 0 0 1 0 0 0 0 2] \"normal N\" [0 -1 0 0 -1 0 0 -1 0] "
+             "\"point2 uv\" [0 0 1 0 0 1] \"integer indices\" [0 1 2]\n")},
+        {"texture",
+         WORLD3(
+             "Texture \"t\" \"color\" \"constant\" \"color value\" [.3 .2 .1] Material "
+             "\"matte\" \"texture Kd\" \"t\" " BALL),
+         WORLD4("Material \"diffuse\" \"rgb reflectance\" [.3 .2 .1] " BALL)},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
+        check_alike(&pairs[i]);
+}
+
+/* Film and integrator where nothing is said, or in v3's words. */
+static void test_settings(void)
+{
+    g_autoptr(scene) s = scene_of(
+        LOOK
+        "Integrator \"sppm\" \"integer numiterations\" 12 \"integer "
+        "photonsperiteration\" 3000 \"float radius\" 0.3 \"integer maxdepth\" 7\n"
+        "Sampler \"lowdiscrepancy\" \"integer pixelsamples\" 64 WorldBegin " LAMP FLOOR
+        "WorldEnd\n");
+    g_assert_cmpint(s->film.width, ==, 640);
+    g_assert_cmpint((int)s->settings.passes, ==, 12);
+    g_assert_cmpint((int)s->settings.photons, ==, 3000);
+}
+
+static void test_recognised(void)
+{
+    static const char *const old[] = {"Material \"matte\"", "x\nFilm \"image\"",
+                                      "# fine\nWorldEnd"};
+    static const char *const new[] = {"Material \"diffuse\"", "# WorldEnd\nFilm \"rgb\"",
+                                      ""};
+    for (size_t i = 0; i < 3; i++) {
+        g_assert_true(pbrt_v3_recognises(old[i], strlen(old[i])));
+        g_assert_false(pbrt_v3_recognises(new[i], strlen(new[i])));
+    }
+    scene_folder f = folder_new(WORLD3("Material \"disney\"\n" BALL));
+    g_autoptr(GError) error = NULL;
+    g_assert_null(format_load(f.main, 1, NULL, &error));
+    g_assert_nonnull(strstr(error->message, "found 'disney'"));
+    folder_remove(&f);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/pbrt-v3/materials", test_materials);
+    g_test_add_func("/pbrt-v3/lights", test_lights);
+    g_test_add_func("/pbrt-v3/rest", test_rest);
+    g_test_add_func("/pbrt-v3/settings", test_settings);
+    g_test_add_func("/pbrt-v3/recognised", test_recognised);
+    return g_test_run();
+}
