@@ -136,13 +136,24 @@ static void test_what_is_not_supported(void)
            "%s:4:1: participating media are not supported, found \"fog\"");
     refuse(WORLD "MediumInterface \"\" \"\"\nMediumInterface \"\" \"fog\"\n",
            "%s:5:20: participating media are not supported, found \"fog\"");
-    refuse(WORLD "ObjectBegin \"leaf\"\nShape \"nothing\"\nObjectEnd\n"
-                 "ObjectInstance \"leaf\"\n",
-           "%s:4:1: object instancing is not supported, found \"leaf\"\n"
-           "%s:7:1: object instancing is not supported, found \"leaf\"");
-    refuse(WORLD "ActiveTransform EndTime\nTranslate 1 0 0\n",
-           "%s:5:1: expected 'ActiveTransform All', found a transform of one time only: "
-           "motion is not supported");
+    refuse(WORLD "ObjectBegin \"leaf\"\nObjectBegin \"twig\"\nObjectEnd\n"
+                 "ObjectInstance \"tree\"\nObjectBegin \"leaf\"\n",
+           "%s:5:1: expected ObjectEnd before another ObjectBegin\n"
+           "%s:7:16: expected the name of an object made before, found \"tree\"\n"
+           "%s:8:13: object \"leaf\" is there already");
+    refuse(WORLD "ObjectBegin \"lamp\"\nAreaLightSource \"diffuse\"\nShape \"sphere\"\n"
+                 "ObjectInstance \"lamp\"\n",
+           "%s:5:1: a shape that moves or is part of an object can not shine, in pbrt "
+           "too\n"
+           "%s:7:1: expected ObjectEnd before ObjectInstance, found none\n"
+           "%s:4:1: expected AttributeEnd for this AttributeBegin, found the end of the "
+           "file\n"
+           "%s:4:1: expected ObjectEnd for this ObjectBegin, found the end of the file");
+    refuse("TransformTimes 1 1\n" WORLD "ActiveTransform EndTime Scale 2 2 2\n"
+           "LightSource \"point\"\nActiveTransform Never\n",
+           "%s:1:1: expected a start time before the end time, found TransformTimes 1 1\n"
+           "%s:6:1: a light can not move, found a transform that does\n"
+           "%s:7:17: expected All, StartTime or EndTime, found 'Never'");
     refuse("Option \"bool disabletexturefiltering\" false \"bool forcediffuse\" "
            "true\n" WORLD,
            "%s:1:45: option 'forcediffuse' is not supported");

@@ -242,7 +242,7 @@ static void test_camera_is_connected_as_its_rays_go(void)
         ray r = camera_ray(&s->camera, raster, u, 0.0f);
         camera_connection found;
         g_assert_true(
-            camera_connect(&s->camera, r.origin + 5.0f * r.direction, u, &found));
+            camera_connect(&s->camera, r.origin + 5.0f * r.direction, u, 0.0f, &found));
         g_assert_cmpfloat(fabsf(found.raster.x - raster.x), <, 1e-3f);
         g_assert_cmpfloat(fabsf(found.raster.y - raster.y), <, 1e-3f);
         g_assert_cmpfloat(fabsf(found.distance - 5.0f), <, 1e-4f);

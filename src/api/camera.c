@@ -120,6 +120,7 @@ bool neph_scene_set_camera(NephScene *s, const NephCamera *c, GError **error)
     if (!place(c, &to_world))
         return refuse("a direction and another one for up", error);
     to->to_world = to_world;
+    to->path = motion_still(&to_world);
     to->half_screen = (float)tan(G_PI / 360.0 * c->fov);
     to->lens_radius = (float)c->lens_radius;
     to->focal_distance = (float)c->focal_distance;

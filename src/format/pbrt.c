@@ -143,11 +143,6 @@ static bool phase_fits(pbrt_parser *parser, const directive *d, source_place pla
     return false;
 }
 
-static bool may_stand_in_object(const directive *d)
-{
-    return d->handle == pbrt_object_end;
-}
-
 /** One directive with its arguments. */
 static void read_directive(pbrt_parser *parser)
 {
@@ -156,8 +151,6 @@ static void read_directive(pbrt_parser *parser)
     bool fine;
     if (!d)
         fine = pbrt_expected(parser, "a directive", &t);
-    else if (parser->in_object && !may_stand_in_object(d))
-        fine = false;
     else
         fine = phase_fits(parser, d, t.place) && d->handle(parser, t.place);
     if (!fine)
@@ -248,7 +241,10 @@ static void free_params(void *p)
 
 static void parser_init(pbrt_parser *parser, scene *s, const char *path)
 {
-    *parser = (pbrt_parser){.scene = s, .default_material = NO_INDEX};
+    *parser = (pbrt_parser){.scene = s,
+                            .default_material = NO_INDEX,
+                            .object = NO_INDEX,
+                            .times = {0.0, 1.0}};
     g_autofree char *absolute = g_canonicalize_filename(path, NULL);
     parser->base_directory = g_path_get_dirname(absolute);
     parser->open_files = g_ptr_array_new();
@@ -260,6 +256,8 @@ static void parser_init(pbrt_parser *parser, scene *s, const char *path)
     parser->kept = g_ptr_array_new_with_free_func(free_params);
     parser->attributes = g_ptr_array_new_with_free_func(g_free);
     parser->state = (graphics_state){.ctm = transform_identity(),
+                                     .ctm_end = transform_identity(),
+                                     .active = ACTIVE_ALL,
                                      .material = MATERIAL_DEFAULT,
                                      .space = color_space_srgb()};
 }
@@ -285,6 +283,9 @@ static void parser_clear(pbrt_parser *parser)
 static void check_end(pbrt_parser *parser, source_place end)
 {
     pbrt_close_attributes(parser, 0);
+    if (parser->object != NO_INDEX)
+        pbrt_error(parser, parser->object_place,
+                   "expected ObjectEnd for this ObjectBegin, found the end of the file");
     if (pbrt_should_stop(parser))
         return;
     if (!parser->in_world)

@@ -21,7 +21,7 @@ static bool keep(pbrt_parser *parser, pending *d, pbrt_v3_target target,
         pbrt_v3_translate(target, &kind, p, &parser->scene->log);
     g_free(d->kind);
     params_free(d->p);
-    *d = (pending){kind, p, at, parser->state.ctm};
+    *d = (pending){kind, p, at, parser->state.ctm, parser->state.ctm_end};
     return true;
 }
 
@@ -51,7 +51,8 @@ bool pbrt_camera(pbrt_parser *parser, source_place place)
     if (!keep(parser, &parser->camera, V3_CAMERA, place))
         return false;
     parser->camera.ctm = transform_inverse(&parser->state.ctm);
-    pbrt_name_transform(parser, "camera", &parser->camera.ctm);
+    parser->camera.ctm_end = transform_inverse(&parser->state.ctm_end);
+    pbrt_name_transform(parser, "camera", &parser->camera.ctm, &parser->camera.ctm_end);
     return true;
 }
 
@@ -149,6 +150,14 @@ static void finish_filter(pbrt_parser *parser, source_place place)
         pbrt_report(parser, error);
 }
 
+static void move_camera(pbrt_parser *parser, const pending *c)
+{
+    motion to_world =
+        motion_make(&c->ctm, &c->ctm_end, parser->times[0], parser->times[1]);
+    scene_move_camera(parser->scene, &to_world);
+    pbrt_check_used(parser, c->p, "Camera", c->kind);
+}
+
 static void finish_camera(pbrt_parser *parser, source_place place)
 {
     GError *error = NULL;
@@ -156,7 +165,7 @@ static void finish_camera(pbrt_parser *parser, source_place place)
     if (!c->kind)
         pbrt_error(parser, place, "expected a Camera before WorldBegin, found none");
     else if (scene_set_camera(parser->scene, c->kind, c->p, &c->ctm, &error))
-        pbrt_check_used(parser, c->p, "Camera", c->kind);
+        move_camera(parser, c);
     else
         pbrt_report(parser, error);
 }
@@ -170,9 +179,9 @@ bool pbrt_world_begin(pbrt_parser *parser, source_place place)
         finish_camera(parser, place);
     pbrt_apply_integrator(parser);
     parser->in_world = true;
-    parser->state.ctm = transform_identity();
-    parser->state.is_animated = false;
-    pbrt_name_transform(parser, "world", &parser->state.ctm);
+    parser->state.ctm = parser->state.ctm_end = transform_identity();
+    parser->state.active = ACTIVE_ALL;
+    pbrt_name_transform(parser, "world", &parser->state.ctm, &parser->state.ctm_end);
     return true;
 }
 

@@ -38,10 +38,23 @@ typedef struct attribute {
 
 enum { MATERIAL_DEFAULT = -2 }; /**< no Material directive yet; NO_INDEX: interface */
 
+/** Which of the two current transforms directives act on, by ActiveTransform. */
+typedef enum active_transforms {
+    ACTIVE_START = 1,
+    ACTIVE_END = 2,
+    ACTIVE_ALL = ACTIVE_START | ACTIVE_END
+} active_transforms;
+
+/** What CoordinateSystem remembers. */
+typedef struct transform_pair {
+    transform start, end;
+} transform_pair;
+
 /** What AttributeBegin keeps. */
 typedef struct graphics_state {
-    transform ctm;
-    bool is_animated; /**< ActiveTransform is not All */
+    transform ctm;     /**< at the start time */
+    transform ctm_end; /**< at the end time; the same, unless something moves */
+    active_transforms active;
     bool reverse_orientation;
     int material;
     const params *area_light; /**< owned by the parser; NULL: none */
@@ -59,7 +72,7 @@ typedef struct pending {
     char *kind; /**< NULL: not given */
     params *p;
     source_place place;
-    transform ctm;
+    transform ctm, ctm_end;
 } pending;
 
 /** Numbers being read, floats or ints; grows, never shrinks. */
@@ -79,10 +92,12 @@ typedef struct pbrt_parser {
 
     bool is_v3; /**< the main file is of pbrt-v3 (pbrt_v3.h) */
     bool in_world;
-    bool in_object; /**< between ObjectBegin and ObjectEnd, whose content is skipped */
+    int object; /**< index of the one that is being defined, or NO_INDEX */
+    source_place object_place;
+    double times[2]; /**< s: of the start and the end transforms */
     graphics_state state;
     GArray *saved;                  /**< saved_state */
-    GHashTable *coordinate_systems; /**< name -> transform* */
+    GHashTable *coordinate_systems; /**< name -> transform_pair* */
     GHashTable *interfaces;         /**< names of materials that are none */
     int default_material;           /**< its index once made, or NO_INDEX */
     GPtrArray *kept;                /**< params* that outlive their directive */
@@ -135,8 +150,13 @@ bool pbrt_coordinate_system(pbrt_parser *parser, source_place place);
 bool pbrt_coord_sys_transform(pbrt_parser *parser, source_place place);
 bool pbrt_transform_times(pbrt_parser *parser, source_place place);
 bool pbrt_active_transform(pbrt_parser *parser, source_place place);
-/** @brief Remembers the current transform under a name. */
-void pbrt_name_transform(pbrt_parser *parser, const char *name, const transform *t);
+/** @brief Remembers transforms under a name. */
+void pbrt_name_transform(pbrt_parser *parser, const char *name, const transform *start,
+                         const transform *end);
+/** @brief True if the current transform moves. */
+bool pbrt_is_moving(const pbrt_parser *parser);
+/** @brief The current transforms as a motion. */
+motion pbrt_motion(const pbrt_parser *parser);
 
 bool pbrt_attribute(pbrt_parser *parser, source_place place);
 bool pbrt_attribute_begin(pbrt_parser *parser, source_place place);

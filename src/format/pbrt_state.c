@@ -1,6 +1,6 @@
 /*
  * The graphics state: what AttributeBegin keeps, AttributeEnd brings back, and the
- * directives that change nothing else. Media and instances are refused here by name.
+ * directives that change nothing else. Media are refused here by name.
  */
 #include "format/pbrt_parser.h"
 
@@ -115,29 +115,58 @@ bool pbrt_make_named_medium(pbrt_parser *parser, source_place place)
     return true;
 }
 
+/** Opens attributes too, as ObjectEnd closes them. */
 bool pbrt_object_begin(pbrt_parser *parser, source_place place)
 {
-    g_autofree char *name = pbrt_read_string(parser, "a name", NULL);
+    source_place at = place;
+    g_autofree char *name = pbrt_read_string(parser, "a name", &at);
     if (!name)
         return false;
-    pbrt_error(parser, place, "object instancing is not supported, found \"%s\"", name);
-    parser->in_object = true;
+    GError *error = NULL;
+    if (parser->object != NO_INDEX) {
+        pbrt_error(parser, place, "expected ObjectEnd before another ObjectBegin");
+        return true;
+    }
+    pbrt_attribute_begin(parser, place);
+    parser->object = scene_object_begin(parser->scene, name, at, &error);
+    parser->object_place = place;
+    if (parser->object == NO_INDEX) {
+        pbrt_report(parser, error);
+        pbrt_attribute_end(parser, place);
+    }
     return true;
 }
 
 bool pbrt_object_end(pbrt_parser *parser, source_place place)
 {
-    if (!parser->in_object)
+    if (parser->object == NO_INDEX) {
         pbrt_error(parser, place, "expected ObjectBegin before ObjectEnd, found none");
-    parser->in_object = false;
-    return true;
+        return true;
+    }
+    scene_object_end(parser->scene);
+    parser->object = NO_INDEX;
+    return pbrt_attribute_end(parser, place);
 }
 
 bool pbrt_object_instance(pbrt_parser *parser, source_place place)
 {
-    g_autofree char *name = pbrt_read_string(parser, "a name", NULL);
+    source_place at = place;
+    g_autofree char *name = pbrt_read_string(parser, "a name", &at);
     if (!name)
         return false;
-    pbrt_error(parser, place, "object instancing is not supported, found \"%s\"", name);
+    int object = scene_find_object(parser->scene, name);
+    if (object == NO_INDEX) {
+        pbrt_error(parser, at, "expected the name of an object made before, found \"%s\"",
+                   name);
+        return true;
+    }
+    if (parser->object != NO_INDEX) {
+        pbrt_error(parser, place, "expected ObjectEnd before ObjectInstance, found none");
+        return true;
+    }
+    GError *error = NULL;
+    motion to_world = pbrt_motion(parser);
+    if (!scene_add_instance(parser->scene, object, &to_world, place, &error))
+        pbrt_report(parser, error);
     return true;
 }

@@ -1,6 +1,7 @@
 /*
  * The current transform: each directive multiplies it from the right, so the transform
- * written last acts on a point first.
+ * written last acts on a point first. There are two, at a start and an end time; unless
+ * ActiveTransform says otherwise a directive acts on both, and nothing moves.
  */
 #include "format/pbrt_parser.h"
 
@@ -51,30 +52,46 @@ static bool is_finite(const transform *t)
     return isfinite(sum);
 }
 
-static void set_ctm(pbrt_parser *parser, source_place place, const transform *t)
+/** Takes new values of the active transforms. */
+static void set_ctm(pbrt_parser *parser, source_place place, const transform_pair *t)
 {
-    if (parser->state.is_animated)
-        pbrt_error(parser, place,
-                   "expected 'ActiveTransform All', found a transform of one time only: "
-                   "motion is not supported");
-    else if (!is_finite(t))
+    graphics_state *state = &parser->state;
+    bool fine = (!(state->active & ACTIVE_START) || is_finite(&t->start)) &&
+                (!(state->active & ACTIVE_END) || is_finite(&t->end));
+    if (!fine) {
         pbrt_error(parser, place,
                    "expected a transform that can be inverted, found one "
                    "out of range");
-    else
-        parser->state.ctm = *t;
+        return;
+    }
+    if (state->active & ACTIVE_START)
+        state->ctm = t->start;
+    if (state->active & ACTIVE_END)
+        state->ctm_end = t->end;
 }
 
 static void multiply(pbrt_parser *parser, source_place place, const transform *t)
 {
-    transform product = transform_multiply(&parser->state.ctm, t);
+    const transform_pair product = {transform_multiply(&parser->state.ctm, t),
+                                    transform_multiply(&parser->state.ctm_end, t)};
     set_ctm(parser, place, &product);
+}
+
+bool pbrt_is_moving(const pbrt_parser *parser)
+{
+    return !transform_equal(&parser->state.ctm, &parser->state.ctm_end);
+}
+
+motion pbrt_motion(const pbrt_parser *parser)
+{
+    return motion_make(&parser->state.ctm, &parser->state.ctm_end, parser->times[0],
+                       parser->times[1]);
 }
 
 bool pbrt_identity(pbrt_parser *parser, source_place place)
 {
-    transform t = transform_identity();
-    set_ctm(parser, place, &t);
+    const transform_pair identity = {transform_identity(), transform_identity()};
+    set_ctm(parser, place, &identity);
     return true;
 }
 
@@ -143,7 +160,7 @@ bool pbrt_transform(pbrt_parser *parser, source_place place)
                    "expected a matrix that can be inverted, found a "
                    "singular one");
     else
-        set_ctm(parser, place, &t);
+        set_ctm(parser, place, &(const transform_pair){t, t});
     return true;
 }
 
@@ -162,10 +179,11 @@ bool pbrt_concat_transform(pbrt_parser *parser, source_place place)
     return true;
 }
 
-void pbrt_name_transform(pbrt_parser *parser, const char *name, const transform *t)
+void pbrt_name_transform(pbrt_parser *parser, const char *name, const transform *start,
+                         const transform *end)
 {
-    transform *copy = g_new(transform, 1);
-    *copy = *t;
+    transform_pair *copy = g_new(transform_pair, 1);
+    *copy = (transform_pair){*start, *end};
     g_hash_table_insert(parser->coordinate_systems, g_strdup(name), copy);
 }
 
@@ -175,7 +193,7 @@ bool pbrt_coordinate_system(pbrt_parser *parser, source_place place)
     g_autofree char *name = pbrt_read_string(parser, "a name", NULL);
     if (!name)
         return false;
-    pbrt_name_transform(parser, name, &parser->state.ctm);
+    pbrt_name_transform(parser, name, &parser->state.ctm, &parser->state.ctm_end);
     return true;
 }
 
@@ -185,7 +203,7 @@ bool pbrt_coord_sys_transform(pbrt_parser *parser, source_place place)
     g_autofree char *name = pbrt_read_string(parser, "a name", &at);
     if (!name)
         return false;
-    const transform *t = g_hash_table_lookup(parser->coordinate_systems, name);
+    const transform_pair *t = g_hash_table_lookup(parser->coordinate_systems, name);
     if (t)
         set_ctm(parser, place, t);
     else
@@ -196,19 +214,36 @@ bool pbrt_coord_sys_transform(pbrt_parser *parser, source_place place)
 
 bool pbrt_transform_times(pbrt_parser *parser, source_place place)
 {
-    (void)place;
     double times[2];
-    return read_numbers(parser, times, 2);
+    if (!read_numbers(parser, times, 2))
+        return false;
+    if (!(times[1] > times[0]) || !isfinite(times[0]) || !isfinite(times[1])) {
+        pbrt_error(
+            parser, place,
+            "expected a start time before the end time, found TransformTimes %g %g",
+            times[0], times[1]);
+        return true;
+    }
+    parser->times[0] = times[0];
+    parser->times[1] = times[1];
+    return true;
 }
 
 bool pbrt_active_transform(pbrt_parser *parser, source_place place)
 {
+    static const struct {
+        const char *name;
+        active_transforms active;
+    } words[] = {
+        {"All", ACTIVE_ALL}, {"StartTime", ACTIVE_START}, {"EndTime", ACTIVE_END}};
     (void)place;
     token t = lexer_peek(parser->words);
-    bool is_all = token_is(&t, "All");
-    if (!is_all && !token_is(&t, "StartTime") && !token_is(&t, "EndTime"))
-        return pbrt_expected(parser, "All, StartTime or EndTime", &t);
-    lexer_next(parser->words);
-    parser->state.is_animated = !is_all;
-    return true;
+    for (size_t i = 0; i < G_N_ELEMENTS(words); i++) {
+        if (token_is(&t, words[i].name)) {
+            parser->state.active = words[i].active;
+            lexer_next(parser->words);
+            return true;
+        }
+    }
+    return pbrt_expected(parser, "All, StartTime or EndTime", &t);
 }

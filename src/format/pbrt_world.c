@@ -165,7 +165,9 @@ bool pbrt_light_source(pbrt_parser *parser, source_place place)
         return false;
     translate(parser, V3_LIGHT, &a);
     GError *error = NULL;
-    if (scene_add_light(parser->scene, a.kind, a.p, &parser->state.ctm, &error))
+    if (pbrt_is_moving(parser))
+        pbrt_error(parser, place, "a light can not move, found a transform that does");
+    else if (scene_add_light(parser->scene, a.kind, a.p, &parser->state.ctm, &error))
         pbrt_check_used(parser, a.p, "light", a.kind);
     else
         pbrt_report(parser, error);
@@ -226,6 +228,30 @@ static bool add_ply(pbrt_parser *parser, const params *p, const shape_place *at,
     return false;
 }
 
+static bool add_still_shape(pbrt_parser *parser, const arguments *a,
+                            const shape_place *at, GError **error)
+{
+    bool is_ply = strcmp(a->kind, "plymesh") == 0;
+    return is_ply ? add_ply(parser, a->p, at, error)
+                  : scene_add_shape(parser->scene, a->kind, a->p, at, error);
+}
+
+/** A shape that moves is an object with one instance. */
+static bool add_made_shape(pbrt_parser *parser, const arguments *a, shape_place *at,
+                           GError **error)
+{
+    if (!pbrt_is_moving(parser))
+        return add_still_shape(parser, a, at, error);
+    int object = scene_object_begin(parser->scene, NULL, a->at, error);
+    if (object == NO_INDEX)
+        return false;
+    motion to_world = pbrt_motion(parser);
+    at->to_world = transform_identity();
+    bool done = add_still_shape(parser, a, at, error);
+    scene_object_end(parser->scene);
+    return done && scene_add_instance(parser->scene, object, &to_world, a->at, error);
+}
+
 static void add_shape(pbrt_parser *parser, const arguments *a)
 {
     shape_place at = {.to_world = parser->state.ctm,
@@ -242,10 +268,7 @@ static void add_shape(pbrt_parser *parser, const arguments *a)
     }
     at.camera_hidden = !seen;
     at.alpha = &alpha;
-    bool is_ply = strcmp(a->kind, "plymesh") == 0;
-    bool done = is_ply ? add_ply(parser, a->p, &at, &error)
-                       : scene_add_shape(parser->scene, a->kind, a->p, &at, &error);
-    if (!done) {
+    if (!add_made_shape(parser, a, &at, &error)) {
         pbrt_report(parser, error);
         return;
     }

@@ -13,12 +13,10 @@ static bool casts_caustics(const scene *s, const surface_hit *hit)
 }
 
 /* A point by area on all surfaces that cast caustics. */
-static vec3 caustic_target(const scene *s, sampler *random)
+static vec3 caustic_target(const scene *s, float time, sampler *random)
 {
     float u_shape = sampler_1d(random);
-    size_t i = distribution_sample(&s->caustic_area, &u_shape);
-    const shape *on = s->shapes->pdata[s->caustic_shapes[i]];
-    return shape_sample_area(on, u_shape, sampler_2d(random)).p;
+    return scene_caustic_target(s, u_shape, sampler_2d(random), time);
 }
 
 /* Moves on to the next surface along a ray, cut-outs taken as solid as targets on them
@@ -36,14 +34,14 @@ static bool next_crossing(const scene *s, ray *r, float *distance, surface_hit *
    origin, or for parallel light per area across it. */
 static double aimed_density(const scene *s, ray r, bool parallel)
 {
-    double density = 0.0, p_area = 1.0 / distribution_total(&s->caustic_area);
+    double density = 0.0;
     float distance = 0.0f;
     surface_hit hit;
     for (int i = 0; i < MAX_CROSSINGS && next_crossing(s, &r, &distance, &hit); i++) {
         if (casts_caustics(s, &hit)) {
             double cosine = fabs((double)dot3(hit.n_geom, r.direction));
             double d2 = parallel ? 1.0 : (double)distance * (double)distance;
-            density += cosine > 0.0 ? p_area * d2 / cosine : 0.0;
+            density += cosine > 0.0 ? scene_caustic_density(s, &hit) * d2 / cosine : 0.0;
         }
     }
     return density;
@@ -72,7 +70,9 @@ static const light *choose_light(const scene *s, const distribution *power, floa
 
 static bool finish(const light_emission *emission, float density, photon_start *out)
 {
+    float time = out->ray.time;
     out->ray = emission->ray;
+    out->ray.time = time;
     out->n = emission->n;
     out->primitive = emission->primitive;
     out->flux = emission->flux / (out->p_light * density);
@@ -88,9 +88,10 @@ bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
     if (!(distribution_total(&s->caustic_power) > 0.0))
         return false;
     const light *l = choose_light(s, &s->caustic_power, &u_light, out);
-    vec3 target = caustic_target(s, random);
+    vec3 target = caustic_target(s, out->ray.time, random);
     if (!l->kind->emit_toward(l->self, w, u_primitive, u, target, &emission))
         return false;
+    emission.ray.time = out->ray.time;
     if (!meets_caster(s, emission.ray))
         return false;
     double density = aimed_density(s, emission.ray, l->kind->is_parallel);

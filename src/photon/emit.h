@@ -18,7 +18,7 @@
 
 /** @brief A photon at its light. */
 typedef struct photon_start {
-    ray ray;
+    ray ray;       /**< its time is given by the caller, before */
     spectrum flux; /**< its mean over emissions is the flux of all lights (uniform), or of
                       their light that first meets a caustic caster (specular-area) */
     int light;     /**< index in scene->lights */

@@ -285,7 +285,8 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
     neighbourhood hood = {.scene = options->scene,
                           .p = g->probe.p,
                           .n = g->probe.n,
-                          .radius = sqrtf(g->r2)};
+                          .radius = sqrtf(g->r2),
+                          .time = options->time};
     if (options->scene && g->n > 0 && isfinite(hood.radius) &&
         !neighbourhood_is_whole(&hood))
         done = gather_part(g, map, &hood, scratch, &area) && done;

@@ -27,6 +27,7 @@ typedef struct estimate_options {
                               counted */
     const scene *scene;    /**< to probe edges, corners and thin walls with (see
                               neighbourhood.h); NULL: the disc is taken as whole */
+    float time;            /**< of the shutter, at which they are probed */
     unsigned lobes;        /**< used for all photons, e.g. LOBE_GATHERED */
     unsigned
         delta_lobes; /**< added for photons flagged PHOTON_FROM_DELTA, e.g. LOBE_GLOSSY */

@@ -70,7 +70,7 @@ static vec3 lifted(const neighbourhood *hood, vec3 p)
 static float surface_height(const neighbourhood *hood, vec3 q)
 {
     float slab = NEIGHBOURHOOD_FLATTEN * hood->radius, height = LIFT * hood->radius;
-    ray down = {lifted(hood, q), -hood->n, height + slab, 0.0f, NULL};
+    ray down = {lifted(hood, q), -hood->n, height + slab, hood->time, NULL};
     surface_hit hit;
     return scene_intersect(hood->scene, &down, &hit) ? fabsf(hit.t - height) / slab
                                                      : 1.0f;
@@ -86,6 +86,7 @@ static bool rim_is_surface(const neighbourhood *hood, vec3 d)
     float down = height * slope; /* per metre of the way */
     float slab = NEIGHBOURHOOD_FLATTEN * hood->radius;
     ray r = {.origin = lifted(hood, hood->p),
+             .time = hood->time,
              .direction = across,
              .t_max = (height + slab) / down};
     surface_hit hit;
@@ -119,6 +120,7 @@ static void probe_horizon(neighbourhood *hood)
     vec2 corner[NEIGHBOURHOOD_SECTORS];
     for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++, a = turn_further(a, sector)) {
         ray along = {.origin = lifted(hood, hood->p),
+                     .time = hood->time,
                      .direction = direction_at(hood, a),
                      .t_max = reach};
         surface_hit hit;

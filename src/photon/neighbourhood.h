@@ -26,11 +26,12 @@ typedef struct horizon_side {
     float nx, ny, c;
 } horizon_side;
 
-/** @brief A disc to be probed. The first three are the caller's; thread-safe. */
+/** @brief A disc to be probed. Those before frame are the caller's; thread-safe. */
 typedef struct neighbourhood {
     const scene *scene;
     vec3 p, n;    /**< centre, unit geometric normal on the side that is seen */
     float radius; /**< m */
+    float time;   /**< of the shutter, at which it is probed */
     frame frame;  /**< turned by an angle of its own for every place */
     float offset; /**< of the probes, 0..1, of its own for every place */
     /** How far one sees along the surface, in the frame's plane: the sides of a polygon

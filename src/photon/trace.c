@@ -85,10 +85,22 @@ static bool start(const trace_task *task, sampler *random, photon_start *out)
     return photon_emit_caustic(task->scene, &task->w, guide_of(task), random, out);
 }
 
+/* The time of a photon, 0 where nothing moves. */
+static float time_of(const trace_task *task, uint64_t index)
+{
+    if (!task->scene->moves)
+        return 0.0f;
+    uint64_t h = hash_mix(stream_key(task) ^ 0x74696d65u, index);
+    double jitter = (double)(h >> 11) * 0x1p-53;
+    double part = ((double)(index - task->first) + jitter) / (double)task->n_photons;
+    double slice = (double)task->slice + part - floor(part);
+    return minf((float)(slice / MAX(task->n_slices, 1)), 0x1.fffffep-1f);
+}
+
 static bool emit(photon_path *path)
 {
     const trace_task *task = path->task;
-    photon_start at;
+    photon_start at = {.ray.time = time_of(task, path->index)};
     if (!start(task, &path->random, &at))
         return false;
     path->ray = at.ray;
@@ -125,6 +137,22 @@ static bool grow(chunk_store *out, bool want_normals)
     return true;
 }
 
+/* Of the middle of a task's slice of time. */
+static float middle_of(const trace_task *task)
+{
+    return time_of_slice(task->slice, MAX(task->n_slices, 1));
+}
+
+/* Takes a photon on something that moves to where that will be: its direction turns with
+   it, and where the surface grows the photon counts for more of it. */
+static void keep_for_slice(const trace_task *task, const surface_hit *hit, photon *p)
+{
+    transform by = scene_motion_to(task->scene, hit, middle_of(task));
+    p->p = transform_point(&by, p->p);
+    p->wi = normalize3(transform_vector(&by, p->wi));
+    p->flux *= (float)scene_area_change(task->scene, hit, middle_of(task));
+}
+
 static void store(photon_path *path, const surface_hit *hit, unsigned flags)
 {
     chunk_store *out = path->out;
@@ -143,6 +171,8 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
                 .flux = path->flux,
                 .flags = flags,
                 .tag = (uint32_t)scene_light_group(path->task->scene, path->light)};
+    if (scene_hit_moves(path->task->scene, hit))
+        keep_for_slice(path->task, hit, &p);
     if (path->want_normals)
         out->normals[out->photons.n] = direction_pack(face_forward(hit->n_geom, p.wi), 0);
     photon_store_put(&out->photons, &p);
@@ -303,7 +333,7 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
     out->photons.tagged = loop->task->scene->n_light_groups > 0;
     for (size_t i = begin; i < end && !out->error; i++) {
         photon_path path = {.task = loop->task,
-                            .index = i,
+                            .index = loop->task->first + i,
                             .out = out,
                             .want_normals = loop->want_normals};
         trace_one(&path);

@@ -13,6 +13,11 @@
  * takes photons only from delta lights by way of S*: all else that it reflects, camera
  * paths find by following it. So every path of light is counted once.
  *
+ * Where something moves, every photon has a time of its own: the i-th of N in a slice of
+ * the shutter's time that of the i-th N-th part of it, so that times, and the other
+ * numbers within any stretch of time, are spread evenly. A photon that lands on something
+ * that moves is kept where that will be in the middle of the slice.
+ *
  * Russian roulette keeps photons of near equal power: survive with p = min(1, g(β
  * Φ)/g(Φ)), Φ ← Φ β / p, where g is the mean or the maximum over wavelengths.
  */
@@ -34,7 +39,10 @@ typedef struct trace_task {
     const caustic_share *share;  /**< of caustics: what they leave to paths from the eye;
                                     NULL: nothing */
     uint64_t n_photons;          /**< to emit */
-    const cancel_flag *cancel;   /**< may be NULL */
+    uint64_t first;              /**< index of the first of them */
+    int slice, n_slices; /**< of the shutter's time, that they are emitted in; 0 of 0: all
+                            of it */
+    const cancel_flag *cancel; /**< may be NULL */
 } trace_task;
 
 /** @brief What came of it. */

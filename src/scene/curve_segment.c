@@ -174,7 +174,7 @@ static void tube_piece(search *s, double low, double high)
     double from_along = dvec3_dot(from, chord) / length2;
     double d_along = dvec3_dot(s->d, chord) / length2;
     dvec3 from_off = from - from_along * chord, d_off = s->d - d_along * chord;
-    double t[2] = {-INFINITY, INFINITY};
+    double t[2] = {-HUGE_VAL, HUGE_VAL};
     double a2 = dvec3_dot(d_off, d_off), half = -dvec3_dot(from_off, d_off);
     double root = half * half - a2 * (dvec3_dot(from_off, from_off) - radius * radius);
     if (!(root >= 0.0) || !(length2 > 0.0))
@@ -240,7 +240,7 @@ static void ribbon_piece(search *s, double low, double high)
         corner[i] = segment_at(s->segment, ends[i & 1]).c + (i < 2 ? -reach : reach) * b;
     }
     patch guess = patch_from_corners(corner[0], corner[1], corner[2], corner[3]);
-    const double anywhere[2] = {-INFINITY, INFINITY};
+    const double anywhere[2] = {-HUGE_VAL, HUGE_VAL};
     double t, uv[2];
     if (patch_intersect(&guess, s->o, s->d, anywhere, &t, uv))
         search_ribbon(s, ends[0] + uv[0] * (ends[1] - ends[0]),

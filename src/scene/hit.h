@@ -14,7 +14,7 @@ typedef struct ray {
     vec3 origin;
     vec3 direction; /**< unit */
     float t_max;
-    float time; /**< of the shutter: 0 when it opens, 1 when it closes */
+    float time;                  /**< of the shutter: 0 when it opens, 1 when it closes */
     const struct medium *medium; /**< that it travels in; NULL: none (medium.h) */
 } ray;
 

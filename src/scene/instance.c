@@ -34,11 +34,31 @@ void instance_place_hit(const transform *to_world, surface_hit *hit)
     hit->dpdv = transform_vector(to_world, hit->dpdv);
 }
 
-float instance_area_factor(const transform *to_world, vec3 n)
+void instance_move_hit(const transform *by, surface_hit *hit)
+{
+    hit->p = transform_point(by, hit->p);
+    hit->n_geom = normalize3(transform_normal(by, hit->n_geom));
+    hit->n = face_forward(normalize3(transform_normal(by, hit->n)), hit->n_geom);
+    hit->dpdu = transform_vector(by, hit->dpdu);
+    hit->dpdv = transform_vector(by, hit->dpdv);
+}
+
+static double determinant(const transform *to_world)
 {
     const double(*m)[4] = to_world->m;
-    double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-    return (float)fabs(determinant) * length3(transform_normal(to_world, n));
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+double instance_area_factor(const transform *to_world, vec3 n)
+{
+    transform to_object = transform_inverse(to_world);
+    return fabs(determinant(to_world)) / (double)length3(transform_normal(&to_object, n));
+}
+
+double instance_mean_area_factor(const transform *to_world)
+{
+    double side = cbrt(fabs(determinant(to_world)));
+    return side * side;
 }

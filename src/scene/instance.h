@@ -19,6 +19,10 @@ typedef struct instance {
 ray instance_ray(const transform *to_world, const ray *r);
 /** @brief Takes a hit that was filled in the object's space to the world. */
 void instance_place_hit(const transform *to_world, surface_hit *hit);
-/** @brief The area in the world of a small piece of surface of the object with area 1 and
- * normal n: |det M| |M⁻ᵀ n|. */
-float instance_area_factor(const transform *to_world, vec3 n);
+/** @brief Moves a placed hit on by a motion of the world. */
+void instance_move_hit(const transform *by, surface_hit *hit);
+/** @brief The area in the world of a small piece of the object's surface that has area 1
+ * there, by its unit normal n in the world: |det M| / |Mᵀ n|. */
+double instance_area_factor(const transform *to_world, vec3 n);
+/** @brief About how many times an area of the object is in the world, |det M|^(2/3). */
+double instance_mean_area_factor(const transform *to_world);

@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "scene/scene_film.h"
+#include "scene/scene_geometry.h"
 
 #include <string.h>
 
@@ -47,6 +48,7 @@ scene *scene_new(const log_sink *log)
     s->shapes = g_ptr_array_new_with_free_func(free_shape);
     s->materials = g_ptr_array_new_with_free_func(free_material);
     s->lights = g_ptr_array_new_with_free_func(free_light);
+    scene_open_objects(s);
     s->float_textures = texture_table();
     s->spectrum_textures = texture_table();
     s->material_names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
@@ -66,6 +68,7 @@ void scene_free(scene *s)
     g_ptr_array_unref(s->lights);
     g_ptr_array_unref(s->shapes);
     g_ptr_array_unref(s->materials);
+    scene_close_objects(s);
     g_hash_table_unref(s->material_names);
     g_hash_table_unref(s->files);
     g_hash_table_unref(s->float_textures);
@@ -78,7 +81,7 @@ void scene_free(scene *s)
     distribution_clear(&s->caustic_power);
     g_free(s->environments);
     g_strfreev(s->light_groups);
-    g_free(s->caustic_shapes);
+    g_free(s->casters);
     g_free(s);
 }
 
@@ -181,6 +184,13 @@ static bool take_shape(scene *s, shape *made, const shape_place *at, GError **er
         shape_free(made);
         return false;
     }
+    made->object = s->open_object;
+    if (at->area_light && s->open_object != NO_INDEX) {
+        error_at(error, at->area_light->place,
+                 "a shape that moves or is part of an object can not shine, in pbrt too");
+        shape_free(made);
+        return false;
+    }
     if (at->area_light) {
         light *l = light_new(s, "diffuse", at->area_light, &at->to_world, made, error);
         if (!l) {
@@ -247,28 +257,13 @@ bool scene_set_camera(scene *s, const char *kind, const params *p,
     return s->has_camera;
 }
 
-/* ---- Committing ---- */
-
-static bool find_bounds(scene *s, GError **error)
+void scene_move_camera(scene *s, const motion *to_world)
 {
-    s->bounds = box3_empty();
-    for (guint i = 0; i < s->shapes->len; i++) {
-        const shape *on = s->shapes->pdata[i];
-        s->bounds = box3_union(s->bounds, on->kind->bounds(on->self));
-    }
-    bool is_empty = box3_is_empty(s->bounds);
-    s->center = is_empty ? vec3_make(0.0f, 0.0f, 0.0f) : box3_center(s->bounds);
-    /* A little larger, so that what lies on the box is inside whatever the rounding. */
-    float far =
-        is_empty ? 0.0f : max_component3(max3(abs3(s->bounds.low), abs3(s->bounds.high)));
-    s->radius = 1.0001f * box3_radius(s->bounds) + 1e-6f * far;
-    if (!(s->radius > 0.0f))
-        s->radius = 1.0f;
-    if (isfinite(s->radius) && finite3(s->center) && s->radius < 1e18f)
-        return true;
-    error_set(error, ERROR_INPUT, "the scene is too large: its coordinates overflow");
-    return false;
+    s->camera.path = *to_world;
+    s->camera.to_world = motion_at(to_world, (double)s->camera.shutter_open);
 }
+
+/* ---- Committing ---- */
 
 static bool find_lights(scene *s, GError **error)
 {
@@ -369,31 +364,6 @@ static void find_interiors(scene *s)
     }
 }
 
-static bool find_caustic_shapes(scene *s, GError **error)
-{
-    guint n = s->shapes->len;
-    box3 box = box3_empty();
-    s->caustic_shapes = g_new0(int, MAX(n, 1));
-    float *area = big_alloc(n, sizeof(float), "shapes", error);
-    if (!area)
-        return false;
-    for (guint i = 0; i < n; i++) {
-        const shape *on = s->shapes->pdata[i];
-        if (on->material == NO_INDEX || !(on->area > 0.0f) ||
-            !material_casts_caustics(s->materials->pdata[on->material]))
-            continue;
-        area[s->n_caustic_shapes] = on->area;
-        s->caustic_shapes[s->n_caustic_shapes++] = (int)i;
-        box = box3_union(box, on->kind->bounds(on->self));
-    }
-    s->caustic_center = box3_is_empty(box) ? s->center : box3_center(box);
-    s->caustic_radius = 1.001f * box3_radius(box);
-    bool done =
-        distribution_init(&s->caustic_area, area, (size_t)s->n_caustic_shapes, error);
-    big_free(area);
-    return done && find_caustic_power(s, error);
-}
-
 /* A commit that failed leaves the scene as it was before. */
 static void forget_commit(scene *s)
 {
@@ -405,8 +375,8 @@ static void forget_commit(scene *s)
     distribution_clear(&s->caustic_power);
     g_clear_pointer(&s->environments, g_free);
     g_clear_pointer(&s->light_groups, g_strfreev);
-    g_clear_pointer(&s->caustic_shapes, g_free);
-    s->n_environments = s->n_caustic_shapes = 0;
+    g_clear_pointer(&s->casters, g_free);
+    s->n_environments = s->n_casters = 0;
 }
 
 /* By two rays half a pixel apart: with several samples a pixel each has to see no more.
@@ -431,12 +401,9 @@ bool scene_commit(scene *s, unsigned threads, GError **error)
     }
     if (!s->filter.name && !filter_init_default(&s->filter, error))
         return false;
-    s->committed =
-        find_bounds(s, error) && find_lights(s, error) && find_caustic_shapes(s, error);
-    if (s->committed)
-        s->accel =
-            accel_build((shape *const *)s->shapes->pdata, s->shapes->len, threads, error);
-    s->committed = s->accel != NULL;
+    s->committed = scene_find_bounds(s, error) && find_lights(s, error) &&
+                   scene_find_casters(s, error) && find_caustic_power(s, error) &&
+                   scene_build_accel(s, threads, error);
     if (s->committed) {
         find_light_groups(s);
         find_pixel_width(s);

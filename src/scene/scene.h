@@ -15,6 +15,7 @@
 #include "scene/accel.h"
 #include "scene/camera.h"
 #include "scene/filter.h"
+#include "scene/instance.h"
 #include "scene/light.h"
 #include "scene/listener.h"
 #include "scene/material.h"
@@ -34,6 +35,18 @@ typedef struct film_settings {
     const color_space *space;
 } film_settings;
 
+/** @brief Shapes that instances put into the world; they lie in scene->shapes. */
+typedef struct scene_object {
+    char *name; /**< NULL: of one shape that moves */
+    source_place place;
+} scene_object;
+
+/** @brief A surface that casts caustics. */
+typedef struct caustic_caster {
+    int shape;
+    int instance; /**< or NO_INDEX */
+} caustic_caster;
+
 typedef struct scene {
     GPtrArray *shapes;                              /**< shape* */
     GPtrArray *materials;                           /**< material* */
@@ -41,6 +54,9 @@ typedef struct scene {
     GHashTable *float_textures, *spectrum_textures; /**< name -> texture* */
     GHashTable *material_names;                     /**< name -> index + 1 */
     GHashTable *files; /**< path -> GBytes*: images that came within another file */
+    GArray *objects;   /**< scene_object */
+    GArray *instances; /**< instance */
+    int open_object;   /**< that shapes are added to now, or NO_INDEX: the world */
     camera camera;
     bool has_camera;
     film_settings film;
@@ -63,9 +79,10 @@ typedef struct scene {
     int n_light_groups;     /**< 0: no light names one */
     int *environments;      /**< indices of lights that are environments */
     int n_environments;
-    int *caustic_shapes; /**< indices of shapes whose material casts caustics */
-    int n_caustic_shapes;
-    distribution caustic_area;  /**< over caustic_shapes, by area */
+    bool moves; /**< some instance does while the shutter is open */
+    caustic_caster *casters;
+    int n_casters;
+    distribution caustic_area;  /**< over casters, by area */
     vec3 caustic_center;        /**< of a sphere around them */
     float caustic_radius;       /**< of that sphere; 0 if there are none */
     distribution caustic_power; /**< over lights, by the power that may meet that sphere:
@@ -97,11 +114,22 @@ bool scene_add_shape(scene *s, const char *kind, const params *p, const shape_pl
 /** @brief A shape from a mesh in object space, whose arrays are taken. */
 bool scene_add_mesh(scene *s, mesh *m, const shape_place *at, source_place place,
                     GError **error);
+/** @brief Shapes added from here to scene_object_end are part of a new object, in whose
+ * space at->to_world puts them. @param name may be NULL @return its index, or NO_INDEX */
+int scene_object_begin(scene *s, const char *name, source_place place, GError **error);
+void scene_object_end(scene *s);
+/** @brief Index of a named object, or NO_INDEX. */
+int scene_find_object(const scene *s, const char *name);
+/** @brief Puts an object into the world once more. Times of the motion in seconds. */
+bool scene_add_instance(scene *s, int object, const motion *to_world, source_place place,
+                        GError **error);
 bool scene_set_film(scene *s, const char *kind, const params *p, GError **error);
 bool scene_set_filter(scene *s, const char *kind, const params *p, GError **error);
 /** @brief The film must be set before (readers keep the directive until then). */
 bool scene_set_camera(scene *s, const char *kind, const params *p,
                       const transform *to_world, GError **error);
+/** @brief Lets the camera that was set move; times in seconds. */
+void scene_move_camera(scene *s, const motion *to_world);
 /** @brief Ends building. Checks what only the whole can tell: a camera, a light.
  *  @param threads for the acceleration structure; 0 = all */
 bool scene_commit(scene *s, unsigned threads, GError **error);
@@ -151,6 +179,44 @@ bool scene_see(const scene *s, const ray *r, surface_hit *hit);
 static inline bool scene_occluded(const scene *s, const ray *r)
 {
     return accel_occluded(s->accel, r);
+}
+
+/** @brief A point on the surfaces that cast caustics, uniform by area but for instances
+ * that are stretched. */
+vec3 scene_caustic_target(const scene *s, float u_shape, vec2 u, float time);
+/** @brief Its density, m⁻², at a hit that casts caustics. */
+double scene_caustic_density(const scene *s, const surface_hit *hit);
+
+/** @brief True if the hit is on something that moves while the shutter is open. */
+static inline bool scene_hit_moves(const scene *s, const surface_hit *hit)
+{
+    return hit->instance != NO_INDEX && accel_instance_moves(s->accel, hit->instance);
+}
+
+/** @brief How what a hit is on moves from the hit's time to another one: identity for
+ * what stands still. */
+transform scene_motion_to(const scene *s, const surface_hit *hit, float time);
+/** @brief How many times an area around the hit becomes by that. */
+double scene_area_change(const scene *s, const surface_hit *hit, float time);
+
+/** @brief Slices of the shutter's time in which photons are kept apart: where nothing
+ * moves, one. */
+static inline int scene_time_slices(const scene *s, const settings *how)
+{
+    return s->moves ? (int)how->time_slices : 1;
+}
+
+/** @brief The slice that a time is in. */
+static inline int time_slice(float time, int n_slices)
+{
+    int slice = (int)(time * (float)n_slices);
+    return slice < n_slices ? slice : n_slices - 1;
+}
+
+/** @brief The middle of a slice: when what moves is where its photons are kept. */
+static inline float time_of_slice(int slice, int n_slices)
+{
+    return ((float)slice + 0.5f) / (float)n_slices;
 }
 
 static inline const light *scene_light(const scene *s, int i)

@@ -124,6 +124,11 @@ static const setting_row table[] = {
     {"edges", SETTING_BOOL, AT(edges), "", 0, 1, 1, NULL, "", "photonmap auto vcm",
      "Probes the surroundings of an estimate, so that edges and corners are not dark and "
      "no light leaks through thin walls."},
+    {"time_slices", SETTING_COUNT, AT(time_slices), "", 1, MOST_TIME_SLICES, 8, NULL, "",
+     "photonmap auto vcm",
+     "In so many parts the time of the shutter is cut where something moves: what is "
+     "seen "
+     "in one is lit by the photons of that one."},
     {"roulette", SETTING_CHOICE, AT(roulette), "", 0, 1, ROULETTE_MEAN, roulette_words,
      "", "photonmap",
      "What of a photon's flux decides its survival: the mean or the largest over "

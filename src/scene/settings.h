@@ -36,6 +36,8 @@ typedef enum integrator_choice {
 typedef enum vcm_choice { VCM_ALL, VCM_BPT, VCM_BPM, VCM_PPM, VCM_LIGHT } vcm_choice;
 
 /** @brief Every knob. Arrays are indexed by photon class. A plain value: copy it. */
+enum { MOST_TIME_SLICES = 64 };
+
 typedef struct settings {
     int integrator; /**< integrator_choice */
     int64_t passes; /**< 0: see settings_most_passes */
@@ -57,7 +59,8 @@ typedef struct settings {
     int photon_map; /**< map_choice */
     double flatten; /**< height of the neighbourhood over its radius, 0..1; 1: a ball */
     bool edges;     /**< estimates are corrected at edges, corners and thin walls */
-    int roulette;   /**< roulette_choice */
+    int64_t time_slices;  /**< of the shutter, where something moves */
+    int roulette;         /**< roulette_choice */
     int caustic_emission; /**< emission_choice */
     bool multiple_samples;
     int vcm_strategies; /**< vcm_choice */

@@ -15,7 +15,7 @@ typedef struct sphere_layout {
 
 /* ---- Equal-area ---- */
 
-static vec3 square_to_sphere(vec2 st)
+vec3 equal_area_to_sphere(vec2 st)
 {
     float x = 2.0f * st.x - 1.0f, y = 2.0f * st.y - 1.0f;
     float ax = fabsf(x), ay = fabsf(y), inside = 1.0f - (ax + ay);
@@ -27,7 +27,7 @@ static vec3 square_to_sphere(vec2 st)
                      z);
 }
 
-static vec2 sphere_to_square(vec3 d)
+vec2 equal_area_to_square(vec3 d)
 {
     float ax = fabsf(d[0]), ay = fabsf(d[1]);
     /* 1 - |z|, by way of the other two where that would lose digits. */
@@ -49,8 +49,9 @@ static float square_stretch(float t0, float t1)
     return 4.0f * PI_F;
 }
 
-static const sphere_layout equal_area = {"equal-area", WRAP_OCTAHEDRAL, sphere_to_square,
-                                         square_to_sphere, square_stretch};
+static const sphere_layout equal_area = {"equal-area", WRAP_OCTAHEDRAL,
+                                         equal_area_to_square, equal_area_to_sphere,
+                                         square_stretch};
 
 /* ---- Latitude-longitude ---- */
 

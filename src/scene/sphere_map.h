@@ -15,6 +15,10 @@
 #include "math/distribution2.h"
 #include "scene/picture.h"
 
+/** @brief The equal-area map alone: from the unit square to unit directions and back. */
+vec3 equal_area_to_sphere(vec2 st);
+vec2 equal_area_to_square(vec3 d);
+
 struct sphere_layout;
 
 typedef struct sphere_map {

@@ -35,9 +35,9 @@ static spectrum irradiance_at(const photonmap_pass *pass, vec3 p, vec3 n,
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         estimate_options options = pass->estimates[c];
         options.scene = pass->how->edges ? pass->scene : NULL;
-        if (!pass->maps[c])
+        if (!pass->maps[0][c])
             continue;
-        sum += photon_irradiance(pass->maps[c], p, n, &options, scratch, NULL);
+        sum += photon_irradiance(pass->maps[0][c], p, n, &options, scratch, NULL);
         for (size_t i = 0; i < scratch->n_groups; i++)
             groups[i] += scratch->groups[i];
     }

@@ -38,7 +38,7 @@ static bool class_needed(const transport_plan *plan, photon_class c)
     case PHOTON_DIRECT:
         return needs_direct_map(&plan->how);
     case PHOTON_CAUSTIC:
-        return plan->scene->n_caustic_shapes > 0;
+        return plan->scene->n_casters > 0;
     default:
         return plan->how.max_forward_bounces != 0;
     }
@@ -82,53 +82,74 @@ static bool has_delta_lights(const scene *s)
     return false;
 }
 
-static trace_task trace_task_for(const photonmap_pass *pass, uint32_t index,
-                                 photon_class c, const cancel_flag *cancel)
+/* What one slice of a pass does for one class. */
+typedef struct slice_task {
+    photonmap_pass *pass;
+    uint32_t index; /* of the pass */
+    int slice;
+    photon_class c;
+} slice_task;
+
+static trace_task trace_task_for(const slice_task *s, const cancel_flag *cancel)
 {
+    const photonmap_pass *pass = s->pass;
+    uint64_t each = pass->plan->n_photons[s->c] / (uint64_t)pass->n_slices;
+    each = MAX(each, 1);
     return (trace_task){
         .scene = pass->scene,
         .how = pass->how,
         .w = pass->w,
-        .pass = index,
-        .photon_class = c,
+        .pass = s->index,
+        .photon_class = s->c,
         .guide = pass->plan->guide,
         .share = pass->plan->shares ? &pass->share : NULL,
-        .n_photons = pass->plan->n_photons[c],
+        .n_photons = each,
+        .first = each * (uint64_t)s->slice,
+        .slice = s->slice,
+        .n_slices = pass->n_slices,
         .cancel = cancel,
     };
 }
 
-static bool trace_class(photonmap_pass *pass, uint32_t index, photon_class c,
-                        const cancel_flag *cancel, trace_result *result,
-                        transport_counts *counts, GError **error)
+/* Irradiance is kept for a scene that stands still: what moves is gathered anew. */
+static bool keeps_irradiance(const photonmap_pass *pass)
+{
+    return pass->how->final_gather && pass->how->precompute_radiance &&
+           pass->n_slices == 1;
+}
+
+static bool trace_class(const slice_task *s, const cancel_flag *cancel,
+                        trace_result *result, transport_counts *counts, GError **error)
 {
     double start = seconds();
-    trace_task task = trace_task_for(pass, index, c, cancel);
-    bool want_normals = pass->how->final_gather && pass->how->precompute_radiance;
+    trace_task task = trace_task_for(s, cancel);
+    bool want_normals = keeps_irradiance(s->pass);
     if (!photon_trace(&task, want_normals, result, error))
         return false;
     counts->time_trace += seconds() - start;
     counts->photon_rays += result->n_rays;
     counts->n_not_finite += result->n_not_finite;
-    counts->emitted[c] += task.n_photons;
-    counts->stored[c] += result->photons.n;
+    counts->emitted[s->c] += task.n_photons;
+    counts->stored[s->c] += result->photons.n;
     return true;
 }
 
-static bool build_class(photonmap_pass *pass, photon_class c, trace_result *result,
+static bool build_class(const slice_task *s, trace_result *result,
                         transport_counts *counts, GError **error)
 {
     double start = seconds();
-    float radius = pass->estimates[c].radius;
+    photonmap_pass *pass = s->pass;
+    photon_map **map = &pass->maps[s->slice][s->c];
+    float radius = pass->estimates[s->c].radius;
     photon_store store = result->photons;
     result->photons = (photon_store){0};
-    pass->maps[c] = photon_map_build((map_choice)pass->how->photon_map, &store,
-                                     isfinite(radius) ? radius : 0.0f,
-                                     (unsigned)pass->how->threads, error);
+    *map = photon_map_build((map_choice)pass->how->photon_map, &store,
+                            isfinite(radius) ? radius : 0.0f,
+                            (unsigned)pass->how->threads, error);
     counts->time_build += seconds() - start;
-    if (!pass->maps[c])
+    if (!*map)
         return false;
-    counts->memory_photons += photon_map_bytes(pass->maps[c]);
+    counts->memory_photons += photon_map_bytes(*map);
     return true;
 }
 
@@ -171,23 +192,30 @@ static bool set_points_apart(trace_result *from, trace_result *points, GError **
     return true;
 }
 
+static bool make_slice(const slice_task *s, const cancel_flag *cancel,
+                       trace_result *points, transport_counts *counts, GError **error)
+{
+    trace_result result = {0};
+    bool ok = trace_class(s, cancel, &result, counts, error);
+    if (ok && keeps_irradiance(s->pass) && s->c != PHOTON_CAUSTIC)
+        ok = set_points_apart(&result, points, error);
+    ok = ok && build_class(s, &result, counts, error);
+    trace_result_clear(&result);
+    return ok;
+}
+
 static bool make_maps(photonmap_pass *pass, uint32_t index, const cancel_flag *cancel,
                       transport_counts *counts, GError **error)
 {
-    bool precompute = pass->how->final_gather && pass->how->precompute_radiance;
     trace_result points[N_PHOTON_CLASSES] = {0};
     bool ok = true;
-    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
-        trace_result result = {0};
-        if (pass->plan->n_photons[c] == 0)
-            continue;
-        ok = trace_class(pass, index, (photon_class)c, cancel, &result, counts, error);
-        if (ok && precompute && c != PHOTON_CAUSTIC)
-            ok = set_points_apart(&result, &points[c], error);
-        ok = ok && build_class(pass, (photon_class)c, &result, counts, error);
-        trace_result_clear(&result);
+    for (int i = 0; i < pass->n_slices * N_PHOTON_CLASSES && ok; i++) {
+        const slice_task s = {pass, index, i / N_PHOTON_CLASSES,
+                              (photon_class)(i % N_PHOTON_CLASSES)};
+        if (pass->plan->n_photons[s.c] > 0)
+            ok = make_slice(&s, cancel, &points[s.c], counts, error);
     }
-    if (ok && precompute)
+    if (ok && keeps_irradiance(pass))
         ok = build_irradiance(pass, points, counts, error);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         trace_result_clear(&points[c]);
@@ -197,8 +225,8 @@ static bool make_maps(photonmap_pass *pass, uint32_t index, const cancel_flag *c
 static void end_pass(void *data)
 {
     photonmap_pass *pass = data;
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        photon_map_free(pass->maps[c]);
+    for (int i = 0; i < pass->n_slices * N_PHOTON_CLASSES; i++)
+        photon_map_free(pass->maps[i / N_PHOTON_CLASSES][i % N_PHOTON_CLASSES]);
     photon_map_free(pass->irradiance);
     big_free(pass->irradiance_groups);
     g_aligned_free(pass);
@@ -221,6 +249,7 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
     pass->w = wavelengths_for_pass((uint64_t)plan->how.seed, index);
     pass->options.deterministic = !plan->how.multiple_samples;
     pass->has_delta_lights = has_delta_lights(plan->scene);
+    pass->n_slices = scene_time_slices(plan->scene, &plan->how);
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         double radius = photonmap_radius(plan->radius[c], plan->how.alpha, index);
         pass->estimates[c] =
@@ -263,11 +292,40 @@ static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
                 LARGEST_OVER_TYPICAL * typical);
 }
 
+/* Turns a bsdf with the surface that it is of. */
+static void turn_bsdf(const transform *by, vec3 n_geom, bsdf *b)
+{
+    vec3 n = face_forward(normalize3(transform_normal(by, b->shading.n)), n_geom);
+    if (dot3(b->shading.n, b->n_geom) < 0.0f)
+        n = -n;
+    b->shading = frame_from_tangent(n, transform_vector(by, b->shading.s));
+    b->n_geom = n_geom;
+}
+
+/* What the map of a slice says: of what moves, where its photons are kept. */
+static spectrum gather_at(const photonmap_pass *pass, const photon_map *map,
+                          const shading_point *at, const estimate_options *options,
+                          transport_scratch *scratch)
+{
+    if (!scene_hit_moves(pass->scene, at->hit))
+        return photon_estimate(map, at->hit->p, at->bsdf, at->wo, options,
+                               &scratch->estimate, NULL);
+    transform by = scene_motion_to(pass->scene, at->hit, options->time);
+    surface_hit hit = *at->hit;
+    bsdf turned = *at->bsdf;
+    instance_move_hit(&by, &hit);
+    turn_bsdf(&by, hit.n_geom, &turned);
+    vec3 wo = normalize3(transform_vector(&by, at->wo));
+    return photon_estimate(map, hit.p, &turned, wo, options, &scratch->estimate, NULL);
+}
+
 spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
                           const shading_point *at, unsigned delta_lobes,
                           transport_scratch *scratch)
 {
-    if (!pass->maps[c]) {
+    int slice = time_slice(at->hit->time, pass->n_slices);
+    const photon_map *map = pass->maps[slice][c];
+    if (!map) {
         for (size_t i = 0; i < scratch->estimate.n_groups; i++)
             scratch->estimate.groups[i] = (spectrum){0};
         return (spectrum){0};
@@ -275,11 +333,11 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
     estimate_options options = pass->estimates[c];
     options.radius = local_radius(pass, c, at->hit->p, &scratch->estimate.hits);
     options.scene = pass->how->edges && !at->blurred ? pass->scene : NULL;
+    options.time = pass->n_slices > 1 ? time_of_slice(slice, pass->n_slices) : 0.0f;
     options.delta_lobes = delta_lobes ? delta_lobes | LOBE_ANY_SIDE : 0;
     bool timed = scratch->n_gathers++ % TIMED_SHARE == 0;
     double start = timed ? seconds() : 0.0;
-    spectrum radiance = photon_estimate(pass->maps[c], at->hit->p, at->bsdf, at->wo,
-                                        &options, &scratch->estimate, NULL);
+    spectrum radiance = gather_at(pass, map, at, &options, scratch);
     if (timed)
         scratch->time_gather += TIMED_SHARE * (seconds() - start);
     return radiance;

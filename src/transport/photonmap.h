@@ -18,7 +18,9 @@ typedef struct photonmap_pass {
     const settings *how;
     wavelengths w;
     bsdf_options options;
-    photon_map *maps[N_PHOTON_CLASSES]; /**< NULL: the class is not needed */
+    int n_slices; /**< of the shutter's time; 1 where nothing moves */
+    photon_map *maps[MOST_TIME_SLICES][N_PHOTON_CLASSES]; /**< NULL: the class is not
+                                                             needed */
     photon_map
         *irradiance; /**< for final gathering: "photons" whose wi is a surface normal and
                           whose flux is the irradiance there; NULL if not asked for */

@@ -160,7 +160,8 @@ static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
         return false;
     double passes = (double)settings_planned_passes(&plan->how);
     double wanted = fmax(photons_wanted[c] / passes, photons_wanted_least[c]);
-    double density = (double)plan->n_photons[c] / (double)n_emitted;
+    int n_slices = scene_time_slices(plan->scene, &plan->how);
+    double density = (double)plan->n_photons[c] / n_slices / (double)n_emitted;
     double largest = 0.1 * (double)plan->scene->radius;
     const radius_rule rule = {
         .scale = sqrt(wanted / PILOT_NEAREST / density),

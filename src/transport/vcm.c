@@ -42,6 +42,13 @@ static bool choose_radius(transport_plan *plan, const cancel_flag *cancel, GErro
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
     plan->n_photons[PHOTON_INDIRECT] = (uint64_t)MAX(plan->how.photons, 1);
+    if (plan->how.vcm_strategies == VCM_LIGHT && !camera_connects(&plan->scene->camera)) {
+        error_set(error, ERROR_INPUT,
+                  "light can not be traced to camera \"%s\": expected other "
+                  "vcm_strategies than light",
+                  camera_kind_name(&plan->scene->camera));
+        return false;
+    }
     return !vcm_strategies_of(plan->how.vcm_strategies).merge ||
            choose_radius(plan, cancel, error);
 }
@@ -64,6 +71,11 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
     for (size_t i = 0; i < paths->n_vertices; i++) {
         const light_vertex *v = &paths->vertices[i];
         photon p = {.p = v->hit.p, .wi = v->wi, .flux = vcm_payload(i)};
+        if (scene_hit_moves(pass->scene, &v->hit)) {
+            transform by = vcm_motion_to_map(pass, &v->hit);
+            p.p = transform_point(&by, p.p);
+            p.wi = normalize3(transform_vector(&by, p.wi));
+        }
         photon_store_put(&store, &p);
     }
     pass->map = photon_map_build((map_choice)how->photon_map, &store, pass->radius,
@@ -114,11 +126,13 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
         .light.n = plan->n_photons[PHOTON_INDIRECT],
     };
     double radius = photonmap_radius(plan->radius[PHOTON_INDIRECT], how->alpha, index);
-    double discs = G_PI * radius * radius * n;
+    pass->n_slices = scene_time_slices(plan->scene, how);
+    double discs = G_PI * radius * radius * n / pass->n_slices;
     pass->radius = (float)radius;
     for (guint i = 0; i < plan->scene->shapes->len; i++)
         pass->camera_hides |=
             ((const shape *)plan->scene->shapes->pdata[i])->camera_hidden;
+    pass->strategies.splat &= camera_connects(&plan->scene->camera);
     if (pass->strategies.merge)
         pass->ratios.merge = (float)discs;
     if (pass->strategies.connect && pass->strategies.merge)

@@ -19,7 +19,15 @@
  * see what stands in a mirror; the others are complete. Where several strategies find a
  * path they share it by the balance heuristic, so that their weights sum to one.
  *
+ * To an orthographic camera light vertices are not connected; the other strategies then
+ * share its paths.
+ *
  * How the weights are known without looking back along a path: vcm_weights.h.
+ *
+ * Where something moves all vertices of a path must be of one time: light subpath i has
+ * the i-th N-th part of the shutter's time, and a camera path connects to the one of its
+ * own time. Merging, which joins two times, does so within a slice of time; vertices on
+ * what moves are in the map where that is in the middle of the slice.
  *
  * A path that glass dispersed keeps one lane of the spectrum; if both subpaths did, they
  * meet only in the lane they share, by the zeros of the others. Densities for weights are
@@ -77,11 +85,19 @@ typedef struct vcm_pass {
     vcm_strategies strategies;
     strategy_ratios ratios;
     float radius;           /**< of merging, m */
+    int n_slices;           /**< of the shutter's time, that merge apart */
     bool camera_hides;      /**< some shape is not seen by the camera */
     float camera_per_light; /**< camera samples of a pixel over light subpaths, spp / N */
     light_paths light;
     photon_map *map; /**< flux of a photon in it: see vcm_payload; NULL: no merging */
 } vcm_pass;
+
+/** @brief Where a vertex on what moves lies in the map; others where they are. */
+static inline transform vcm_motion_to_map(const vcm_pass *pass, const surface_hit *hit)
+{
+    int slice = time_slice(hit->time, pass->n_slices);
+    return scene_motion_to(pass->scene, hit, time_of_slice(slice, pass->n_slices));
+}
 
 /** @brief The strategies of a vcm_choice. */
 vcm_strategies vcm_strategies_of(int choice);

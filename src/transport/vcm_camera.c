@@ -221,15 +221,14 @@ static void connect(camera_walk *c, const vcm_vertex *v)
 /* ---- Merging ---- */
 
 static float merge_weight(const camera_walk *c, const vcm_vertex *v,
-                          const light_vertex *l)
+                          const light_vertex *l, vec3 wi)
 {
     if (c->pass->strategies.end_here)
         return 1.0f;
-    float lamp_side = weights_merged(&l->weights, vcm_pdf(v, l->wi, TRANSPORT_RADIANCE),
-                                     &c->pass->ratios);
-    float eye_side =
-        weights_merged(&c->walk.weights, vcm_pdf_reverse(v, l->wi, TRANSPORT_RADIANCE),
-                       &c->pass->ratios);
+    float lamp_side =
+        weights_merged(&l->weights, vcm_pdf(v, wi, TRANSPORT_RADIANCE), &c->pass->ratios);
+    float eye_side = weights_merged(
+        &c->walk.weights, vcm_pdf_reverse(v, wi, TRANSPORT_RADIANCE), &c->pass->ratios);
     return 1.0f / (lamp_side + 1.0f + eye_side);
 }
 
@@ -238,44 +237,53 @@ static float merge_weight(const camera_walk *c, const vcm_vertex *v,
 static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *l,
                        float kernel_over_area)
 {
-    float cosine = fabsf(dot3(l->wi, v->hit->n_geom));
+    int n_slices = c->pass->n_slices;
+    vec3 wi = l->wi;
+    if (scene_hit_moves(c->pass->scene, &l->hit)) {
+        transform by = scene_motion_to(c->pass->scene, &l->hit, v->hit->time);
+        wi = normalize3(transform_vector(&by, wi));
+    }
+    float cosine = fabsf(dot3(wi, v->hit->n_geom));
     if (!(cosine > 0.0f) ||
+        time_slice(l->hit.time, n_slices) != time_slice(v->hit->time, n_slices) ||
         !vcm_length_allowed(c->pass, c->walk.counts.n + l->before.n + 1))
         return;
-    lobe_pair f = vcm_scatter(v, l->wi, TRANSPORT_RADIANCE);
+    lobe_pair f = vcm_scatter(v, wi, TRANSPORT_RADIANCE);
     if (lobe_pair_is_black(&f))
         return;
-    float density = kernel_over_area / ((float)c->pass->light.n * cosine);
+    float density =
+        kernel_over_area * (float)n_slices / ((float)c->pass->light.n * cosine);
     add_scattered(c, &f, (arrival){l->before, l->light},
-                  l->flux * (merge_weight(c, v, l) * density));
+                  l->flux * (merge_weight(c, v, l, wi) * density));
 }
 
-/* The light vertices around v. @return false: none, or memory is refused. */
-static bool find_vertices(camera_walk *c, const vcm_vertex *v,
+/* The light vertices around a place. @return false: none, or memory is refused. */
+static bool find_vertices(camera_walk *c, const surface_hit *at,
                           const photon_filter *filter)
 {
     photon_hits *hits = &c->scratch->estimate.hits;
-    bool done = photon_map_within(c->pass->map, v->hit->p, c->pass->radius, filter, hits);
+    bool done = photon_map_within(c->pass->map, at->p, c->pass->radius, filter, hits);
     c->scratch->estimate.failed |= !done;
     return done && hits->n > 0;
 }
 
 /* Where the camera looks, only the part of the disc counts that is surface in sight.
    @return its share; the hits are then those of that part. */
-static float keep_surface(camera_walk *c, const vcm_vertex *v, photon_filter *filter,
+static float keep_surface(camera_walk *c, const surface_hit *at, photon_filter *filter,
                           const kernel *kappa)
 {
     photon_hits *hits = &c->scratch->estimate.hits;
     neighbourhood hood = {.scene = c->pass->scene,
-                          .p = v->hit->p,
+                          .p = at->p,
                           .n = filter->n,
-                          .radius = c->pass->radius};
+                          .radius = c->pass->radius,
+                          .time = at->time};
     if (!c->pass->plan->how.edges || c->walk.counts.n_diffuse > 0 ||
         neighbourhood_is_whole(&hood))
         return 1.0f;
     float share = neighbourhood_coverage(&hood, kappa);
     filter->flatten = NEIGHBOURHOOD_FLATTEN;
-    if (!find_vertices(c, v, filter))
+    if (!find_vertices(c, at, filter))
         return 1.0f;
     size_t kept = 0;
     for (size_t i = 0; i < hits->n; i++) {
@@ -289,6 +297,20 @@ static float keep_surface(camera_walk *c, const vcm_vertex *v, photon_filter *fi
     return share;
 }
 
+/* A hit, and its wo, where the map has it. */
+static surface_hit place_in_map(const vcm_pass *pass, const surface_hit *hit, vec3 *wo)
+{
+    surface_hit at = *hit;
+    if (pass->n_slices > 1)
+        at.time = time_of_slice(time_slice(hit->time, pass->n_slices), pass->n_slices);
+    if (scene_hit_moves(pass->scene, hit)) {
+        transform by = vcm_motion_to_map(pass, hit);
+        instance_move_hit(&by, &at);
+        *wo = transform_vector(&by, *wo);
+    }
+    return at;
+}
+
 static void merge(camera_walk *c, const vcm_vertex *v)
 {
     const vcm_pass *pass = c->pass;
@@ -296,16 +318,18 @@ static void merge(camera_walk *c, const vcm_vertex *v)
     const photon_hits *hits = &c->scratch->estimate.hits;
     const kernel kappa = {(kernel_choice)how->class_kernel[PHOTON_INDIRECT],
                           (float)how->class_cone_k[PHOTON_INDIRECT]};
+    vec3 wo = v->wo;
+    const surface_hit at = place_in_map(pass, v->hit, &wo);
     photon_filter filter = {
-        .n = face_forward(v->hit->n_geom, v->wo),
+        .n = face_forward(at.n_geom, wo),
         .one_sided = !(v->bsdf.lobes & LOBE_TRANSMISSION),
         .flatten = (float)how->flatten,
     };
     float r2 = square(pass->radius);
     c->scratch->n_gathers++;
-    if (!find_vertices(c, v, &filter))
+    if (!find_vertices(c, &at, &filter))
         return;
-    float area = kernel_area(&kappa, r2) * keep_surface(c, v, &filter, &kappa);
+    float area = kernel_area(&kappa, r2) * keep_surface(c, &at, &filter, &kappa);
     const photon_store *store = photon_map_store(pass->map);
     for (size_t i = 0; i < hits->n; i++) {
         size_t vertex = vcm_payload_vertex(store->flux[hits->index[i]]);
@@ -395,6 +419,8 @@ static void choose_light_path(camera_walk *c)
     const light_paths *paths = &c->pass->light;
     size_t i =
         hash_mix(hash_mix(c->random->key, c->random->index), c->pass->index) % paths->n;
+    if (c->pass->scene->moves)
+        i = MIN((size_t)((double)c->walk.ray.time * (double)paths->n), paths->n - 1);
     c->first_light = i > 0 ? paths->end[i - 1] : 0;
     c->end_light = paths->end[i];
 }
@@ -413,7 +439,7 @@ void vcm_radiance(const void *data, const ray *r, sampler *random,
                         .mirrors_only = true,
                         .mode = TRANSPORT_RADIANCE};
     if (pass->strategies.splat) {
-        float pdf = camera_pdf_direction(&pass->scene->camera, r->direction);
+        float pdf = camera_pdf_direction(&pass->scene->camera, r->direction, r->time);
         c.walk.weights.vcm = 1.0f / (pdf * pass->camera_per_light);
     }
     if (pass->strategies.connect)

@@ -33,6 +33,7 @@ typedef struct light_walk {
     const vcm_pass *pass;
     sampler random;
     light_chunk *out;
+    float time;         /* of the shutter */
     light_start start;  /* of the first vertex, which is still to be found */
     int light;          /* that it left */
     uint32_t primitive; /* of its mesh */
@@ -137,7 +138,7 @@ static void connect_to_eye(light_walk *l, const vcm_vertex *v)
     camera_connection eye;
     vec2 u_lens = sampler_2d(&l->random);
     if (hidden(pass->scene, v->hit) ||
-        !camera_connect(&pass->scene->camera, v->hit->p, u_lens, &eye) ||
+        !camera_connect(&pass->scene->camera, v->hit->p, u_lens, v->hit->time, &eye) ||
         !filter_reaches(&pass->scene->filter, eye.raster, pass->scene->film.width,
                         pass->scene->film.height))
         return;
@@ -173,6 +174,16 @@ static uint64_t stream_key(const vcm_pass *pass)
     return hash_mix(key, 0x76636du);
 }
 
+/* The i-th part of the shutter's time; 0 where nothing moves. */
+static float time_of(const vcm_pass *pass, size_t i)
+{
+    if (!pass->scene->moves)
+        return 0.0f;
+    uint64_t h = hash_mix(stream_key(pass) ^ 0x74696d65u, i);
+    double at = ((double)i + (double)(h >> 11) * 0x1p-53) / (double)pass->light.n;
+    return minf((float)at, 0x1.fffffep-1f);
+}
+
 static bool emit(light_walk *l)
 {
     const vcm_pass *pass = l->pass;
@@ -192,6 +203,7 @@ static bool emit(light_walk *l)
                              .p = e.ray.origin,
                              .n = e.n,
                              .direction = e.ray.direction};
+    e.ray.time = l->time;
     l->walk = (vcm_walk){.ray = e.ray,
                          .from = e.ray.origin,
                          .carried = e.flux / p_light,
@@ -287,6 +299,7 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
     for (size_t i = begin; i < end && !out->error; i++) {
         light_walk l = {.pass = loop->pass,
                         .random = sampler_make(stream_key(loop->pass), i),
+                        .time = time_of(loop->pass, i),
                         .out = out};
         if (emit(&l))
             follow(&l);

@@ -1,0 +1,278 @@
+/*
+ * Where things are: objects and their instances, the scene's bounds, the surfaces that
+ * cast caustics, the acceleration structure.
+ *
+ *   shapes ── all, of the world and of objects, in the order they were added
+ *   objects ── shapes with the same shape.object
+ *   instances ── an object and a motion; a shape that moves is an object of its own
+ *
+ * Instances are taken at the opening of the shutter where one number must do for all
+ * times (areas), and over the whole time where bounds are asked for.
+ */
+#include "scene/scene_geometry.h"
+
+#include "base/memory.h"
+
+/* ---- Objects and instances ---- */
+
+static void clear_object(void *data)
+{
+    g_free(((scene_object *)data)->name);
+}
+
+void scene_open_objects(scene *s)
+{
+    s->objects = g_array_new(FALSE, TRUE, sizeof(scene_object));
+    g_array_set_clear_func(s->objects, clear_object);
+    s->instances = g_array_new(FALSE, TRUE, sizeof(instance));
+    s->open_object = NO_INDEX;
+}
+
+void scene_close_objects(scene *s)
+{
+    g_array_unref(s->objects);
+    g_array_unref(s->instances);
+}
+
+int scene_object_begin(scene *s, const char *name, source_place place, GError **error)
+{
+    if (s->open_object != NO_INDEX) {
+        error_at(error, place, "an object can not hold another one, or one that moves");
+        return NO_INDEX;
+    }
+    if (name && scene_find_object(s, name) != NO_INDEX) {
+        error_at(error, place, "object \"%s\" is there already", name);
+        return NO_INDEX;
+    }
+    scene_object made = {g_strdup(name), place};
+    g_array_append_val(s->objects, made);
+    s->open_object = (int)s->objects->len - 1;
+    return s->open_object;
+}
+
+void scene_object_end(scene *s)
+{
+    s->open_object = NO_INDEX;
+}
+
+int scene_find_object(const scene *s, const char *name)
+{
+    for (guint i = 0; i < s->objects->len; i++) {
+        const scene_object *o = &g_array_index(s->objects, scene_object, i);
+        if (o->name && g_str_equal(o->name, name))
+            return (int)i;
+    }
+    return NO_INDEX;
+}
+
+bool scene_add_instance(scene *s, int object, const motion *to_world, source_place place,
+                        GError **error)
+{
+    if (s->committed || object < 0 || (guint)object >= s->objects->len) {
+        error_at(error, place, "an instance needs an object, before the scene is whole");
+        return false;
+    }
+    instance made = {object, *to_world, place};
+    g_array_append_val(s->instances, made);
+    return true;
+}
+
+static const instance *instance_at(const scene *s, int i)
+{
+    return &g_array_index(s->instances, instance, (guint)i);
+}
+
+/* ---- Bounds ---- */
+
+static box3 placed_bounds(const scene *s, const instance *is, box3 box)
+{
+    if (box3_is_empty(box))
+        return box;
+    return motion_bounds(&is->to_world, box, (double)s->camera.shutter_open,
+                         (double)s->camera.shutter_close);
+}
+
+static box3 *object_bounds(const scene *s)
+{
+    box3 *boxes = g_aligned_alloc(MAX(s->objects->len, 1), sizeof *boxes, 16);
+    for (guint i = 0; i < s->objects->len; i++)
+        boxes[i] = box3_empty();
+    for (guint i = 0; i < s->shapes->len; i++) {
+        const shape *on = s->shapes->pdata[i];
+        if (on->object != NO_INDEX)
+            boxes[on->object] = box3_union(boxes[on->object], on->kind->bounds(on->self));
+    }
+    return boxes;
+}
+
+static box3 world_bounds(const scene *s)
+{
+    box3 *boxes = object_bounds(s), all = box3_empty();
+    for (guint i = 0; i < s->shapes->len; i++) {
+        const shape *on = s->shapes->pdata[i];
+        if (on->object == NO_INDEX)
+            all = box3_union(all, on->kind->bounds(on->self));
+    }
+    for (guint i = 0; i < s->instances->len; i++) {
+        const instance *is = instance_at(s, (int)i);
+        all = box3_union(all, placed_bounds(s, is, boxes[is->object]));
+    }
+    g_aligned_free(boxes);
+    return all;
+}
+
+bool scene_find_bounds(scene *s, GError **error)
+{
+    s->bounds = world_bounds(s);
+    bool is_empty = box3_is_empty(s->bounds);
+    s->center = is_empty ? vec3_make(0.0f, 0.0f, 0.0f) : box3_center(s->bounds);
+    /* A little larger, so that what lies on the box is inside whatever the rounding. */
+    float far =
+        is_empty ? 0.0f : max_component3(max3(abs3(s->bounds.low), abs3(s->bounds.high)));
+    s->radius = 1.0001f * box3_radius(s->bounds) + 1e-6f * far;
+    if (!(s->radius > 0.0f))
+        s->radius = 1.0f;
+    if (isfinite(s->radius) && finite3(s->center) && s->radius < 1e18f)
+        return true;
+    error_set(error, ERROR_INPUT, "the scene is too large: its coordinates overflow");
+    return false;
+}
+
+/* ---- Caustics ---- */
+
+static bool casts_caustics(const scene *s, const shape *on)
+{
+    return on->material != NO_INDEX && on->area > 0.0f &&
+           material_casts_caustics(s->materials->pdata[on->material]);
+}
+
+static void add_caster(scene *s, GArray *areas, int i, int of_instance, double factor)
+{
+    const shape *on = s->shapes->pdata[i];
+    float area = (float)((double)on->area * factor);
+    s->casters[s->n_casters++] = (caustic_caster){i, of_instance};
+    g_array_append_val(areas, area);
+}
+
+/* The shapes of each object, or (first) of the world, that cast caustics. */
+static GArray **casters_by_object(const scene *s)
+{
+    guint n = s->objects->len + 1;
+    GArray **lists = g_new(GArray *, n);
+    for (guint i = 0; i < n; i++)
+        lists[i] = g_array_new(FALSE, FALSE, sizeof(int));
+    for (guint i = 0; i < s->shapes->len; i++) {
+        const shape *on = s->shapes->pdata[i];
+        int index = (int)i;
+        if (casts_caustics(s, on))
+            g_array_append_val(lists[on->object + 1], index);
+    }
+    return lists;
+}
+
+/* Those of the world, if is is NULL, or of an instance. */
+static void list_casters(scene *s, const GArray *list, int of_instance, GArray *areas,
+                         box3 *box)
+{
+    const instance *is = of_instance == NO_INDEX ? NULL : instance_at(s, of_instance);
+    double factor = 1.0;
+    if (is) {
+        transform at = motion_at(&is->to_world, (double)s->camera.shutter_open);
+        factor = instance_mean_area_factor(&at);
+    }
+    for (guint k = 0; k < list->len; k++) {
+        int i = g_array_index(list, int, k);
+        const shape *on = s->shapes->pdata[i];
+        box3 bounds = on->kind->bounds(on->self);
+        add_caster(s, areas, i, of_instance, factor);
+        *box = box3_union(*box, is ? placed_bounds(s, is, bounds) : bounds);
+    }
+}
+
+static void list_all_casters(scene *s, GArray *areas, box3 *box)
+{
+    GArray **lists = casters_by_object(s);
+    size_t n = lists[0]->len;
+    for (guint i = 0; i < s->instances->len; i++)
+        n += lists[instance_at(s, (int)i)->object + 1]->len;
+    s->casters = g_new(caustic_caster, MAX(n, 1));
+    list_casters(s, lists[0], NO_INDEX, areas, box);
+    for (guint i = 0; i < s->instances->len; i++)
+        list_casters(s, lists[instance_at(s, (int)i)->object + 1], (int)i, areas, box);
+    for (guint i = 0; i <= s->objects->len; i++)
+        g_array_unref(lists[i]);
+    g_free(lists);
+}
+
+bool scene_find_casters(scene *s, GError **error)
+{
+    box3 box = box3_empty();
+    g_autoptr(GArray) areas = g_array_new(FALSE, FALSE, sizeof(float));
+    list_all_casters(s, areas, &box);
+    s->caustic_center = box3_is_empty(box) ? s->center : box3_center(box);
+    s->caustic_radius = 1.001f * box3_radius(box);
+    return distribution_init(&s->caustic_area, (const float *)(void *)areas->data,
+                             (size_t)s->n_casters, error);
+}
+
+vec3 scene_caustic_target(const scene *s, float u_shape, vec2 u, float time)
+{
+    size_t i = distribution_sample(&s->caustic_area, &u_shape);
+    const caustic_caster *caster = &s->casters[i];
+    vec3 p = shape_sample_area(s->shapes->pdata[caster->shape], u_shape, u).p;
+    if (caster->instance == NO_INDEX)
+        return p;
+    transform to_world = accel_instance_at(s->accel, caster->instance, time);
+    return transform_point(&to_world, p);
+}
+
+double scene_caustic_density(const scene *s, const surface_hit *hit)
+{
+    double p = 1.0 / distribution_total(&s->caustic_area);
+    if (hit->instance == NO_INDEX)
+        return p;
+    transform at = accel_instance_at(s->accel, hit->instance, hit->time);
+    transform open = motion_at(&instance_at(s, hit->instance)->to_world,
+                               (double)s->camera.shutter_open);
+    return p * instance_mean_area_factor(&open) / instance_area_factor(&at, hit->n_geom);
+}
+
+/* ---- Time ---- */
+
+transform scene_motion_to(const scene *s, const surface_hit *hit, float time)
+{
+    if (!scene_hit_moves(s, hit))
+        return transform_identity();
+    transform now = accel_instance_at(s->accel, hit->instance, hit->time);
+    transform then = accel_instance_at(s->accel, hit->instance, time);
+    transform back = transform_inverse(&now);
+    return transform_multiply(&then, &back);
+}
+
+double scene_area_change(const scene *s, const surface_hit *hit, float time)
+{
+    if (!scene_hit_moves(s, hit))
+        return 1.0;
+    transform by = scene_motion_to(s, hit, time);
+    vec3 n = normalize3(transform_normal(&by, hit->n_geom));
+    return instance_area_factor(&by, n);
+}
+
+/* ---- The acceleration structure ---- */
+
+bool scene_build_accel(scene *s, unsigned threads, GError **error)
+{
+    const accel_input in = {
+        .shapes = (shape *const *)s->shapes->pdata,
+        .n_shapes = s->shapes->len,
+        .instances = (const instance *)(void *)s->instances->data,
+        .n_instances = s->instances->len,
+        .n_objects = s->objects->len,
+        .shutter = {(double)s->camera.shutter_open, (double)s->camera.shutter_close},
+    };
+    s->accel = accel_build_scene(&in, threads, error);
+    s->moves = false;
+    for (guint i = 0; i < s->instances->len && s->accel; i++)
+        s->moves |= accel_instance_moves(s->accel, (int)i);
+    return s->accel != NULL;
+}
