@@ -31,6 +31,11 @@ static void make_diffuse(bsdf *b)
     bsdf_make_diffuse(b, RAMP);
 }
 
+static void make_leaf(bsdf *b)
+{
+    bsdf_make_diffuse_transmission(b, 0.5f * RAMP, 0.6f - 0.3f * RAMP);
+}
+
 static void make_mirror(bsdf *b)
 {
     bsdf_make_conductor(b, gold_eta(), gold_k(), (ggx){0});
@@ -208,6 +213,7 @@ static void make_gltf_white(bsdf *b)
 
 static const model MODELS[] = {
     {"diffuse", make_diffuse, 0.2},
+    {"leaf", make_leaf, 0.6},
     {"mirror", make_mirror, 0.3},
     {"satin gold", make_satin_gold, 0.3},
     {"brushed gold", make_brushed_gold, 0.3},

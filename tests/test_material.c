@@ -371,6 +371,90 @@ static void test_textured_inputs(void)
     clear_scene(&s);
 }
 
+/* Each part is met as often as "amount" says, always the same one at a point, with its
+ * own normals; and its lobes are known. */
+static void test_mix(void)
+{
+    scene *s = scene_new(NULL);
+    GError *error = NULL;
+    params *matt = list(), *metal = list();
+    scene_add_material(s, "matt", "diffuse", matt, &error);
+    scene_add_material(s, "metal", "conductor", metal, &error);
+    g_assert_no_error(error);
+    for (int k = 0; k < 5; k++) {
+        const float amount = (float[]){0, 0.1f, 0.5f, 0.9f, 1}[k];
+        const char *const names[] = {"matt", "metal"};
+        params *p = list();
+        params_add_strings(p, here, PARAM_STRING, "materials", names, 2, NULL);
+        add_float(p, "amount", amount);
+        material *m = material_new(s, "mix", p, &error);
+        g_assert_no_error(error);
+        g_assert_true(material_casts_caustics(m));
+        int n_metal = 0;
+        enum { N = 20000 };
+        const wavelengths w = wavelengths_at(0.5f);
+        for (int i = 0; i < N; i++) {
+            surface_hit hit = flat;
+            hit.p = vec3_make(1e-3f * (float)(i % 200), 1e-3f * (float)(i / 200), 2);
+            bsdf b, again;
+            material_bsdf(m, &hit, &w, ALL_LANES, &plain, &b);
+            material_bsdf(m, &hit, &w, 3, &plain, &again);
+            g_assert_cmpuint(b.lobes, ==, again.lobes);
+            n_metal += (b.lobes & LOBE_SPECULAR) != 0;
+        }
+        double expected = (double)amount * N, slack = 6 * sqrt(N * 0.25);
+        g_assert_cmpfloat(fabs(n_metal - expected), <=, k % 4 ? slack : 0);
+        material_free(m);
+        params_free(p);
+    }
+    const char *const bad[] = {"matt", "nothing"};
+    params *p = list();
+    params_add_strings(p, here, PARAM_STRING, "materials", bad, 2, NULL);
+    g_assert_null(material_new(s, "mix", p, &error));
+    g_assert_nonnull(strstr(error->message, "'nothing'"));
+    g_clear_error(&error);
+    params_free(p);
+    params_free(matt);
+    params_free(metal);
+    scene_free(s);
+    refuse("mix", list(), "m.pbrt:2:1: a mix needs \"string materials\" with two names");
+}
+
+static void test_diffuse_transmission(void)
+{
+    material *m = make("diffusetransmission", list());
+    bsdf b = at(m, &plain);
+    g_assert_cmpuint(b.lobes, ==, LOBE_DIFFUSE | LOBE_ANY_SIDE);
+    vec3 up = vec3_make(0, 0, 1);
+    g_assert_cmpfloat(
+        fabsf(bsdf_albedo(&b, up, LOBE_DIFFUSE | LOBE_REFLECTION)[2] - 0.25f), <, 1e-6f);
+    g_assert_cmpfloat(
+        fabsf(bsdf_albedo(&b, up, LOBE_DIFFUSE | LOBE_TRANSMISSION)[2] - 0.25f), <,
+        1e-6f);
+    material_free(m);
+    params *p = list();
+    add_rgb(p, "reflectance", 0.1f, 0.1f, 0.1f);
+    add_rgb(p, "transmittance", 0.3f, 0.3f, 0.3f);
+    add_float(p, "scale", 2);
+    m = make("diffusetransmission", p);
+    b = at(m, &plain);
+    spectrum f = bsdf_eval(&b, up, up, LOBE_ALL, TRANSPORT_RADIANCE) * PI_F;
+    spectrum g = bsdf_eval(&b, up, -up, LOBE_ALL, TRANSPORT_RADIANCE) * PI_F;
+    g_assert_cmpfloat(fabsf(f[4] - 0.2f), <, 1e-3f);
+    g_assert_cmpfloat(fabsf(g[4] - 0.6f), <, 1e-3f);
+    material_free(m);
+    p = list();
+    add_float(p, "scale", 9);
+    m = make("diffusetransmission", p);
+    b = at(m, &plain);
+    g_assert_cmpfloat(fabsf(bsdf_albedo(&b, up, LOBE_ALL)[1] - 1), <, 1e-5f);
+    material_free(m);
+    p = list();
+    add_float(p, "scale", -1);
+    refuse("diffusetransmission", p,
+           "m.pbrt:4:9: parameter 'scale': expected a number >= 0, found -1");
+}
+
 static void test_refusals(void)
 {
     params *p = list();
@@ -420,6 +504,8 @@ int main(int argc, char **argv)
     g_test_add_func("/material/coated-diffuse", test_coated_diffuse);
     g_test_add_func("/material/phong", test_phong);
     g_test_add_func("/material/textured-inputs", test_textured_inputs);
+    g_test_add_func("/material/mix", test_mix);
+    g_test_add_func("/material/diffuse-transmission", test_diffuse_transmission);
     g_test_add_func("/material/refusals", test_refusals);
     return g_test_run();
 }

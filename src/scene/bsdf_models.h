@@ -46,6 +46,10 @@ float bsdf_delta_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
 /** @brief Lambert's law, alike on both sides. @param rho reflectance in 0..1 */
 void bsdf_make_diffuse(bsdf *b, spectrum rho);
 
+/** @brief Lambert's law on both sides. @param r,t shares sent back and let through, in
+ * 0..1; where they exceed one together they are brought down to it */
+void bsdf_make_diffuse_transmission(bsdf *b, spectrum r, spectrum t);
+
 /** @brief A metal, smooth or rough, alike on both sides. */
 void bsdf_make_conductor(bsdf *b, spectrum eta, spectrum k, ggx roughness);
 

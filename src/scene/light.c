@@ -10,9 +10,16 @@
 #include <glib.h>
 #include <string.h>
 
-static const light_kind *const kinds[] = {&point_light_kind,    &spot_light_kind,
-                                          &distant_light_kind,  &image_sky_kind,
-                                          &infinite_light_kind, &area_light_kind};
+static const light_kind *const kinds[] = {
+    &point_light_kind,       &spot_light_kind,       &distant_light_kind,
+    &goniometric_light_kind, &projection_light_kind, &image_sky_kind,
+    &infinite_light_kind,    &area_light_kind,
+};
+
+const light_kind *light_kind_at(size_t i)
+{
+    return i < G_N_ELEMENTS(kinds) ? kinds[i] : NULL;
+}
 
 static const light_kind *find_kind(const char *name, const params *p, bool on_shape)
 {
@@ -47,7 +54,9 @@ light *light_new(const struct scene *s, const char *name, const params *p,
     if (!kind) {
         error_at(error, p->place, "%s \"%s\" is not supported; known %s",
                  on ? "area light" : "light source", name,
-                 on ? "is diffuse" : "are point, spot, distant and infinite");
+                 on ? "is diffuse"
+                    : "are point, spot, distant, goniometric, projection and "
+                      "infinite");
         return NULL;
     }
     void *self = kind->create(s, p, to_world, on, error);

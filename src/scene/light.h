@@ -40,6 +40,7 @@ typedef struct light_sample {
 
 typedef struct light_kind {
     const char *name; /**< "point", "spot", "distant", "infinite", "diffuse" (area) */
+    const char *parameters; /**< those it reads, with spaces between */
     /** Tells kinds of one name apart by their parameters, none of which it marks used;
      * NULL: always meant. The first in the table that is meant is made. */
     bool (*is_meant)(const params *p);
@@ -93,6 +94,11 @@ struct light {
     bool is_apart;   /**< stands outside the sphere around what casts caustics: from it,
                         that sphere is a cone */
 };
+
+/** @brief Kind number i of the table; NULL behind the last. */
+const light_kind *light_kind_at(size_t i);
+/** @brief The parameters that every light has. */
+#define LIGHT_PARAMETERS "group"
 
 light *light_new(const struct scene *s, const char *kind, const params *p,
                  const transform *to_world, const shape *on, GError **error);

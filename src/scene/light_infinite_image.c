@@ -154,11 +154,12 @@ static vec3 draw(const image_sky *l, const wavelengths *w, vec2 u, spectrum *rad
 static light_emission leave(const image_sky *l, vec3 origin, vec3 direction,
                             float pdf_direction, spectrum flux)
 {
-    return (light_emission){.ray = {.origin = origin, .direction = direction, .t_max = INFINITY},
-                            .n = direction,
-                            .flux = flux,
-                            .pdf_position = 1.0f / light_disk_area(&l->disk),
-                            .pdf_direction = pdf_direction};
+    return (light_emission){
+        .ray = {.origin = origin, .direction = direction, .t_max = INFINITY},
+        .n = direction,
+        .flux = flux,
+        .pdf_position = 1.0f / light_disk_area(&l->disk),
+        .pdf_direction = pdf_direction};
 }
 
 static bool emit(const void *self, const wavelengths *w, float u_primitive,

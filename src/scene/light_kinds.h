@@ -11,6 +11,8 @@ extern const light_kind spot_light_kind;
 extern const light_kind distant_light_kind;
 extern const light_kind infinite_light_kind;
 extern const light_kind image_sky_kind;
+extern const light_kind goniometric_light_kind;
+extern const light_kind projection_light_kind;
 extern const light_kind area_light_kind;
 
 /**

@@ -4,10 +4,15 @@
 #include <string.h>
 
 static const material_kind *const kinds[] = {
-    &material_diffuse,        &material_conductor,
-    &material_dielectric,     &material_thin_dielectric,
-    &material_coated_diffuse, &material_phong,
+    &material_diffuse,
+    &material_conductor,
+    &material_dielectric,
+    &material_thin_dielectric,
+    &material_coated_diffuse,
+    &material_phong,
     &material_gltf,
+    &material_diffuse_transmission,
+    &material_mix,
 };
 
 static const material_kind *find_kind(const char *name, const params *p, GError **error)

@@ -17,7 +17,8 @@ typedef struct bsdf_options {
 } bsdf_options;
 
 typedef struct material_kind {
-    const char *name; /**< pbrt's, e.g. "coateddiffuse" */
+    const char *name;       /**< pbrt's, e.g. "coateddiffuse" */
+    const char *parameters; /**< those it reads, with spaces between */
     void *(*create)(const struct scene *s, const params *p, GError **error);
     void (*free)(void *self);
     /** Fills ops, lobes, lambertian, rho, data; the frame, n_geom and lane are filled

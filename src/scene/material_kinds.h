@@ -12,3 +12,5 @@ extern const material_kind material_thin_dielectric;
 extern const material_kind material_coated_diffuse;
 extern const material_kind material_phong;
 extern const material_kind material_gltf;
+extern const material_kind material_diffuse_transmission;
+extern const material_kind material_mix;

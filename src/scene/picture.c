@@ -293,6 +293,18 @@ void picture_rgb(const picture *pic, const texel_mix *mix, float rgb[3])
         rgb[c] = texel_mix_channel(mix, pic->channels[c]);
 }
 
+void picture_texel_mean(const picture *pic, picture_wrap wrap, int x, int y, float rgb[3])
+{
+    static const float weights[3] = {0.125f, 0.75f, 0.125f};
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) {
+            const float *t = texel(pic->levels[0], x + i, y + j, wrap);
+            for (int c = 0; c < 3 && t; c++)
+                rgb[c] += weights[i + 1] * weights[j + 1] * t[pic->channels[c]];
+        }
+}
+
 float picture_level(const picture *pic, float width)
 {
     const image *img = pic->levels[0];

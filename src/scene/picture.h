@@ -62,6 +62,10 @@ texel_mix picture_bilinear(const picture *pic, int level, vec2 st, picture_wrap 
 float texel_mix_channel(const texel_mix *mix, int channel);
 /** @brief R, G and B of the mixture. */
 void picture_rgb(const picture *pic, const texel_mix *mix, float rgb[3]);
+/** @brief The mean over a texel of the bilinear mixture: its own colour six times of
+ * eight along each axis. */
+void picture_texel_mean(const picture *pic, picture_wrap wrap, int x, int y,
+                        float rgb[3]);
 /** @brief The level, counted from the largest, whose texels are as wide as `width`, a
  * share of the image's smaller side; may lie between two, or below 0. */
 float picture_level(const picture *pic, float width);

@@ -96,29 +96,6 @@ static float mean_rgb(const float rgb[3])
     return (rgb[0] + rgb[1] + rgb[2]) * (1.0f / 3.0f);
 }
 
-static float texel_value(const picture *pic, picture_wrap wrap, int x, int y)
-{
-    const image *img = pic->levels[0];
-    vec2 st = {((float)x + 0.5f) / (float)img->width,
-               ((float)y + 0.5f) / (float)img->height};
-    texel_mix mix = picture_nearest(pic, 0, st, wrap);
-    float rgb[3];
-    picture_rgb(pic, &mix, rgb);
-    return mean_rgb(rgb);
-}
-
-/* The mean over a texel of the bilinear mixture: its own value six times of eight along
- * each axis. */
-static float texel_mean(const picture *pic, picture_wrap wrap, int x, int y)
-{
-    static const float weights[3] = {0.125f, 0.75f, 0.125f};
-    float sum = 0.0f;
-    for (int j = -1; j <= 1; j++)
-        for (int i = -1; i <= 1; i++)
-            sum += weights[i + 1] * weights[j + 1] * texel_value(pic, wrap, x + i, y + j);
-    return sum;
-}
-
 static float row_stretch(const sphere_map *map, int y)
 {
     float n = (float)map->pic.levels[0]->height;
@@ -133,9 +110,11 @@ static bool build(sphere_map *map, source_place place, GError **error)
     if (!weights)
         return false;
     for (int y = 0; y < img->height; y++)
-        for (int x = 0; x < img->width; x++)
-            weights[(size_t)y * width + (size_t)x] =
-                row_stretch(map, y) * texel_mean(&map->pic, map->layout->wrap, x, y);
+        for (int x = 0; x < img->width; x++) {
+            float rgb[3];
+            picture_texel_mean(&map->pic, map->layout->wrap, x, y, rgb);
+            weights[(size_t)y * width + (size_t)x] = row_stretch(map, y) * mean_rgb(rgb);
+        }
     bool done = distribution2_init(&map->drawn, weights, width, height, error);
     big_free(weights);
     if (!done)
