@@ -20,7 +20,11 @@ typedef struct tally {
 /** @brief All counts; every array holds tally, in the order of first appearance. */
 typedef struct summary {
     GArray *shapes, *lights, *materials;
+    GArray *textures;         /**< in the order of their kinds' names */
+    GPtrArray *caustic_names; /**< const char*, of materials that cast caustics */
+    GPtrArray *warnings;      /**< char* */
     size_t n_float_textures, n_spectrum_textures;
+    size_t render_bytes;   /**< about what rendering takes, meshes with it */
     size_t geometry_bytes; /**< of mesh arrays */
     size_t process_bytes;  /**< largest resident size so far */
     float view_angle[2];   /**< of the image's width and height, degrees */
@@ -30,6 +34,9 @@ typedef struct summary {
 typedef void (*setting_visitor)(const setting_row *row, const char *value, void *data);
 /** @brief Calls visit for each setting of the scene that differs from its default. */
 void visit_changed_settings(const settings *s, setting_visitor visit, void *data);
+
+/** @brief What is allowed, but seldom meant: char*, owned by the array. */
+GPtrArray *describe_warnings(const scene *s);
 
 /** @brief Both own their result. */
 char *describe_as_json(const scene *s, const summary *all);

@@ -21,6 +21,7 @@ static void put_shapes(json *j, const scene *s, const summary *all)
         json_object_end(j);
     }
     json_array_end(j);
+    json_string(j, "unit", "m");
     json_object_begin(j, "bounds");
     if (!box3_is_empty(s->bounds)) {
         put_vec3(j, "low", s->bounds.low);
@@ -43,6 +44,14 @@ static void put_lights(json *j, const summary *all)
     json_array_end(j);
 }
 
+static void put_list(json *j, const char *key, const GPtrArray *texts)
+{
+    json_array_begin(j, key);
+    for (guint i = 0; i < texts->len; i++)
+        json_string(j, NULL, texts->pdata[i]);
+    json_array_end(j);
+}
+
 static void put_materials(json *j, const summary *all)
 {
     json_array_begin(j, "materials");
@@ -55,9 +64,16 @@ static void put_materials(json *j, const summary *all)
         json_object_end(j);
     }
     json_array_end(j);
+    put_list(j, "casting_caustics", all->caustic_names);
     json_object_begin(j, "textures");
     json_count(j, "float", all->n_float_textures);
     json_count(j, "spectrum", all->n_spectrum_textures);
+    json_object_begin(j, "kinds");
+    for (guint i = 0; i < all->textures->len; i++) {
+        const tally *t = &g_array_index(all->textures, tally, i);
+        json_count(j, t->kind, t->n);
+    }
+    json_object_end(j);
     json_object_end(j);
 }
 
@@ -108,7 +124,9 @@ char *describe_as_json(const scene *s, const summary *all)
     json_object_begin(&j, "memory");
     json_count(&j, "geometry", all->geometry_bytes);
     json_count(&j, "peak", all->process_bytes);
+    json_count(&j, "rendering", all->render_bytes);
     json_object_end(&j);
+    put_list(&j, "warnings", all->warnings);
     json_object_end(&j);
     return json_finish(&j);
 }

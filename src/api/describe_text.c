@@ -1,5 +1,8 @@
 #include "api/describe.h"
 
+/* Names shown of a list that may be long. */
+enum { MOST_NAMES = 8 };
+
 static void put_vec3(GString *out, const char *label, vec3 v)
 {
     g_string_append_printf(out, "  %-14s %g %g %g\n", label, (double)v[0], (double)v[1],
@@ -23,6 +26,7 @@ static void put_shapes(GString *out, const scene *s, const summary *all)
         return;
     put_vec3(out, "from", s->bounds.low);
     put_vec3(out, "to", s->bounds.high);
+    g_string_append(out, "  lengths        in metres\n");
 }
 
 static void put_lights(GString *out, const scene *s, const summary *all)
@@ -45,8 +49,22 @@ static void put_materials(GString *out, const scene *s, const summary *all)
             g_string_append_printf(out, ", %zu casting caustics", t->n_caustic);
         g_string_append_c(out, '\n');
     }
+    if (all->caustic_names->len > 0) {
+        g_string_append(out, "  caustics from ");
+        for (guint i = 0; i < MIN(all->caustic_names->len, MOST_NAMES); i++)
+            g_string_append_printf(out, "%s %s", i ? "," : "",
+                                   (char *)all->caustic_names->pdata[i]);
+        if (all->caustic_names->len > MOST_NAMES)
+            g_string_append_printf(out, " and %u more",
+                                   all->caustic_names->len - MOST_NAMES);
+        g_string_append_c(out, '\n');
+    }
     g_string_append_printf(out, "textures         %zu float, %zu spectrum\n",
                            all->n_float_textures, all->n_spectrum_textures);
+    for (guint i = 0; i < all->textures->len; i++) {
+        const tally *t = &g_array_index(all->textures, tally, i);
+        g_string_append_printf(out, "  %-14s %zu\n", t->kind, t->n);
+    }
 }
 
 static void put_camera(GString *out, const scene *s, const summary *all)
@@ -96,8 +114,18 @@ static void put_memory(GString *out, const summary *all)
     const GFormatSizeFlags units = G_FORMAT_SIZE_IEC_UNITS;
     g_autofree char *geometry = g_format_size_full(all->geometry_bytes, units);
     g_autofree char *peak = g_format_size_full(all->process_bytes, units);
-    g_string_append_printf(out, "memory           %s of meshes, %s at its peak\n",
-                           geometry, peak);
+    g_autofree char *rendering = g_format_size_full(all->render_bytes, units);
+    g_string_append_printf(out,
+                           "memory           %s of meshes, %s at its peak; rendering "
+                           "takes about %s\n",
+                           geometry, peak, rendering);
+}
+
+static void put_warnings(GString *out, const summary *all)
+{
+    for (guint i = 0; i < all->warnings->len; i++)
+        g_string_append_printf(out, "warning          %s\n",
+                               (char *)all->warnings->pdata[i]);
 }
 
 char *describe_as_text(const scene *s, const summary *all)
@@ -114,5 +142,6 @@ char *describe_as_text(const scene *s, const summary *all)
     if (out->len == before)
         g_string_append(out, "  none\n");
     put_memory(out, all);
+    put_warnings(out, all);
     return g_string_free(out, FALSE);
 }

@@ -74,3 +74,13 @@ const struct medium *material_interior(const material *m)
 {
     return m->kind->interior ? m->kind->interior(m->self) : NULL;
 }
+
+bool material_encloses(const material *m)
+{
+    return m->kind->encloses && m->kind->encloses(m->self);
+}
+
+unsigned material_possible_lobes(const material *m)
+{
+    return m->kind->possible_lobes(m->self);
+}

@@ -30,6 +30,8 @@ typedef struct material_kind {
     unsigned (*possible_lobes)(const void *self);
     /** What fills a solid made of it; NULL: none. May be NULL. */
     const struct medium *(*interior)(const void *self);
+    /** True if its surfaces bound a body that refracts. May be NULL: they do not. */
+    bool (*encloses)(const void *self);
 } material_kind;
 
 typedef struct material {
@@ -48,6 +50,10 @@ void material_free(material *m);
 void material_bsdf(const material *m, const surface_hit *hit, const wavelengths *w,
                    int lane, const bsdf_options *options, bsdf *out);
 
+/** @brief True if its surfaces bound a body that refracts. */
+bool material_encloses(const material *m);
+/** @brief Lobe classes and sides that may occur anywhere on it. */
+unsigned material_possible_lobes(const material *m);
 /** @brief What fills a solid made of it; NULL: none. */
 const struct medium *material_interior(const material *m);
 

@@ -65,6 +65,12 @@ static const medium *glass_interior(const void *self)
     return g->interior;
 }
 
+static bool glass_encloses(const void *self)
+{
+    (void)self;
+    return true;
+}
+
 static void *pane_create(const struct scene *s, const params *p, GError **error)
 {
     (void)s;
@@ -100,6 +106,7 @@ const material_kind material_dielectric = {
     .make_bsdf = glass_bsdf,
     .possible_lobes = glass_lobes,
     .interior = glass_interior,
+    .encloses = glass_encloses,
 };
 
 const material_kind material_thin_dielectric = {

@@ -214,6 +214,12 @@ static const medium *gltf_interior(const void *self)
     return m->interior;
 }
 
+static bool gltf_encloses(const void *self)
+{
+    const gltf_material *m = self;
+    return !m->thin && may_be_above_0(&m->transmission);
+}
+
 const material_kind material_gltf = {
     .name = "gltf",
     .create = gltf_create,
@@ -221,4 +227,5 @@ const material_kind material_gltf = {
     .make_bsdf = gltf_bsdf,
     .possible_lobes = gltf_lobes,
     .interior = gltf_interior,
+    .encloses = gltf_encloses,
 };

@@ -76,6 +76,11 @@ spectrum texture_eval_spectrum(const texture *t, const surface_hit *hit,
     return t->kind->eval_spectrum(t->self, hit, w, role);
 }
 
+const char *texture_kind_name(const texture *t)
+{
+    return t->kind->name;
+}
+
 bool texture_is_spectrum(const texture *t)
 {
     return t->is_spectrum;

@@ -29,6 +29,8 @@ texture *texture_new(const struct scene *s, const char *kind, bool is_spectrum,
                      const params *p, GError **error);
 void texture_free(texture *t);
 bool texture_is_spectrum(const texture *t);
+/** @brief "imagemap" and the like. */
+const char *texture_kind_name(const texture *t);
 /** @brief The texture that parameter q names, of the type wanted; NULL with ERROR_INPUT
  * at its place. */
 const texture *texture_find(const struct scene *s, const param *q, bool is_spectrum,

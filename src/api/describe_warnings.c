@@ -1,0 +1,142 @@
+/*
+ * What is allowed, but seldom meant: glass that encloses nothing or is turned inside out,
+ * lamps shut into bodies that let no light out, scenes of strange size.
+ */
+#include "api/describe.h"
+
+#include "scene/mesh_closed.h"
+
+#include <math.h>
+
+#define LARGEST_RADIUS 1e4f /* m */
+#define SMALLEST_RADIUS 1e-4f
+
+typedef struct inspection {
+    const scene *scene;
+    GPtrArray *warnings; /* char* */
+} inspection;
+
+static void warn(inspection *in, const char *format, ...) G_GNUC_PRINTF(2, 3);
+
+static void warn(inspection *in, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    g_ptr_array_add(in->warnings, g_strdup_vprintf(format, args));
+    va_end(args);
+}
+
+static const material *material_of_shape(const scene *s, const shape *on)
+{
+    return on->material == NO_INDEX ? NULL : s->materials->pdata[on->material];
+}
+
+static const char *name_of(const material *m)
+{
+    return m->name ? m->name : m->kind->name;
+}
+
+/* ---- Glass ---- */
+
+/* Whether the surface's own normals point into the body. */
+static bool is_inside_out(const shape *on, const mesh *m, const mesh_body *body)
+{
+    shape_sample at = shape_sample_area(on, 0.37f, (vec2){0.3f, 0.4f});
+    const uint32_t *corner = m->indices + 3 * (size_t)at.primitive;
+    vec3 p[3];
+    for (int k = 0; k < 3; k++) {
+        const float *v = m->positions + 3 * (size_t)corner[k];
+        p[k] = vec3_make(v[0], v[1], v[2]);
+    }
+    float same = dot3(at.n, cross3(p[1] - p[0], p[2] - p[0]));
+    return body->volume * (double)same < 0.0;
+}
+
+static void inspect_glass(inspection *in, guint i)
+{
+    const shape *on = in->scene->shapes->pdata[i];
+    const material *m = material_of_shape(in->scene, on);
+    const mesh *triangles = on->kind->triangles ? on->kind->triangles(on->self) : NULL;
+    mesh_body body;
+    if (!m || !triangles || !material_encloses(m) ||
+        !mesh_body_of(triangles, &body, NULL))
+        return;
+    if (!body.closed)
+        warn(in,
+             "shape %u of solid glass ('%s') is open: light that enters it may never "
+             "leave",
+             i, name_of(m));
+    else if (is_inside_out(on, triangles, &body))
+        warn(in,
+             "shape %u of solid glass ('%s') is inside out: its normals point inwards", i,
+             name_of(m));
+}
+
+/* ---- Lamps ---- */
+
+static bool lets_light_through(const scene *s, const surface_hit *hit)
+{
+    return hit->material == NO_INDEX ||
+           (material_possible_lobes(s->materials->pdata[hit->material]) &
+            LOBE_TRANSMISSION);
+}
+
+/* The one shape around a point whose inner side is seen all around; NO_INDEX: none. */
+static int shape_around(const scene *s, vec3 p)
+{
+    int found = NO_INDEX;
+    for (int k = 0; k < 26; k++) {
+        int cell = k < 13 ? k : k + 1;
+        vec3 d = vec3_make((float)(cell % 3 - 1), (float)(cell / 3 % 3 - 1),
+                           (float)(cell / 9 - 1));
+        ray r = {.origin = p, .direction = normalize3(d), .t_max = INFINITY};
+        surface_hit hit;
+        if (!scene_intersect(s, &r, &hit) || lets_light_through(s, &hit) ||
+            !(dot3(hit.n_geom, r.direction) > 0.0f) ||
+            (found != NO_INDEX && found != hit.shape))
+            return NO_INDEX;
+        found = hit.shape;
+    }
+    return found;
+}
+
+static bool box_holds(box3 box, vec3 p)
+{
+    for (int i = 0; i < 3; i++)
+        if (p[i] < box.low[i] || p[i] > box.high[i])
+            return false;
+    return true;
+}
+
+/* A room around lamp and camera is as it should be. */
+static void inspect_lamp(inspection *in, guint i)
+{
+    const wavelengths w = wavelengths_at(0.5f);
+    const light *l = in->scene->lights->pdata[i];
+    light_bound bound = l->kind->bound(l->self, &w);
+    if (!bound.is_local || !l->kind->is_delta)
+        return;
+    int around = shape_around(in->scene, box3_center(bound.box));
+    if (around == NO_INDEX)
+        return;
+    const shape *on = in->scene->shapes->pdata[around];
+    vec3 eye = transform_point(&in->scene->camera.to_world, (vec3){0});
+    if (!box_holds(on->kind->bounds(on->self), eye))
+        warn(in, "light %u (%s) is shut into shape %d, which lets no light out", i,
+             l->kind->name, around);
+}
+
+/* ---- All of it ---- */
+
+GPtrArray *describe_warnings(const scene *s)
+{
+    inspection in = {s, g_ptr_array_new_with_free_func(g_free)};
+    for (guint i = 0; i < s->shapes->len; i++)
+        inspect_glass(&in, i);
+    for (guint i = 0; i < s->lights->len; i++)
+        inspect_lamp(&in, i);
+    if (s->shapes->len > 0 && (s->radius > LARGEST_RADIUS || s->radius < SMALLEST_RADIUS))
+        warn(&in, "the scene is %g m wide; lengths are in metres",
+             2.0 * (double)s->radius);
+    return in.warnings;
+}

@@ -1,0 +1,87 @@
+/*
+ * info: what is warned of, and what is not.
+ */
+#include "api/describe.h"
+#include "json_check.h"
+#include "nephroid/nephroid.h"
+#include "scene_text.h"
+
+#define HEAD                                                                             \
+    "LookAt 0 -9 2  0 0 0  0 0 1 Camera \"perspective\" WorldBegin\n"                    \
+    "LightSource \"point\" \"point3 from\" [0 0 0]\n"
+#define CORNERS "\"point3 P\" [1 1 1 2 1 1 1 2 1 1 1 2] "
+#define BODY                                                                             \
+    "Shape \"trianglemesh\" " CORNERS "\"integer indices\" [0 2 1 0 1 3 0 3 2 1 2 3]\n"
+#define INWARD                                                                           \
+    "Shape \"trianglemesh\" " CORNERS "\"integer indices\" [0 1 2 0 3 1 0 2 3 1 3 2]\n"
+#define OPEN "Shape \"trianglemesh\" " CORNERS "\"integer indices\" [0 2 1 0 1 3 0 3 2]\n"
+#define GLASS "Material \"dielectric\" "
+#define SOLID "Material \"gltf\" \"float transmission\" 1 \"bool thin\" false "
+#define MATT "Material \"diffuse\" "
+
+static void check(const char *world, const char *expected)
+{
+    g_autofree char *text = g_strconcat(HEAD, world, NULL);
+    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(GPtrArray) warnings = describe_warnings(s);
+    const char *found = warnings->len ? warnings->pdata[0] : NULL;
+    g_test_message("%s: %s", world, found ? found : "nothing");
+    g_assert_cmpuint(warnings->len, ==, expected != NULL);
+    if (expected)
+        g_assert_nonnull(strstr(found, expected));
+}
+
+static void test_glass(void)
+{
+    check(GLASS BODY, NULL);
+    check(GLASS "Scale -1 1 1 " BODY, NULL);
+    check(GLASS OPEN, "of solid glass ('dielectric') is open");
+    check(SOLID OPEN, "is open");
+    check(MATT OPEN, NULL);
+    check("Material \"thindielectric\" " OPEN, NULL);
+    check(GLASS INWARD, "is inside out");
+    check(GLASS "ReverseOrientation " BODY, "is inside out");
+    check(GLASS "ReverseOrientation " INWARD, NULL);
+}
+
+static void test_lamps(void)
+{
+    check(MATT "Shape \"sphere\" \"float radius\" 0.5\n", "light 0 (point) is shut into");
+    check(GLASS "Shape \"sphere\" \"float radius\" 0.5\n", NULL);
+    check(MATT "Shape \"sphere\" \"float radius\" 50\n", NULL); /* a room */
+    check(MATT "Shape \"sphere\" \"float radius\" 0.5 \"float phimax\" 200\n", NULL);
+    check(MATT "Shape \"disk\" \"float height\" -1\n", NULL);
+}
+
+static void test_size(void)
+{
+    check(MATT "Shape \"disk\" \"float radius\" 90000\n",
+          "m wide; lengths are in metres");
+}
+
+static void test_json(void)
+{
+    scene_folder f = folder_new(HEAD GLASS OPEN);
+    g_autoptr(GError) error = NULL;
+    g_autoptr(NephScene) s = neph_scene_load(f.main, 1, NULL, NULL, &error);
+    g_assert_no_error(error);
+    g_autofree char *json = neph_scene_describe(s, true);
+    g_assert_true(json_is_valid(json));
+    g_assert_nonnull(strstr(json, "\"warnings\": [\n"));
+    g_assert_nonnull(strstr(json, "is open"));
+    g_assert_nonnull(strstr(json, "\"unit\": \"m\""));
+    g_autofree char *text = neph_scene_describe(s, false);
+    g_assert_nonnull(strstr(text, "\nwarning          shape 0"));
+    g_assert_nonnull(strstr(text, "caustics from  unnamed"));
+    folder_remove(&f);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/info/glass", test_glass);
+    g_test_add_func("/info/lamps", test_lamps);
+    g_test_add_func("/info/size", test_size);
+    g_test_add_func("/info/json", test_json);
+    return g_test_run();
+}
