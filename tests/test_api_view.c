@@ -318,6 +318,7 @@ static void test_wireframe(void)
     g_autofree float *few = neph_scene_wireframe(box, 4, &n);
     g_assert_cmpuint(n, >, 0);
     g_assert_cmpuint(n, <=, 4);
+    g_assert_nonnull(few);
     g_autoptr(NephScene) balls = make_scene("Camera \"perspective\"\n");
     g_autofree float *lines = neph_scene_wireframe(balls, 100000, &n);
     g_assert_cmpuint(n, >, 100);
