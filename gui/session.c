@@ -8,7 +8,7 @@
 /* A quick look while the view moves takes about this long, s; those that follow when it
    stands still, until the first pass is done. */
 #define LOOK_MOVING 0.06
-static const double looks_still[] = {0.25, 1.0};
+static const double looks_still[] = {0.25};
 
 /* Shares of its time that a render may spend on handing pictures over. */
 #define SNAPSHOT_SHARE 0.1
@@ -231,7 +231,8 @@ static void show_picture(session *s)
 static bool on_progress(double fraction, const NephStatistics *statistics, void *data)
 {
     session *s = data;
-    bool newer = statistics->passes > s->passes_shown;
+    bool first = statistics->passes == 0 && statistics->can_look;
+    bool newer = first || statistics->passes > s->passes_shown;
     bool cheap = SNAPSHOT_SHARE * (seconds() - s->last_snapshot) > s->snapshot_cost;
     NephStatistics now = *statistics;
     if (newer && (cheap || s->passes_shown == 0)) {

@@ -239,12 +239,31 @@ static void test_camera_save_refused(void)
 typedef struct heard {
     NephRender *render;
     double noise;
+    int n_early; /* looks before the first pass was done */
 } heard;
+
+/* Before a pass is done there may be a coarse picture: light everywhere. */
+static void look_early(heard *h)
+{
+    g_autoptr(NephImage) image = neph_render_image(h->render, NULL);
+    g_assert_nonnull(image);
+    int width, height, n;
+    neph_image_size(image, &width, &height, &n);
+    const float *pixel = neph_image_pixels(image);
+    int lit = 0;
+    for (int i = 0; i < width * height; i++, pixel += n)
+        lit += pixel[0] + pixel[1] + pixel[2] > 0.0f;
+    g_assert_cmpint(lit, >, 9 * width * height / 10);
+    h->n_early++;
+}
 
 static bool hear(double fraction, const NephStatistics *statistics, void *data)
 {
     (void)fraction;
     heard *h = data;
+    g_assert_true(statistics->passes == 0 || statistics->can_look);
+    if (statistics->passes == 0 && statistics->can_look)
+        look_early(h);
     if (statistics->passes > 1)
         h->noise = neph_render_noise(h->render);
     return true;
@@ -256,12 +275,13 @@ static void test_noise(void)
     g_autoptr(NephSettings) settings = neph_scene_settings(scene);
     neph_settings_set(settings, "passes", "3", NULL);
     g_autoptr(NephRender) render = neph_render_new(scene, settings, NULL);
-    heard h = {render, 0.0};
+    heard h = {render, 0.0, 0};
     g_assert_true(isinf(neph_render_noise(render)));
     g_assert_true(neph_render_run(render, hear, &h, NULL));
     NephStatistics statistics;
     neph_render_statistics(render, &statistics);
     g_assert_cmpfloat_with_epsilon(h.noise, statistics.noise, 1e-12);
+    g_assert_cmpint(h.n_early, ==, 3);
 }
 
 static void test_bounds(void)

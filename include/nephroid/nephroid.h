@@ -99,8 +99,8 @@ NEPH_API char *neph_settings_describe(bool json);
 
 /** @brief A loaded scene; immutable but for its size. */
 typedef struct NephScene NephScene;
-/** @brief Loads a scene (pbrt, glTF, OBJ ...). log may be NULL. threads 0 = all. On failure the error
- * holds up to 20 messages, one a line. */
+/** @brief Loads a scene (pbrt, glTF, OBJ ...). log may be NULL. threads 0 = all. On
+ * failure the error holds up to 20 messages, one a line. */
 NEPH_API NephScene *neph_scene_load(const char *path, unsigned threads, NephLogFunc log,
                                     void *log_data, GError **error);
 NEPH_API void neph_scene_free(NephScene *scene);
@@ -221,15 +221,17 @@ typedef struct NephStatistics {
     double radius[NEPH_N_PHOTON_CLASSES]; /**< m, of the last pass */
     uint64_t memory_peak, memory_photons; /**< bytes */
     uint64_t n_not_finite; /**< samples dropped since they were not finite */
-    double noise; /**< relative error of the image, estimated from the scatter of its
-                     passes; INFINITY while there are too few. While rendering it is only
-                     kept if the setting `noise` asks for it. */
+    double noise;  /**< relative error of the image, estimated from the scatter of its
+                      passes; INFINITY while there are too few. While rendering it is only
+                      kept if the setting `noise` asks for it. */
+    bool can_look; /**< neph_render_image may be called now */
     NephStop stopped_by;
 } NephStatistics;
 
 /** @brief Told after every pass and some times within one, on the thread that called
- *  neph_render_run. fraction: 0..1 of the whole render. Once statistics->passes > 0 it
- *  may call neph_render_image. @return false to stop. */
+ *  neph_render_run. fraction: 0..1 of the whole render. Where statistics->can_look says
+ * so it may call neph_render_image: once a pass is done, and before that whenever the
+ * first one has the whole picture on a finer grid of pixels. @return false to stop. */
 typedef bool (*NephProgressFunc)(double fraction, const NephStatistics *statistics,
                                  void *data);
 

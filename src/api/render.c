@@ -31,6 +31,7 @@ NephStatistics statistics_export(const render_statistics *from)
                           .memory_photons = from->memory_photons,
                           .n_not_finite = from->n_not_finite,
                           .noise = from->noise,
+                          .can_look = from->can_look,
                           .stopped_by = (NephStop)from->stopped_by};
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
         out.emitted[c] = from->emitted[c];

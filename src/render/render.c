@@ -265,6 +265,14 @@ static void close_loop(camera_loop *loop)
     big_free(loop->groups);
 }
 
+/* Nobody works on the film just now, and of the first pass there is a coarse picture. */
+static void tell_coarse(render *r)
+{
+    r->statistics.can_look = true;
+    tell(r, pass_fraction(r));
+    r->statistics.can_look = false;
+}
+
 /* Renders all pixels; in the first pass every eighth comes first, then the fourth and so
    on, so that the whole picture can be seen soon. */
 static bool render_tiles(camera_loop *loop)
@@ -276,6 +284,8 @@ static bool render_tiles(camera_loop *loop)
         loop->fill = loop->step < first_step;
         atomic_store(&r->tiles_done, 0);
         done = parallel_for(r->n_tiles, 1, r->n_threads, &r->cancel, render_tile, loop);
+        if (done && loop->step > 1)
+            tell_coarse(r);
     }
     return done;
 }
@@ -320,6 +330,7 @@ static void note_pass(render *r, double photons_done)
     r->last_pass = now - r->pass_start;
     r->photon_share = r->last_pass > 0.0 ? photons_done / r->last_pass : 0.0;
     st->passes = ++r->passes_done;
+    st->can_look = true;
     if (r->plan.how.noise > 0.0)
         st->noise = film_noise(&r->film);
 }

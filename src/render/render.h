@@ -28,12 +28,14 @@ typedef struct render_statistics {
     double radius[N_PHOTON_CLASSES]; /**< m, of the last pass */
     uint64_t memory_peak, memory_photons;
     uint64_t n_not_finite;
-    double noise; /**< relative error of the picture (film_noise), INFINITY if unknown */
+    double noise;  /**< relative error of the picture (film_noise), INFINITY if unknown */
+    bool can_look; /**< render_image may be called now */
     render_stop stopped_by;
 } render_statistics;
 
 /** @brief Told on the thread that called, after every pass and now and then within one;
- * fraction 0..1. It may call render_image once a pass is done. @return false to stop. */
+ * fraction 0..1. It may call render_image where statistics->can_look says so: once a pass
+ * is done, and when the first has reached the next finer grid. @return false to stop. */
 typedef bool (*render_progress)(double fraction, const render_statistics *statistics,
                                 void *data);
 
