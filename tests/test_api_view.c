@@ -336,6 +336,7 @@ static void test_wireframe(void)
         g_assert_cmpfloat_with_epsilon(length, 1.0f, 1e-6f);
     }
     g_autofree float *few = neph_scene_wireframe(box, 4, &n);
+    g_assert_nonnull(few);
     g_assert_cmpuint(n, >, 0);
     g_assert_cmpuint(n, <=, 4);
     g_assert_nonnull(few);

@@ -489,6 +489,7 @@ static void test_refused(void)
         g_autofree char *text = document(cases[i].middle);
         g_autoptr(GError) error = NULL;
         g_autoptr(scene) s = load_bytes("a.gltf", text, -1, NULL, &error);
+        g_assert_null(s);
         g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
         if (!strstr(error->message, cases[i].message))
             g_error("%s\n  does not say: %s", error->message, cases[i].message);
