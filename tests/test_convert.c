@@ -108,6 +108,25 @@ static void test_textures_and_lights(void)
         "Translate 0 0 2 Shape \"sphere\" \"float radius\" .2\n");
 }
 
+static void test_objects_and_motion(void)
+{
+    check_text(
+        "Material \"diffuse\" \"rgb reflectance\" [.7 .5 .1]\n"
+        "ObjectBegin \"o\" Material \"conductor\" Translate 0 0 .5 Shape \"sphere\" "
+        "\"float radius\" .3 ObjectEnd\nShape \"disk\" \"float radius\" 4\n"
+        "AttributeBegin Translate -1 0 0 Scale 1 1 2 ObjectInstance \"o\" "
+        "AttributeEnd\nTranslate 1 0 0 Rotate 20 0 1 0 ObjectInstance \"o\"\n");
+    check_text(
+        "Shape \"disk\" \"float radius\" 4\nActiveTransform EndTime Translate .5 0 0 "
+        "Rotate 30 0 0 1 ActiveTransform All Shape \"sphere\" \"float radius\" .6\n");
+    scene_folder f = folder_new(
+        "LookAt 0 -5 3  0 0 0.5  0 0 1 ActiveTransform EndTime Translate 0.3 0 0 "
+        "ActiveTransform All TransformTimes 0 0.5 Camera \"perspective\" WorldBegin "
+        "LightSource \"point\" \"point3 from\" [0 0 3] Shape \"sphere\"\n");
+    check_same(f.main);
+    folder_remove(&f);
+}
+
 static void test_files(void)
 {
     static const char ply[] =
@@ -150,6 +169,7 @@ int main(int argc, char **argv)
     g_test_add_func("/convert/shapes", test_shapes);
     g_test_add_func("/convert/materials", test_materials);
     g_test_add_func("/convert/textures-and-lights", test_textures_and_lights);
+    g_test_add_func("/convert/objects-and-motion", test_objects_and_motion);
     g_test_add_func("/convert/files", test_files);
     g_test_add_func("/convert/refused", test_refused);
     return g_test_run();

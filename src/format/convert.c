@@ -23,6 +23,7 @@ typedef struct converter {
     scene *scene;             /**< being built; its tables name textures */
     char *directory, *folder; /**< of the files, and its name beside the scene */
     GString *world, *film, *filter, *camera;
+    GPtrArray *objects;   /**< names by index, owned */
     GPtrArray *materials; /**< names by index, owned */
     GHashTable *files;    /**< absolute path -> name below the scene's folder */
     unsigned n_meshes;
@@ -334,6 +335,74 @@ static void on_camera(void *data, const char *kind, const params *p,
     g_string_append(c->camera, "Identity\n");
 }
 
+/* ---- What moves, and what stands many times ---- */
+
+/* "Transform" of something that may move, by pbrt's two times. */
+static void append_motion(GString *out, const motion *m, bool inverse)
+{
+    if (!m->moves) {
+        pbrt_text_transform(out, inverse ? m->start.inverse : m->start.m);
+        return;
+    }
+    g_string_append(out, "ActiveTransform StartTime ");
+    pbrt_text_transform(out, inverse ? m->start.inverse : m->start.m);
+    g_string_append(out, "ActiveTransform EndTime ");
+    pbrt_text_transform(out, inverse ? m->end.inverse : m->end.m);
+    g_string_append(out, "ActiveTransform All\n");
+}
+
+static void append_times(GString *out, const motion *m)
+{
+    char text[2][G_ASCII_DTOSTR_BUF_SIZE];
+    if (m->moves)
+        g_string_append_printf(
+            out, "TransformTimes %s %s\n",
+            g_ascii_formatd(text[0], sizeof text[0], "%.17g", m->start_time),
+            g_ascii_formatd(text[1], sizeof text[1], "%.17g", m->end_time));
+}
+
+/* The transform that on_camera wrote gives way to two. */
+static void on_camera_motion(void *data, const motion *to_world)
+{
+    converter *c = data;
+    if (!to_world->moves)
+        return;
+    const char *rest = strchr(c->camera->str, '\n') + 1;
+    g_autoptr(GString) moving = g_string_new(NULL);
+    append_times(moving, to_world);
+    append_motion(moving, to_world, true);
+    g_string_append(moving, rest);
+    g_string_assign(c->camera, moving->str);
+}
+
+static void on_object_begin(void *data, int index, const char *name)
+{
+    converter *c = data;
+    char *known = name ? g_strdup(name) : g_strdup_printf("object-%d", index);
+    g_ptr_array_set_size(c->objects, MAX((int)c->objects->len, index + 1));
+    c->objects->pdata[index] = known;
+    g_string_append(c->world, "ObjectBegin ");
+    pbrt_text_string(c->world, known);
+    g_string_append_c(c->world, '\n');
+}
+
+static void on_object_end(void *data)
+{
+    converter *c = data;
+    g_string_append(c->world, "ObjectEnd\n");
+}
+
+static void on_instance(void *data, int object, const motion *to_world)
+{
+    converter *c = data;
+    g_string_append(c->world, "AttributeBegin\n");
+    append_times(c->world, to_world);
+    append_motion(c->world, to_world, false);
+    g_string_append(c->world, "ObjectInstance ");
+    pbrt_text_string(c->world, c->objects->pdata[object]);
+    g_string_append(c->world, "\nAttributeEnd\n");
+}
+
 /* ---- Settings ---- */
 
 /* Types as the settings' table has them; all that is not its default. */
@@ -383,6 +452,7 @@ static void converter_init(converter *c, const char *out)
                      .film = g_string_new(NULL),
                      .filter = g_string_new(NULL),
                      .camera = g_string_new(NULL),
+                     .objects = g_ptr_array_new_with_free_func(g_free),
                      .materials = g_ptr_array_new_with_free_func(g_free)};
     c->folder = g_path_get_basename(c->directory);
     c->files = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
@@ -396,6 +466,7 @@ static void converter_clear(converter *c)
     g_string_free(c->film, TRUE);
     g_string_free(c->filter, TRUE);
     g_string_free(c->camera, TRUE);
+    g_ptr_array_unref(c->objects);
     g_ptr_array_unref(c->materials);
     g_hash_table_unref(c->files);
     g_clear_error(&c->error);
@@ -409,8 +480,19 @@ bool format_convert(const char *in, const char *out, const log_sink *log, GError
     }
     converter c;
     converter_init(&c, out);
-    const scene_listener listener = {&c,      on_texture, on_material, on_light, on_shape,
-                                     on_mesh, on_film,    on_filter,   on_camera};
+    const scene_listener listener = {.data = &c,
+                                     .texture = on_texture,
+                                     .material = on_material,
+                                     .light = on_light,
+                                     .shape = on_shape,
+                                     .mesh = on_mesh,
+                                     .film = on_film,
+                                     .filter = on_filter,
+                                     .camera = on_camera,
+                                     .camera_motion = on_camera_motion,
+                                     .object_begin = on_object_begin,
+                                     .object_end = on_object_end,
+                                     .instance = on_instance};
     g_autoptr(scene) s = scene_new(log);
     s->listener = &listener;
     c.scene = s;

@@ -5,7 +5,7 @@
  */
 #pragma once
 
-#include "math/transform.h"
+#include "math/motion.h"
 #include "scene/params.h"
 
 struct mesh;
@@ -30,4 +30,16 @@ typedef struct scene_listener {
     void (*filter)(void *data, const char *kind, const params *p);
     void (*camera)(void *data, const char *kind, const params *p,
                    const transform *to_world);
+    void (*camera_motion)(void *data, const motion *to_world);
+    /** @param name may be NULL */
+    void (*object_begin)(void *data, int index, const char *name);
+    void (*object_end)(void *data);
+    void (*instance)(void *data, int object, const motion *to_world);
 } scene_listener;
+
+/** @brief Calls one of the functions of the scene's listener, if it has it. */
+#define LISTENER_TELL(s, call, ...)                                                      \
+    do {                                                                                 \
+        if ((s)->listener && (s)->listener->call)                                        \
+            (s)->listener->call((s)->listener->data, __VA_ARGS__);                       \
+    } while (0)

@@ -94,13 +94,6 @@ static bool is_open(const scene *s, GError **error)
 
 /* ---- Adding ---- */
 
-/* Calls one of the listener's functions, if it has it. */
-#define TELL(s, call, ...)                                                               \
-    do {                                                                                 \
-        if ((s)->listener && (s)->listener->call)                                        \
-            (s)->listener->call((s)->listener->data, __VA_ARGS__);                       \
-    } while (0)
-
 void scene_add_file(scene *s, const char *path, GBytes *bytes)
 {
     g_hash_table_insert(s->files, g_strdup(path), g_bytes_ref(bytes));
@@ -124,7 +117,7 @@ bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spe
         error_at(error, p->place, "texture \"%s\" is there already", name);
         return false;
     }
-    TELL(s, texture, name, kind, is_spectrum, p);
+    LISTENER_TELL(s, texture, name, kind, is_spectrum, p);
     texture *t = texture_new(s, kind, is_spectrum, p, error);
     if (t)
         g_hash_table_insert(table, g_strdup(name), t);
@@ -140,7 +133,7 @@ int scene_add_material(scene *s, const char *name, const char *kind, const param
         error_at(error, p->place, "material \"%s\" is there already", name);
         return NO_INDEX;
     }
-    TELL(s, material, (int)s->materials->len, name, kind, p);
+    LISTENER_TELL(s, material, (int)s->materials->len, name, kind, p);
     material *m = material_new(s, kind, p, error);
     if (!m)
         return NO_INDEX;
@@ -166,7 +159,7 @@ bool scene_add_light(scene *s, const char *kind, const params *p,
 {
     if (!is_open(s, error))
         return false;
-    TELL(s, light, kind, p, to_world);
+    LISTENER_TELL(s, light, kind, p, to_world);
     light *l = light_new(s, kind, p, to_world, NULL, error);
     if (l)
         g_ptr_array_add(s->lights, l);
@@ -209,7 +202,7 @@ bool scene_add_shape(scene *s, const char *kind, const params *p, const shape_pl
 {
     if (!is_open(s, error))
         return false;
-    TELL(s, shape, kind, p, at);
+    LISTENER_TELL(s, shape, kind, p, at);
     return take_shape(s, shape_new(kind, p, at, error), at, error);
 }
 
@@ -220,7 +213,7 @@ bool scene_add_mesh(scene *s, mesh *m, const shape_place *at, source_place place
         mesh_clear(m);
         return false;
     }
-    TELL(s, mesh, m, at);
+    LISTENER_TELL(s, mesh, m, at);
     return take_shape(s, shape_new_mesh(m, at, place, error), at, error);
 }
 
@@ -231,7 +224,7 @@ bool scene_set_film(scene *s, const char *kind, const params *p, GError **error)
         return false;
     g_free(s->film.filename);
     s->film = film;
-    TELL(s, film, kind, p);
+    LISTENER_TELL(s, film, kind, p);
     return true;
 }
 
@@ -242,7 +235,7 @@ bool scene_set_filter(scene *s, const char *kind, const params *p, GError **erro
         return false;
     filter_clear(&s->filter);
     s->filter = filter;
-    TELL(s, filter, kind, p);
+    LISTENER_TELL(s, filter, kind, p);
     return true;
 }
 
@@ -253,12 +246,13 @@ bool scene_set_camera(scene *s, const char *kind, const params *p,
         is_open(s, error) &&
         camera_init(&s->camera, kind, p, to_world, s->film.width, s->film.height, error);
     if (s->has_camera)
-        TELL(s, camera, kind, p, to_world);
+        LISTENER_TELL(s, camera, kind, p, to_world);
     return s->has_camera;
 }
 
 void scene_move_camera(scene *s, const motion *to_world)
 {
+    LISTENER_TELL(s, camera_motion, to_world);
     s->camera.path = *to_world;
     s->camera.to_world = motion_at(to_world, (double)s->camera.shutter_open);
 }

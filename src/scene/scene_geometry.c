@@ -47,11 +47,14 @@ int scene_object_begin(scene *s, const char *name, source_place place, GError **
     scene_object made = {g_strdup(name), place};
     g_array_append_val(s->objects, made);
     s->open_object = (int)s->objects->len - 1;
+    LISTENER_TELL(s, object_begin, s->open_object, name);
     return s->open_object;
 }
 
 void scene_object_end(scene *s)
 {
+    if (s->listener && s->listener->object_end)
+        s->listener->object_end(s->listener->data);
     s->open_object = NO_INDEX;
 }
 
@@ -73,6 +76,7 @@ bool scene_add_instance(scene *s, int object, const motion *to_world, source_pla
         return false;
     }
     instance made = {object, *to_world, place};
+    LISTENER_TELL(s, instance, object, to_world);
     g_array_append_val(s->instances, made);
     return true;
 }
