@@ -47,6 +47,9 @@ bool verify_is_long(void);
  */
 trial verify_render(const scene *s, const char *words, int passes);
 
+/** @brief The same with the lamps as the camera sees them. */
+trial verify_render_all(const scene *s, const char *words, int passes);
+
 /**
  * @brief Compares a with b, group by group: Student's t for each block, made a normal
  * deviate.
@@ -57,9 +60,13 @@ agreement verify_compare(const trial *a, const trial *b, double bias);
 
 /** @brief Fails if totals differ by more than `tolerance` and noise, or some block is
  * beyond its limit, or noise is so much that this says little: a total not known to 1.2
- * times the tolerance, in the long form to a sixth of it. */
+ * times the tolerance, in the long form to half of it. */
 void verify_agree(const char *name, const trial *a, const trial *b, double tolerance,
                   double bias);
+
+/** @brief The same for a total that must be `expected` in every block. */
+void verify_is(const char *name, const trial *a, double expected, double tolerance,
+               double bias);
 
 /** @brief The normal deviate whose |z| one of n independent ones passes with probability
  * alpha (Šidák 1967). */

@@ -82,7 +82,7 @@ static const way ways[] = {
     {"auto", "integrator=auto spp=4 photons=5000 max_backward_bounces=-1", 32, 0.01},
     {"photonmap", "integrator=photonmap spp=2 photons=10000 max_backward_bounces=-1", 32,
      0.03},
-    {"sppm", "integrator=sppm spp=2 photons=10000 seed=1 max_backward_bounces=-1", 32,
+    {"sppm", "integrator=sppm spp=1 photons=6000 seed=1 max_backward_bounces=-1", 32,
      0.03},
     {"vcm", "integrator=vcm spp=2 photons=4096 max_backward_bounces=-1", 32, 0.01},
 };

@@ -1,0 +1,198 @@
+/*
+ * Light that was focused: by algorithms that find it each in its own way, as a surface
+ * goes from a mirror to matt, and by photons that are aimed.
+ */
+#include "rooms.h"
+#include "verify.h"
+
+/* ---- What no path finds ---- */
+
+/* A point light over a glass ball over a floor: no ray can hit the light through glass.
+ */
+#define POINT_LIGHT_AND_GLASS                                                            \
+    "LookAt 0 -4 2  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 40\n" SIZE(        \
+        24) "WorldBegin LightSource \"point\" \"rgb I\" [5 5 5] \"point3 from\" [0 0 "   \
+            "3] "                                                                        \
+            "Shape \"disk\" \"float radius\" 4 Material \"dielectric\" Translate 0 0 "   \
+            "0.8 Shape \"sphere\" \"float radius\" 0.5\n"
+
+static void test_point_light_through_glass(void)
+{
+    int more = VERIFY_SHORT_LONG(1, 16);
+    g_autoptr(scene) s = scene_of(POINT_LIGHT_AND_GLASS);
+    trial sppm = verify_render(
+        s, "integrator=sppm spp=8 photons=40000 max_backward_bounces=-1", 32 * more);
+    trial found = verify_render(
+        s, "integrator=auto spp=8 photons=20000 max_backward_bounces=-1", 32 * more);
+    verify_agree("auto", &found, &sppm, 0.005, 0.02);
+    found = verify_render(s, "integrator=vcm spp=8 photons=8192 max_backward_bounces=-1",
+                          32 * more);
+    verify_agree("vcm", &found, &sppm, 0.005, 0.02);
+}
+
+/* ---- From a mirror to matt ---- */
+
+/* A silver ring on a floor, lit from the side; the camera looks into it from above. */
+#define RING                                                                             \
+    "LookAt 0 -1 6  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 22\n" SIZE(        \
+        24) "WorldBegin\n"                                                               \
+            "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [40 40 40] Translate " \
+            "-3 -1 2 "                                                                   \
+            "Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n"                       \
+            "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] Shape \"disk\" "     \
+            "\"float "                                                                   \
+            "radius\" 3\n"                                                               \
+            "Material \"conductor\" \"spectrum eta\" \"metal-Ag-eta\" \"spectrum k\" "   \
+            "\"metal-Ag-k\" \"bool remaproughness\" false \"float roughness\" %g Shape " \
+            "\"cylinder\" \"float radius\" 1 \"float zmin\" 0 \"float zmax\" 0.5\n"
+
+/* Light on the floor inside the ring beside what comes straight from the lamp, and the
+   brightness of the whole picture. */
+typedef struct brightness {
+    double caustic, all;
+} brightness;
+
+static brightness ring_brightness(double roughness, const char *words)
+{
+    g_autofree char *text = g_strdup_printf(RING, roughness);
+    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(image) img = render_with(s, words);
+    size_t all = channel_of(img, "G"), direct = channel_of(img, "direct.G"),
+           lamps = channel_of(img, "emission.G"), depth = channel_of(img, "depth.Z");
+    brightness b = {0};
+    for (size_t i = 0; i < pixels_of(img); i++) {
+        double x = (double)(i % 24) - 11.5, y = (double)(i / 24) - 11.5;
+        double shine = at(img, i, all) - at(img, i, lamps);
+        b.all += shine;
+        if (x * x + y * y < 64 && at(img, i, depth) > 0)
+            b.caustic += shine - at(img, i, direct);
+    }
+    return b;
+}
+
+enum { STEPS = 26 };
+
+/* Roughness in steps of 0.02; the short form looks where something could change: at a
+   mirror's end and where a lobe is no longer followed but gathered for (0.3). */
+static bool step_is_taken(int i)
+{
+    return verify_is_long() || i < 4 || (i >= 12 && i < 18);
+}
+
+/* How much more step i changes than those beside it. */
+static double jump(const double change[STEPS + 1], int i)
+{
+    double sum = 0;
+    int n = 0;
+    for (int k = i - 1; k <= i + 1; k += 2) {
+        if (k > 0 && isfinite(change[k])) {
+            sum += change[k];
+            n++;
+        }
+    }
+    return change[i] - sum / MAX(n, 1);
+}
+
+typedef struct sweep {
+    const char *words;
+    double largest_caustic; /* jump, in the short form; 0: in the long form only */
+} sweep;
+
+static void check_jumps(const double caustic[STEPS + 1], const double all[STEPS + 1],
+                        double largest)
+{
+    for (int i = 1; i < STEPS; i++) {
+        if (!isfinite(all[i]))
+            continue;
+        g_test_message("roughness %.2f: caustic %+.2f %%, jump %+.2f; all %+.2f %%, jump "
+                       "%+.2f",
+                       0.02 * i, 100 * caustic[i], 100 * jump(caustic, i), 100 * all[i],
+                       100 * jump(all, i));
+        g_assert_cmpfloat(fabs(all[i]), <, 0.02);
+        g_assert_cmpfloat(fabs(jump(all, i)), <, 0.02);
+        g_assert_cmpfloat(fabs(jump(caustic, i)), <, largest);
+    }
+}
+
+static void test_roughness(gconstpointer data)
+{
+    const sweep *of = data;
+    if (!(of->largest_caustic > 0) && !verify_is_long()) {
+        g_test_skip("its photons are not aimed: too noisy to tell in short");
+        return;
+    }
+    double caustic[STEPS + 1], all[STEPS + 1];
+    brightness before = {NAN, NAN};
+    g_autofree char *words =
+        g_strdup_printf("%s passes=%d", of->words, VERIFY_SHORT_LONG(8, 256));
+    for (int i = 0; i <= STEPS; i++) {
+        brightness now = {NAN, NAN};
+        if (i < STEPS && step_is_taken(i))
+            now = ring_brightness(0.02 * i, words);
+        caustic[i] = now.caustic / before.caustic - 1;
+        all[i] = now.all / before.all - 1;
+        before = now;
+    }
+    check_jumps(caustic, all, VERIFY_SHORT_LONG(of->largest_caustic, 0.02));
+}
+
+static const sweep sweeps[] = {
+    {"integrator=auto spp=16 photons=20000 max_backward_bounces=-1", 0.04},
+    {"integrator=photonmap spp=8 photons=40000", 0.05},
+    {"integrator=vcm spp=16 photons=4096", 0},
+};
+
+/* ---- Aimed photons ---- */
+
+/* A lamp in a room, and a glass ball that takes up 1 % of the sphere around it. */
+#define SMALL_GLASS                                                                      \
+    "LookAt 0 -3 1.4  0.6 0 0.2  0 0 1 Camera \"perspective\" \"float fov\" 40\n" SIZE(  \
+        24) "WorldBegin LightSource \"point\" \"rgb I\" [5 5 5] \"point3 from\" [0 0 "   \
+            "1.5]\n" ROOM_WALLS                                                          \
+            "Material \"dielectric\" Translate 0.6 0 0.2 Shape \"sphere\" \"float "      \
+            "radius\" 0.2845\n"
+
+/* Σ over pixels of the variance of the caustic, times photons a pass. */
+static double caustic_variance(const scene *s, const char *emission, int photons)
+{
+    enum { PASSES = 32, SIDE = 24 };
+    double sum[SIDE * SIDE] = {0}, square[SIDE * SIDE] = {0}, variance = 0;
+    for (int seed = 0; seed < PASSES; seed++) {
+        g_autofree char *words = g_strdup_printf(
+            "integrator=photonmap passes=1 spp=1 radius=0.05 indirect_photons=1 "
+            "max_forward_bounces=4 caustic_photons=%d caustic_emission=%s seed=%d",
+            photons, emission, seed);
+        g_autoptr(image) img = render_with(s, words);
+        size_t channel = channel_of(img, "caustic.G");
+        for (size_t i = 0; i < SIDE * SIDE; i++) {
+            double v = at(img, i, channel);
+            sum[i] += v;
+            square[i] += v * v;
+        }
+    }
+    for (size_t i = 0; i < SIDE * SIDE; i++)
+        variance += (square[i] - sum[i] * sum[i] / PASSES) / (PASSES - 1);
+    return variance * photons;
+}
+
+static void test_guided_emission(void)
+{
+    g_autoptr(scene) s = scene_of(SMALL_GLASS);
+    double uniform = caustic_variance(s, "uniform", 100000);
+    double guided = caustic_variance(s, "guided", 5000);
+    g_test_message("equal error in 1/%.0f of the photons", uniform / guided);
+    g_assert_cmpfloat(uniform / guided, >, 20);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/verify/caustic/point-light", test_point_light_through_glass);
+    for (size_t i = 0; i < G_N_ELEMENTS(sweeps); i++) {
+        g_auto(GStrv) words = g_strsplit(sweeps[i].words + strlen("integrator="), " ", 2);
+        g_autofree char *name = g_strconcat("/verify/caustic/roughness/", words[0], NULL);
+        g_test_add_data_func(name, &sweeps[i], test_roughness);
+    }
+    g_test_add_func("/verify/caustic/guided", test_guided_emission);
+    return g_test_run();
+}
