@@ -71,3 +71,15 @@ static inline ray hit_ray(const surface_hit *hit, vec3 direction)
         in = dot3(direction, hit->n_geom) < 0.0f ? hit->interior : NULL;
     return (ray){hit_offset(hit, direction), direction, INFINITY, hit->time, in};
 }
+
+/** @brief The ray from a hit to a point at distance in direction. It ends short of the
+ * point by so much that rounding, which grows with coordinates, does not let it meet the
+ * surface there.
+ *  @param distance m; INFINITY: never */
+static inline ray hit_ray_to(const surface_hit *hit, vec3 direction, float distance)
+{
+    ray r = hit_ray(hit, direction);
+    float margin = 2.0f * length3(r.origin - hit->p);
+    r.t_max = maxf(distance * (1.0f - 1e-4f) - margin, 0.0f);
+    return r;
+}

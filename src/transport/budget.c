@@ -43,8 +43,7 @@ static double direct_irradiance(const scene *s, const visible_point *at, sampler
         return 0.0;
     float cosine = dot3(to.wi, at->n);
     const surface_hit here = {.p = at->p, .n_geom = at->n, .material = NO_INDEX};
-    ray shadow = hit_ray(&here, to.wi);
-    shadow.t_max = 0.999f * to.distance;
+    ray shadow = hit_ray_to(&here, to.wi, to.distance);
     if (!(cosine > 0.0f) || scene_occluded(s, &shadow))
         return 0.0;
     return (double)(spectrum_mean(to.radiance) * cosine / to.pdf);

@@ -1,12 +1,8 @@
 #include "transport/direct.h"
 
-/* Shadow rays end this far short of the lamp, as a share of the way. */
-#define SHADOW_SHORTENING 1e-4f
-
 static bool visible(const direct_query *query, const light_sample *to_light)
 {
-    ray shadow = hit_ray(query->hit, to_light->wi);
-    shadow.t_max = to_light->distance * (1.0f - SHADOW_SHORTENING);
+    ray shadow = hit_ray_to(query->hit, to_light->wi, to_light->distance);
     return !scene_occluded(query->scene, &shadow);
 }
 

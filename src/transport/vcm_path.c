@@ -1,9 +1,6 @@
 /* What light and camera subpaths have in common. */
 #include "transport/vcm.h"
 
-/* Connections end this far short of their target, as a share of the way. */
-#define SHADOW_SHORTENING 1e-4f
-
 lobe_pair vcm_scatter(const vcm_vertex *v, vec3 wi, transport_mode mode)
 {
     static const unsigned classes[2] = {LOBE_DIFFUSE, LOBE_GLOSSY};
@@ -39,8 +36,7 @@ radiance_layer vcm_layer(scattering_counts counts)
 
 bool vcm_visible(const scene *s, const surface_hit *from, vec3 direction, float distance)
 {
-    ray r = hit_ray(from, direction);
-    r.t_max = distance * (1.0f - SHADOW_SHORTENING);
+    ray r = hit_ray_to(from, direction, distance);
     return !scene_occluded(s, &r);
 }
 
