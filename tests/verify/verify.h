@@ -59,7 +59,7 @@ trial verify_render_all(const scene *s, const char *words, int passes);
 agreement verify_compare(const trial *a, const trial *b, double bias);
 
 /** @brief Fails if totals differ by more than `tolerance` and noise, or some block is
- * beyond its limit, or noise is so much that this says little: a total not known to 1.2
+ * beyond its limit, or noise is so much that this says little: a total not known to three
  * times the tolerance, in the long form to half of it. */
 void verify_agree(const char *name, const trial *a, const trial *b, double tolerance,
                   double bias);
