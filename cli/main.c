@@ -18,6 +18,7 @@ static const command commands[] = {
      command_convert},
     {"compare", "measure how far an image is from a reference", command_compare},
     {"settings", "list all settings", command_settings},
+    {"features", "list what of pbrt-v4 is read", command_features},
     {"bsdf", "draw how a material scatters light", command_bsdf},
     {"view", "open a window on a scene", command_view},
 };

@@ -10,8 +10,9 @@
 static void test_help_everywhere(folder *f, gconstpointer data)
 {
     (void)data;
-    static const char *const commands[] = {"",         "render ",   "photons ", "info ",
-                                           "compare ", "settings ", "bsdf ",    "view "};
+    static const char *const commands[] = {"",          "render ",  "photons ",
+                                           "info ",     "compare ", "settings ",
+                                           "features ", "bsdf ",    "view "};
     for (size_t i = 0; i < G_N_ELEMENTS(commands); i++) {
         g_autofree char *help = g_strconcat(commands[i], "--help", NULL);
         g_autofree char *version = g_strconcat(commands[i], "--version", NULL);

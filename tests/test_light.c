@@ -5,9 +5,12 @@
  *
  * Statistical tests: six standard errors, chi-square below its 1 - 1e-6 quantile.
  */
+#include "image/image.h"
 #include "math/frame.h"
 #include "scene/light_kinds.h"
 #include "shape_subjects.h"
+
+#include <glib/gstdio.h>
 
 /* ---- Lights to test ---- */
 
@@ -627,12 +630,65 @@ static void expect_error(const char *kind, params *p, shape *on, const char *tex
     shape_free(on);
 }
 
-static params *with_string(const char *name)
+/* A picture on a square, bright in its right half: shines there, upright, with the power
+ * that is asked for. */
+static void test_pictured_area(void)
 {
-    const char *const value[] = {"sky.exr"};
-    params *p = params_new(here, "/", color_space_srgb());
-    params_add_strings(p, here, PARAM_STRING, name, value, 1, NULL);
-    return p;
+    static const char *const names[] = {"R", "G", "B"};
+    g_autofree char *folder = g_dir_make_tmp("nephroid-light-XXXXXX", NULL);
+    g_autofree char *path = g_build_filename(folder, "panel.pfm", NULL);
+    g_autoptr(image) img = image_new(8, 8, 3, names, NULL);
+    for (int i = 0; i < 64 * 3; i++)
+        img->pixels[i] = i / 3 % 8 >= 4 && i / 24 < 4 ? 4.0f : 0.0f; /* upper right */
+    g_assert_true(image_write(img, path, NULL, NULL));
+    static const float points[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+    static const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+    static const int indices[6] = {0, 1, 2, 0, 2, 3};
+    g_autoptr(params) p = params_new(here, "/", NULL);
+    params_add_numbers(p, here, PARAM_POINT3, "P", points, 12, NULL);
+    params_add_numbers(p, here, PARAM_POINT2, "uv", uvs, 8, NULL);
+    params_add_integers(p, here, PARAM_INTEGER, "indices", indices, 6, NULL);
+    shape_place at = {.to_world = transform_identity()};
+    g_autoptr(params) q = numbers_of("power", 3.0, NULL);
+    const char *name = path;
+    params_add_strings(q, here, PARAM_STRING, "filename", &name, 1, NULL);
+    lamp a = make_lamp("diffuse", q, shape_new("trianglemesh", p, &at, NULL));
+    double y = 0;
+    for (int k = 0; k < 16; k++) {
+        const wavelengths w = wavelengths_at(((float)k + 0.5f) / 16);
+        tally t = {0};
+        for (uint32_t n = 0; n < 2000; n++) {
+            sampler s = sampler_make(71, n);
+            vec2 u = sampler_2d(&s), v = sampler_2d(&s);
+            light_emission e;
+            float xyz[3] = {0};
+            if (a.l->kind->emit(a.l->self, &w, sampler_1d(&s), u, v, &e))
+                spectrum_to_xyz(&w, e.flux, xyz);
+            add_to(&t, (double)xyz[1]);
+        }
+        y += mean_of(&t) / 16;
+    }
+    g_assert_cmpfloat(fabs(y / 3 - 1), <, 0.02);
+    const wavelengths w = wavelengths_at(0.5f);
+    const vec3 up = vec3_make(0, 0, 1);
+    for (int i = 0; i < 4; i++) {
+        surface_hit hit = {
+            .n = up, .n_geom = up, .uv = {i & 1 ? 0.8f : 0.2f, i & 2 ? 0.8f : 0.2f}};
+        bool dark = spectrum_is_black(a.l->kind->radiance(a.l->self, &hit, up, &w));
+        g_assert_true(dark == (i != 3));
+    }
+    clear_lamp(&a);
+    g_autoptr(params) both = numbers_of(NULL, NULL);
+    params_add_strings(both, here, PARAM_STRING, "filename", &name, 1, NULL);
+    const float white[3] = {1, 1, 1};
+    params_add_numbers(both, here, PARAM_RGB, "L", white, 3, NULL);
+    g_autoptr(GError) error = NULL;
+    shape *on = unit_square(&at);
+    g_assert_null(light_new(NULL, "diffuse", both, &at.to_world, on, &error));
+    g_assert_nonnull(strstr(error->message, "either 'L' or 'filename'"));
+    shape_free(on);
+    g_unlink(path);
+    g_rmdir(folder);
 }
 
 static void test_bad_input_is_named(void)
@@ -646,13 +702,12 @@ static void test_bad_input_is_named(void)
     expect_error("point", numbers_of("intensity", 1.0, NULL), NULL, "intensity");
     expect_error("spot", numbers_of("coneangle", 0.0, NULL), NULL, "coneangle");
     expect_error("spot", numbers_of("conedeltaangle", 40.0, NULL), NULL, "coneangle");
-    expect_error("diffuse", with_string("filename"), unit_square(&at), "\"filename\"");
     params *p = params_new(here, "/", color_space_srgb());
     add_point(p, "to", 0, 0, 0);
     expect_error("distant", p, NULL, "must differ");
     p = params_new(here, "/", color_space_srgb());
     add_point(p, "portal", 0, 0, 0);
-    expect_error("infinite", p, NULL, "\"portal\"");
+    expect_error("infinite", p, NULL, "'portal'");
     static const float flat[9] = {0, 0, 0, 1, 0, 0, 2, 0, 0};
     g_autoptr(params) line = params_new(here, "/", color_space_srgb());
     params_add_numbers(line, here, PARAM_POINT3, "P", flat, 9, NULL);
@@ -673,6 +728,7 @@ int main(int argc, char **argv)
     g_test_add_func("/light/irradiance/quad", test_irradiance_of_quad);
     g_test_add_func("/light/sides", test_sides);
     g_test_add_func("/light/scales", test_scales);
+    g_test_add_func("/light/pictured-area", test_pictured_area);
     g_test_add_func("/light/bad/input", test_bad_input_is_named);
     return g_test_run();
 }

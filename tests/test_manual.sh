@@ -39,10 +39,14 @@ options_of_man_page() {
     grep -o -E 'Fl -[a-z]+' "$root/docs/nephroid.1" | sed 's/Fl -/--/' | sort -u
 }
 
-echo 1..5
+echo 1..6
 "$root/tools/settings_page.sh" "$nephroid" >"$work/settings.md"
 diff "$root/docs/settings.md" "$work/settings.md" >"$work/log" 2>&1
 report settings $?
+
+"$root/tools/features_page.sh" "$nephroid" >"$work/features.md"
+diff "$root/docs/features.md" "$work/features.md" >"$work/log" 2>&1
+report features $?
 
 options_of_program >"$work/program"
 options_of_man_page >"$work/page"

@@ -94,6 +94,9 @@ NEPH_API bool neph_settings_load(NephSettings *settings, const char *path,
 /** @brief The table of all settings, for people (json false) or programs. Owned by
  * caller. */
 NEPH_API char *neph_settings_describe(bool json);
+/** @brief What of pbrt-v4's language is rendered, approximated or refused, as a table in
+ * Markdown. Owned by caller. */
+NEPH_API char *neph_features_describe(void);
 
 /* ---- Scenes ---- */
 

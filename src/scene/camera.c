@@ -263,6 +263,11 @@ static const camera_kind kinds[] = {
      pixel_area_spherical},
 };
 
+const char *camera_kind_at(size_t i)
+{
+    return i < G_N_ELEMENTS(kinds) ? kinds[i].name : NULL;
+}
+
 static const camera_kind *find_kind(const char *name, const params *p, GError **error)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {

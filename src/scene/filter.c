@@ -99,6 +99,11 @@ static const filter_kind kinds[] = {
     {"sinc", eval_sinc, 4.0f, {"tau", NULL}, {3.0f, 0}, true},
 };
 
+const char *filter_kind_name(size_t i)
+{
+    return i < G_N_ELEMENTS(kinds) ? kinds[i].name : NULL;
+}
+
 static float eval(const profile *f, float x)
 {
     return fabsf(x) <= f->radius ? f->kind->eval(f, x) : 0.0f;

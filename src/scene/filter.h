@@ -29,3 +29,5 @@ float filter_eval(const pixel_filter *f, vec2 offset);
 float filter_density(const pixel_filter *f, vec2 offset);
 /** @brief True if a place on the raster gives to some pixel of a film of that size. */
 bool filter_reaches(const pixel_filter *f, vec2 raster, int width, int height);
+/** @brief Name of kind number i of the table; NULL behind the last. */
+const char *filter_kind_name(size_t i);

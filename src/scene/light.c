@@ -59,10 +59,12 @@ light *light_new(const struct scene *s, const char *name, const params *p,
                       "infinite");
         return NULL;
     }
+    g_autofree char *what = g_strdup_printf("light \"%s\"", name);
+    if (!params_known(p, what, kind->parameters, LIGHT_PARAMETERS, error))
+        return NULL;
     void *self = kind->create(s, p, to_world, on, error);
     if (!self)
         return NULL;
-    g_autofree char *what = g_strdup_printf("light \"%s\"", name);
     g_autofree char *group = read_group(p, error);
     bool is_wrong = params_has(p, "group") && !group;
     if (is_wrong || !params_all_used(p, what, error)) {
@@ -170,15 +172,6 @@ bool light_axes(frame *axes, const transform *to_world, const params *p, GError 
         return true;
     error_at(error, p->place,
              "this light needs a transform that keeps angles: it is stretched or skewed");
-    return false;
-}
-
-bool light_refuse(const params *p, const char *name, const char *what, GError **error)
-{
-    if (!params_has(p, name))
-        return true;
-    error_at(error, params_find(p, name)->place, "\"%s\" of %s is not supported", name,
-             what);
     return false;
 }
 

@@ -6,6 +6,7 @@
 #include "math/frame.h"
 #include "math/warp.h"
 #include "scene/light_kinds.h"
+#include "scene/picture.h"
 #include "scene/texture.h"
 
 typedef struct area_light {
@@ -13,6 +14,7 @@ typedef struct area_light {
     const shape *on; /* borrowed */
     bool two_sided;
     spectrum_input colors; /* textured: times radiance.scale, in place of its spectrum */
+    picture pic;           /* the same as pbrt has it: over the whole of u and v */
 } area_light;
 
 enum { N_MEAN = 1024 };
@@ -22,11 +24,29 @@ static void free_area(void *self)
     area_light *l = self;
     emitter_clear(&l->radiance);
     spectrum_input_clear(&l->colors);
+    picture_clear(&l->pic);
     g_free(l);
+}
+
+static bool is_textured(const area_light *l)
+{
+    return l->colors.texture || l->pic.n_levels;
+}
+
+static spectrum pictured(const area_light *l, const surface_hit *hit,
+                         const wavelengths *w)
+{
+    float rgb[3];
+    vec2 st = {hit->uv.x, 1.0f - hit->uv.y};
+    texel_mix mix = picture_bilinear(&l->pic, 0, st, WRAP_CLAMP);
+    picture_rgb(&l->pic, &mix, rgb);
+    return l->radiance.scale * rgb_eval(l->pic.space, rgb, CURVE_EMISSION, w);
 }
 
 static spectrum shines(const area_light *l, const surface_hit *hit, const wavelengths *w)
 {
+    if (l->pic.n_levels)
+        return pictured(l, hit, w);
     if (!l->colors.texture)
         return emitter_eval(&l->radiance, w);
     return l->radiance.scale * spectrum_input_eval(&l->colors, hit, w);
@@ -49,7 +69,7 @@ static spectrum shines_from(const area_light *l, const shape_sample *at,
 static spectrum mean_radiance(const area_light *l, const wavelengths *w)
 {
     spectrum sum = {0};
-    if (!l->colors.texture)
+    if (!is_textured(l))
         return emitter_eval(&l->radiance, w);
     for (int i = 0; i < N_MEAN; i++) {
         float x = ((float)i + 0.5f) / N_MEAN, y = 0.7548777f * (float)i,
@@ -67,17 +87,53 @@ static float exitance(const area_light *l)
     return (l->two_sided ? 2.0f : 1.0f) * PI_F * l->on->area;
 }
 
-/* The emitter is white then, for its scale. */
+/* What is textured is given the power that its mean over the surface asks for. */
+static bool set_textured_power(area_light *l, const params *p, GError **error)
+{
+    enum { N = 16 };
+    float y = 0.0f;
+    if (!params_has(p, "power"))
+        return true;
+    for (int i = 0; i < N; i++) {
+        const wavelengths w = wavelengths_at(((float)i + 0.5f) / N);
+        float xyz[3];
+        spectrum_to_xyz(&w, mean_radiance(l, &w), xyz);
+        y += xyz[1] / N;
+    }
+    if (y > 0.0f)
+        return emitter_set_total(&l->radiance, p, "power", exitance(l) * y, error);
+    error_at(error, params_find(p, "power")->place,
+             "the light's picture is black where the shape is: no scale gives it power");
+    return false;
+}
+
+static bool read_picture(area_light *l, const struct scene *s, const params *p,
+                         GError **error)
+{
+    if (params_has(p, "L")) {
+        error_at(error, params_find(p, "L")->place,
+                 "an area light has either 'L' or 'filename'");
+        return false;
+    }
+    return picture_read(&l->pic, s, p, "filename", NULL, error) &&
+           picture_check_light(&l->pic, params_find(p, "filename")->place, error) &&
+           emitter_init(&l->radiance, p, NULL, l->pic.space, error);
+}
+
+/* The emitter is white where it is textured, for its scale. */
 static bool read_radiance(area_light *l, const struct scene *s, const params *p,
                           GError **error)
 {
     const param *q = params_find(p, "L");
-    if (!q || q->type != PARAM_TEXTURE)
-        return emitter_init(&l->radiance, p, "L", NULL, error) &&
-               emitter_set_total(&l->radiance, p, "power", exitance(l), error);
-    return light_refuse(p, "power", "a textured area light", error) &&
-           spectrum_input_init(&l->colors, s, p, "L", CURVE_EMISSION, NULL, error) &&
-           emitter_init(&l->radiance, p, NULL, NULL, error);
+    bool textured = q && q->type == PARAM_TEXTURE;
+    if (params_has(p, "filename"))
+        return read_picture(l, s, p, error) && set_textured_power(l, p, error);
+    if (textured)
+        return spectrum_input_init(&l->colors, s, p, "L", CURVE_EMISSION, NULL, error) &&
+               emitter_init(&l->radiance, p, NULL, NULL, error) &&
+               set_textured_power(l, p, error);
+    return emitter_init(&l->radiance, p, "L", NULL, error) &&
+           emitter_set_total(&l->radiance, p, "power", exitance(l), error);
 }
 
 static void *create(const struct scene *s, const params *p, const transform *to_world,
@@ -92,8 +148,7 @@ static void *create(const struct scene *s, const params *p, const transform *to_
         error_at(error, on->place,
                  "a shape of \"alpha\" 0 can not shine; \"bool camera_visible\" false "
                  "hides a lamp from the camera");
-    else if (light_refuse(p, "filename", "an area light", error) &&
-             params_bool(p, "twosided", &l->two_sided, error) &&
+    else if (params_bool(p, "twosided", &l->two_sided, error) &&
              read_radiance(l, s, p, error))
         return l;
     free_area(l);
@@ -208,6 +263,7 @@ static spectrum radiance(const void *self, const surface_hit *hit, vec3 wo,
 
 const light_kind area_light_kind = {
     .name = "diffuse",
+    .parameters = "L filename scale power twosided",
     .create = create,
     .free = free_area,
     .power = power,

@@ -118,6 +118,7 @@ static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
 
 const light_kind distant_light_kind = {
     .name = "distant",
+    .parameters = "L scale illuminance from to",
     .is_delta = true,
     .is_parallel = true,
     .create = create,

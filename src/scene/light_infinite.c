@@ -24,8 +24,7 @@ static void *create(const struct scene *s, const params *p, const transform *to_
 {
     (void)s, (void)to_world, (void)on;
     infinite_light *l = g_new0(infinite_light, 1);
-    if (light_refuse(p, "portal", "an infinite light", error) &&
-        emitter_init(&l->radiance, p, "L", NULL, error) &&
+    if (emitter_init(&l->radiance, p, "L", NULL, error) &&
         emitter_set_total(&l->radiance, p, "illuminance", PI_F, error))
         return l;
     free_infinite(l);
@@ -120,6 +119,7 @@ static spectrum environment(const void *self, vec3 d, const wavelengths *w)
 
 const light_kind infinite_light_kind = {
     .name = "infinite",
+    .parameters = "L scale illuminance",
     .is_environment = true,
     .is_parallel = true,
     .create = create,

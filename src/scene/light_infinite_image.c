@@ -223,6 +223,7 @@ static spectrum environment(const void *self, vec3 d, const wavelengths *w)
 
 const light_kind image_sky_kind = {
     .name = "infinite",
+    .parameters = "L filename scale illuminance",
     .is_meant = has_filename,
     .is_environment = true,
     .is_parallel = true,

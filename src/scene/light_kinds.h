@@ -54,9 +54,6 @@ curve *emission_sum_curve(const emission_sum *sum, float scale);
  * left-handed. @return false with ERROR_INPUT if the transform stretches directions. */
 bool light_axes(frame *axes, const transform *to_world, const params *p, GError **error);
 
-/** @brief false with ERROR_INPUT at the parameter's place if it is given. */
-bool light_refuse(const params *p, const char *name, const char *what, GError **error);
-
 /** @brief A disk that covers the scene's bounding sphere, seen from where distant light
  * comes: the start of a ray along direction, through disk coordinates or through a given
  * point. */

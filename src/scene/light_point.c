@@ -105,6 +105,7 @@ static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
 
 const light_kind point_light_kind = {
     .name = "point",
+    .parameters = "I scale power from",
     .is_delta = true,
     .create = create,
     .free = free_point,

@@ -204,6 +204,7 @@ static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
 
 const light_kind spot_light_kind = {
     .name = "spot",
+    .parameters = "I scale power from to coneangle conedeltaangle",
     .is_delta = true,
     .create = create,
     .free = free_spot,

@@ -15,6 +15,11 @@ static const material_kind *const kinds[] = {
     &material_mix,
 };
 
+const material_kind *material_kind_at(size_t i)
+{
+    return i < G_N_ELEMENTS(kinds) ? kinds[i] : NULL;
+}
+
 static const material_kind *find_kind(const char *name, const params *p, GError **error)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
@@ -32,12 +37,14 @@ material *material_new(const struct scene *s, const char *kind, const params *p,
                        GError **error)
 {
     const material_kind *k = find_kind(kind, p, error);
-    void *self = k ? k->create(s, p, error) : NULL;
+    g_autofree char *what = g_strdup_printf("material '%s'", kind);
+    if (!k || !params_known(p, what, k->parameters, MATERIAL_PARAMETERS, error))
+        return NULL;
+    void *self = k->create(s, p, error);
     if (!self)
         return NULL;
     material *m = g_new0(material, 1);
     *m = (material){.kind = k, .self = self};
-    g_autofree char *what = g_strdup_printf("material '%s'", kind);
     if (!bump_new(&m->bump, s, p, error) || !params_all_used(p, what, error)) {
         material_free(m);
         return NULL;

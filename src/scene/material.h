@@ -41,6 +41,11 @@ typedef struct material {
     char *name; /**< from MakeNamedMaterial; NULL if none */
 } material;
 
+/** @brief The parameters that every material has. */
+#define MATERIAL_PARAMETERS "normalmap normalscale displacement"
+
+/** @brief Kind number i of the table; NULL behind the last. */
+const material_kind *material_kind_at(size_t i);
 material *material_new(const struct scene *s, const char *kind, const params *p,
                        GError **error);
 void material_free(material *m);

@@ -137,6 +137,8 @@ static unsigned plastic_lobes(const void *self)
 
 const material_kind material_coated_diffuse = {
     .name = "coateddiffuse",
+    .parameters = "reflectance eta roughness uroughness vroughness remaproughness "
+                  "thickness maxdepth nsamples albedo g",
     .create = plastic_create,
     .free = plastic_free,
     .make_bsdf = plastic_bsdf,

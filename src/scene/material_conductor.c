@@ -79,6 +79,7 @@ static unsigned metal_lobes(const void *self)
 
 const material_kind material_conductor = {
     .name = "conductor",
+    .parameters = "eta k reflectance roughness uroughness vroughness remaproughness",
     .create = metal_create,
     .free = metal_free,
     .make_bsdf = metal_bsdf,

@@ -101,6 +101,7 @@ static unsigned pane_lobes(const void *self)
 
 const material_kind material_dielectric = {
     .name = "dielectric",
+    .parameters = "eta roughness uroughness vroughness remaproughness " MEDIUM_PARAMETERS,
     .create = glass_create,
     .free = glass_free,
     .make_bsdf = glass_bsdf,
@@ -111,6 +112,7 @@ const material_kind material_dielectric = {
 
 const material_kind material_thin_dielectric = {
     .name = "thindielectric",
+    .parameters = "eta",
     .create = pane_create,
     .free = glass_free,
     .make_bsdf = pane_bsdf,

@@ -40,6 +40,7 @@ static unsigned diffuse_lobes(const void *self)
 
 const material_kind material_diffuse = {
     .name = "diffuse",
+    .parameters = "reflectance",
     .create = diffuse_create,
     .free = diffuse_free,
     .make_bsdf = diffuse_bsdf,

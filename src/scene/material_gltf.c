@@ -222,6 +222,8 @@ static bool gltf_encloses(const void *self)
 
 const material_kind material_gltf = {
     .name = "gltf",
+    .parameters = "basecolor metallic roughness eta specular specularcolor clearcoat "
+                  "clearcoatroughness transmission thin " MEDIUM_PARAMETERS,
     .create = gltf_create,
     .free = gltf_free,
     .make_bsdf = gltf_bsdf,

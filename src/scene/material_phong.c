@@ -72,6 +72,7 @@ static unsigned shiny_lobes(const void *self)
 
 const material_kind material_phong = {
     .name = "phong",
+    .parameters = "reflectance specular exponent",
     .create = shiny_create,
     .free = shiny_free,
     .make_bsdf = shiny_bsdf,

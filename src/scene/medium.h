@@ -9,6 +9,9 @@
  */
 #pragma once
 
+/** @brief The parameters that medium_read reads. */
+#define MEDIUM_PARAMETERS "attenuationcolor attenuationdistance absorption"
+
 #include "color/curve.h"
 #include "scene/hit.h"
 #include "scene/params.h"

@@ -14,6 +14,11 @@ static const shape_kind *const kinds[] = {
     &bilinear_kind, &subdivision_kind, &curve_kind,
 };
 
+const char *shape_kind_name(size_t i)
+{
+    return i < G_N_ELEMENTS(kinds) ? kinds[i]->name : NULL;
+}
+
 static const shape_kind *find_kind(const char *name)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {

@@ -90,6 +90,8 @@ struct shape {
     source_place place;
 };
 
+/** @brief Name of kind number i of the table; NULL behind the last. */
+const char *shape_kind_name(size_t i);
 shape *shape_new(const char *kind, const params *p, const shape_place *at,
                  GError **error);
 /** @brief A shape from a mesh in object space (moved to world space here; arrays are

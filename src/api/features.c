@@ -1,0 +1,7 @@
+#include "format/features.h"
+#include "nephroid/nephroid.h"
+
+char *neph_features_describe(void)
+{
+    return features_markdown();
+}
