@@ -2,9 +2,12 @@
 #include "command.h"
 #include "message.h"
 
-static gboolean as_json;
+static gboolean as_json, lenient;
 
 static const GOptionEntry entries[] = {
+    {"lenient", 0, 0, G_OPTION_ARG_NONE, &lenient,
+     "Replace what can not be rendered, with a warning, instead of refusing the scene",
+     NULL},
     {"json", 0, 0, G_OPTION_ARG_NONE, &as_json, "For programs", NULL},
     G_OPTION_ENTRY_NULL};
 
@@ -24,8 +27,9 @@ int command_info(int argc, char **argv)
         return exit_code;
     g_autoptr(GError) error = NULL;
     bool quiet = as_json;
-    g_autoptr(NephScene) scene =
-        neph_scene_load(argv[1], 0, log_to_stderr, &quiet, &error);
+    const NephLoadOptions options = {
+        .lenient = lenient, .log = log_to_stderr, .log_data = &quiet};
+    g_autoptr(NephScene) scene = neph_scene_load_with(argv[1], &options, &error);
     if (!scene)
         return report_error(error);
     g_autofree char *text = neph_scene_describe(scene, as_json);

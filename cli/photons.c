@@ -7,7 +7,7 @@
 
 static struct {
     char *output, *trace;
-    gboolean quiet;
+    gboolean quiet, lenient;
     overrides settings;
 } given;
 
@@ -24,6 +24,9 @@ static const GOptionEntry entries[] = {
      "Threads; 0: one per processor", "N"},
     {"seed", 0, 0, G_OPTION_ARG_STRING, &given.settings.seed, "Seed of random numbers",
      "N"},
+    {"lenient", 0, 0, G_OPTION_ARG_NONE, &given.lenient,
+     "Replace what can not be rendered, with a warning, instead of refusing the scene",
+     NULL},
     {"quiet", 'q', 0, G_OPTION_ARG_NONE, &given.quiet, "Only warnings and errors", NULL},
     G_OPTION_ENTRY_NULL};
 
@@ -86,8 +89,11 @@ static int work_on(const char *file, unsigned threads, size_t n_stories)
 {
     g_autoptr(GError) error = NULL;
     bool quiet = given.quiet;
-    g_autoptr(NephScene) scene =
-        neph_scene_load(file, threads, log_to_stderr, &quiet, &error);
+    const NephLoadOptions options = {.threads = threads,
+                                     .lenient = given.lenient,
+                                     .log = log_to_stderr,
+                                     .log_data = &quiet};
+    g_autoptr(NephScene) scene = neph_scene_load_with(file, &options, &error);
     if (!scene)
         return report_error(error);
     g_autoptr(NephSettings) settings = neph_scene_settings(scene);

@@ -15,7 +15,7 @@
 static struct {
     char **outputs;
     char *size, *exposure, *stats, *every;
-    gboolean quiet;
+    gboolean quiet, lenient;
     overrides settings;
 } given;
 
@@ -47,6 +47,9 @@ static const GOptionEntry entries[] = {
      "Brighten 8-bit images by so many stops", "STOPS"},
     {"stats", 0, 0, G_OPTION_ARG_FILENAME, &given.stats, "Write statistics as JSON",
      "FILE"},
+    {"lenient", 0, 0, G_OPTION_ARG_NONE, &given.lenient,
+     "Replace what can not be rendered, with a warning, instead of refusing the scene",
+     NULL},
     {"quiet", 'q', 0, G_OPTION_ARG_NONE, &given.quiet,
      "Only warnings and errors; no progress, no table", NULL},
     G_OPTION_ENTRY_NULL};
@@ -221,8 +224,11 @@ static int render_scene(job *j)
 {
     g_autoptr(GError) error = NULL;
     bool quiet = given.quiet;
-    g_autoptr(NephScene) scene =
-        neph_scene_load(j->scene_file, j->threads, log_to_stderr, &quiet, &error);
+    const NephLoadOptions options = {.threads = j->threads,
+                                     .lenient = given.lenient,
+                                     .log = log_to_stderr,
+                                     .log_data = &quiet};
+    g_autoptr(NephScene) scene = neph_scene_load_with(j->scene_file, &options, &error);
     if (!scene)
         return report_error(error);
     g_autoptr(NephRender) render = prepare(j, scene, &error);

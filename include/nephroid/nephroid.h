@@ -106,6 +106,18 @@ typedef struct NephScene NephScene;
  * failure the error holds up to 20 messages, one a line. */
 NEPH_API NephScene *neph_scene_load(const char *path, unsigned threads, NephLogFunc log,
                                     void *log_data, GError **error);
+/** @brief How to load a scene; zero-initialise. */
+typedef struct NephLoadOptions {
+    unsigned threads; /**< for the acceleration structure; 0: one per processor */
+    bool lenient;     /**< what can not be rendered (hair, subsurface, measured, media) is
+                         replaced, and a warning says by what */
+    NephLogFunc log;  /**< may be NULL */
+    void *log_data;
+} NephLoadOptions;
+
+/** @brief The same by options. */
+NEPH_API NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options,
+                                         GError **error);
 NEPH_API void neph_scene_free(NephScene *scene);
 /** @brief The settings that the file asks for (defaults where it does not); owned by
  * caller. */

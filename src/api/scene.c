@@ -14,16 +14,26 @@ static void forward_log(log_level level, const char *text, void *data)
                s->log_data);
 }
 
-NephScene *neph_scene_load(const char *path, unsigned threads, NephLogFunc log,
-                           void *log_data, GError **error)
+NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options,
+                                GError **error)
 {
     NephScene *s = g_new(NephScene, 1);
-    *s = (NephScene){.log = log, .log_data = log_data};
+    *s = (NephScene){.log = options->log, .log_data = options->log_data};
     const log_sink sink = {forward_log, s};
-    s->scene = format_load(path, threads, &sink, error);
+    const load_options how = {
+        .threads = options->threads, .lenient = options->lenient, .log = &sink};
+    s->scene = format_load_with(path, &how, error);
     if (!s->scene)
         g_clear_pointer(&s, neph_scene_free);
     return s;
+}
+
+NephScene *neph_scene_load(const char *path, unsigned threads, NephLogFunc log,
+                           void *log_data, GError **error)
+{
+    const NephLoadOptions options = {
+        .threads = threads, .log = log, .log_data = log_data};
+    return neph_scene_load_with(path, &options, error);
 }
 
 bool neph_scene_convert(const char *in, const char *out, NephLogFunc log, void *log_data,

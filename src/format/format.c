@@ -79,11 +79,18 @@ bool format_read(scene *s, const char *path, GError **error)
     return false;
 }
 
+scene *format_load_with(const char *path, const load_options *options, GError **error)
+{
+    g_autoptr(scene) s = scene_new(options->log);
+    s->lenient = options->lenient;
+    if (!format_read(s, path, error) || !commit(s, path, options->threads, error))
+        return NULL;
+    return g_steal_pointer(&s);
+}
+
 scene *format_load(const char *path, unsigned threads, const log_sink *log,
                    GError **error)
 {
-    g_autoptr(scene) s = scene_new(log);
-    if (!format_read(s, path, error) || !commit(s, path, threads, error))
-        return NULL;
-    return g_steal_pointer(&s);
+    const load_options options = {.threads = threads, .log = log};
+    return format_load_with(path, &options, error);
 }

@@ -9,6 +9,15 @@
  * format_load has it. */
 bool format_read(scene *s, const char *path, GError **error);
 
+/** @brief How to load. */
+typedef struct load_options {
+    unsigned threads;    /**< for the acceleration structure; 0 = all */
+    bool lenient;        /**< see scene/lenient.h */
+    const log_sink *log; /**< may be NULL; must outlive the scene */
+} load_options;
+
+/** @brief format_load by options. */
+scene *format_load_with(const char *path, const load_options *options, GError **error);
 /**
  * @brief Reads a scene file and commits the scene.
  * @param threads for the acceleration structure; 0 = all

@@ -4,6 +4,8 @@
  */
 #include "format/pbrt_parser.h"
 
+#include "scene/lenient.h"
+
 #include <string.h>
 
 bool pbrt_attribute_begin(pbrt_parser *parser, source_place place)
@@ -38,6 +40,14 @@ void pbrt_close_attributes(pbrt_parser *parser, guint depth)
     }
 }
 
+static void refuse_medium(pbrt_parser *parser, source_place place, const char *name)
+{
+    if (!scene_is_lenient(parser->scene, place, "medium \"%s\" becomes empty space",
+                          name))
+        pbrt_error(parser, place, "participating media are not supported, found \"%s\"",
+                   name);
+}
+
 bool pbrt_attribute(pbrt_parser *parser, source_place place)
 {
     static const char *const names[N_TARGETS] = {"shape", "light", "material", "texture"};
@@ -56,7 +66,7 @@ bool pbrt_attribute(pbrt_parser *parser, source_place place)
             return true;
         }
     if (strcmp(target, "medium") == 0)
-        pbrt_error(parser, at, "participating media are not supported");
+        refuse_medium(parser, at, target);
     else
         pbrt_error(parser, at,
                    "expected \"shape\", \"light\", \"material\" or \"texture\", found "
@@ -99,8 +109,7 @@ bool pbrt_medium_interface(pbrt_parser *parser, source_place place)
     if (lexer_peek(parser->words).kind == TOKEN_STRING)
         outside = pbrt_read_string(parser, "a medium", *inside ? NULL : &place);
     if (*inside || (outside && *outside))
-        pbrt_error(parser, place, "participating media are not supported, found \"%s\"",
-                   *inside ? inside : outside);
+        refuse_medium(parser, place, *inside ? inside : outside);
     return true;
 }
 
@@ -110,8 +119,7 @@ bool pbrt_make_named_medium(pbrt_parser *parser, source_place place)
     g_autoptr(params) p = name ? pbrt_read_params(parser, place) : NULL;
     if (!p)
         return false;
-    pbrt_error(parser, place, "participating media are not supported, found \"%s\"",
-               name);
+    refuse_medium(parser, place, name);
     return true;
 }
 

@@ -5,6 +5,7 @@
 #include "format/pbrt_parser.h"
 
 #include "format/ply.h"
+#include "scene/lenient.h"
 
 #include <string.h>
 
@@ -165,7 +166,10 @@ bool pbrt_light_source(pbrt_parser *parser, source_place place)
         return false;
     translate(parser, V3_LIGHT, &a);
     GError *error = NULL;
-    if (pbrt_is_moving(parser))
+    bool moves = pbrt_is_moving(parser) &&
+                 !scene_is_lenient(parser->scene, place,
+                                   "a light that moves stands still where it starts");
+    if (moves)
         pbrt_error(parser, place, "a light can not move, found a transform that does");
     else if (scene_add_light(parser->scene, a.kind, a.p, &parser->state.ctm, &error))
         pbrt_check_used(parser, a.p, "light", a.kind);

@@ -7,6 +7,7 @@
 #include "scene/scene.h"
 
 #include "base/memory.h"
+#include "scene/lenient.h"
 #include "scene/scene_film.h"
 #include "scene/scene_geometry.h"
 
@@ -133,8 +134,15 @@ int scene_add_material(scene *s, const char *name, const char *kind, const param
         error_at(error, p->place, "material \"%s\" is there already", name);
         return NO_INDEX;
     }
-    LISTENER_TELL(s, material, (int)s->materials->len, name, kind, p);
-    material *m = material_new(s, kind, p, error);
+    GError *inner = NULL;
+    g_autoptr(params) replaced = lenient_material(s, &kind, p, &inner);
+    if (inner) {
+        g_propagate_error(error, inner);
+        return NO_INDEX;
+    }
+    const params *given = replaced ? replaced : p;
+    LISTENER_TELL(s, material, (int)s->materials->len, name, kind, given);
+    material *m = material_new(s, kind, given, error);
     if (!m)
         return NO_INDEX;
     int index = (int)s->materials->len;
@@ -178,13 +186,19 @@ static bool take_shape(scene *s, shape *made, const shape_place *at, GError **er
         return false;
     }
     made->object = s->open_object;
-    if (at->area_light && s->open_object != NO_INDEX) {
+    bool shines = at->area_light;
+    if (shines && s->open_object != NO_INDEX) {
+        shines = !scene_is_lenient(s, at->area_light->place,
+                                   "a shape that moves or is part of an object does not "
+                                   "shine");
+    }
+    if (shines && s->open_object != NO_INDEX) {
         error_at(error, at->area_light->place,
                  "a shape that moves or is part of an object can not shine, in pbrt too");
         shape_free(made);
         return false;
     }
-    if (at->area_light) {
+    if (shines) {
         light *l = light_new(s, "diffuse", at->area_light, &at->to_world, made, error);
         if (!l) {
             shape_free(made);

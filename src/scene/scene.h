@@ -63,6 +63,8 @@ typedef struct scene {
     pixel_filter filter;
     settings settings; /**< defaults, then what the file asks for */
     log_sink log;
+    bool lenient; /**< what can not be rendered is replaced (lenient.h); set by the
+                     reader's caller before anything is added */
     const scene_listener *listener; /**< borrowed; NULL: nobody */
 
     /* From here on valid once committed. */

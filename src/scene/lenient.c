@@ -1,0 +1,102 @@
+#include "scene/lenient.h"
+
+#include "scene/scene.h"
+
+#include <string.h>
+
+bool scene_is_lenient(const scene *s, source_place place, const char *format, ...)
+{
+    if (!s->lenient)
+        return false;
+    va_list args;
+    va_start(args, format);
+    g_autofree char *text = g_strdup_vprintf(format, args);
+    va_end(args);
+    log_message(&s->log, LOG_WARNING, "%s:%d:%d: %s", place.file ? place.file : "",
+                place.line, place.column, text);
+    return true;
+}
+
+/* A material that can not be rendered, what is taken for it, and the parameters that
+ * stay. */
+typedef struct substitute {
+    const char *kind, *becomes;
+    const char *stays[8];
+} substitute;
+
+static const substitute substitutes[] = {
+    {"hair", "diffuse", {"reflectance"}},
+    {"subsurface",
+     "coateddiffuse",
+     {"reflectance", "eta", "roughness", "uroughness", "vroughness", "remaproughness"}},
+    {"measured", "diffuse", {NULL}},
+};
+
+static const substitute *find_substitute(const char *kind)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(substitutes); i++) {
+        if (strcmp(substitutes[i].kind, kind) == 0)
+            return &substitutes[i];
+    }
+    return NULL;
+}
+
+static bool stays(const substitute *sub, const param *q)
+{
+    static const char *const of_all[] = {"displacement", "normalmap", NULL};
+    for (size_t i = 0; i < G_N_ELEMENTS(sub->stays) && sub->stays[i]; i++) {
+        if (strcmp(sub->stays[i], q->name) == 0)
+            return true;
+    }
+    return g_strv_contains(of_all, q->name);
+}
+
+static bool copy_param(params *to, const param *q, GError **error)
+{
+    if (q->strings)
+        return params_add_strings(to, q->place, q->type, q->name,
+                                  (const char *const *)q->strings, q->n, error);
+    if (q->integers)
+        return params_add_integers(to, q->place, q->type, q->name, q->integers, q->n,
+                                   error);
+    return params_add_numbers(to, q->place, q->type, q->name, q->numbers, q->n, error);
+}
+
+/* The parameters that stay; the names of the others are put into `dropped`. */
+static params *keep_params(const substitute *sub, const params *p, GString *dropped,
+                           GError **error)
+{
+    g_autoptr(params) kept = params_new(p->place, p->base_directory, p->space);
+    kept->to_world = p->to_world;
+    for (guint i = 0; i < p->list->len; i++) {
+        param *q = p->list->pdata[i];
+        bool is_type = strcmp(q->name, "type") == 0; /* of MakeNamedMaterial */
+        q->used = true;
+        if (stays(sub, q) && !copy_param(kept, q, error))
+            return NULL;
+        if (!stays(sub, q) && !is_type)
+            g_string_append_printf(dropped, "%s '%s'", dropped->len ? "," : ", without",
+                                   q->name);
+    }
+    return g_steal_pointer(&kept);
+}
+
+params *lenient_material(const scene *s, const char **kind, const params *p,
+                         GError **error)
+{
+    const substitute *sub = find_substitute(*kind);
+    if (!sub)
+        return NULL;
+    if (!s->lenient) {
+        error_at(error, p->place,
+                 "material \"%s\" is not supported; --lenient takes \"%s\" for it", *kind,
+                 sub->becomes);
+        return NULL;
+    }
+    g_autoptr(GString) dropped = g_string_new(NULL);
+    params *kept = keep_params(sub, p, dropped, error);
+    scene_is_lenient(s, p->place, "material \"%s\" becomes \"%s\"%s", *kind, sub->becomes,
+                     dropped->str);
+    *kind = sub->becomes;
+    return kept;
+}

@@ -1,0 +1,22 @@
+/*
+ * What is taken for things that can not be rendered, where the user asked for that
+ * (--lenient): every replacement is told as a warning with its place.
+ */
+#pragma once
+
+#include "scene/params.h"
+
+struct scene;
+
+/** @brief True if the scene is read leniently; then the text, which says what is taken
+ * for what, is logged as a warning. */
+bool scene_is_lenient(const struct scene *s, source_place place, const char *format, ...)
+    G_GNUC_PRINTF(3, 4);
+
+/** @brief The material that is taken for one of a kind that can not be rendered (hair,
+ * subsurface, measured), with the parameters that it shares with it; owned by the caller.
+ * @param kind becomes that of the substitute
+ * @return NULL: nothing is to be replaced (kind is as it was), or, with ERROR_INPUT, the
+ * scene is not read leniently */
+params *lenient_material(const struct scene *s, const char **kind, const params *p,
+                         GError **error);

@@ -1,0 +1,106 @@
+/*
+ * lenient: what can not be rendered is refused by name and place, or replaced with a
+ * warning where that is asked for.
+ */
+#include "scene_text.h"
+
+#define HEAD                                                                             \
+    "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\n"                 \
+    "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\n"
+
+static void keep_warning(log_level level, const char *text, void *data)
+{
+    if (level == LOG_WARNING)
+        g_ptr_array_add(data, g_strdup(strchr(text, ':') + 1));
+}
+
+/* Strictly refused with that error; leniently read with that one warning. */
+static scene *refused_or_replaced(const char *text, const char *error_text,
+                                  const char *warning)
+{
+    scene_folder f = folder_new(text);
+    g_autoptr(GPtrArray) warnings = g_ptr_array_new_with_free_func(g_free);
+    const log_sink sink = {keep_warning, warnings};
+    load_options how = {.threads = 1, .log = &sink};
+    g_autoptr(GError) strict = NULL, error = NULL;
+    g_assert_null(format_load_with(f.main, &how, &strict));
+    g_assert_error(strict, NEPH_ERROR, ERROR_INPUT);
+    if (!strstr(strict->message, error_text))
+        g_error("expected %s, found %s", error_text, strict->message);
+    how.lenient = true;
+    scene *s = format_load_with(f.main, &how, &error);
+    g_assert_no_error(error);
+    g_assert_cmpuint(warnings->len, ==, 1);
+    g_assert_cmpstr(warnings->pdata[0], ==, warning);
+    s->log = (log_sink){0};
+    folder_remove(&f);
+    return s;
+}
+
+static const char *material_of(const scene *s)
+{
+    const material *m = s->materials->pdata[0];
+    return m->kind->name;
+}
+
+static void test_materials(void)
+{
+    g_autoptr(scene) hair = refused_or_replaced(
+        HEAD "Material \"hair\" \"float eumelanin\" 1.3 \"float beta_m\" 0.2\n"
+             "Shape \"sphere\"\n",
+        "scene.pbrt:5:1: material \"hair\" is not supported; --lenient takes \"diffuse\"",
+        "5:1: material \"hair\" becomes \"diffuse\", without 'eumelanin', 'beta_m'");
+    g_assert_cmpstr(material_of(hair), ==, "diffuse");
+    g_autoptr(scene) wax = refused_or_replaced(
+        HEAD "MakeNamedMaterial \"wax\" \"string type\" \"subsurface\" "
+             "\"rgb reflectance\" [0.9 0.8 0.2] \"float roughness\" 0.2 "
+             "\"rgb mfp\" [1 1 1]\nNamedMaterial \"wax\"\nShape \"sphere\"\n",
+        "scene.pbrt:5:1: material \"subsurface\" is not supported",
+        "5:1: material \"subsurface\" becomes \"coateddiffuse\", without 'mfp'");
+    g_assert_cmpstr(material_of(wax), ==, "coateddiffuse");
+    g_autoptr(scene) measured = refused_or_replaced(
+        HEAD "Material \"measured\" \"string filename\" \"cloth.bsdf\"\n"
+             "Shape \"sphere\"\n",
+        "scene.pbrt:5:1: material \"measured\" is not supported",
+        "5:1: material \"measured\" becomes \"diffuse\", without 'filename'");
+    g_assert_cmpstr(material_of(measured), ==, "diffuse");
+}
+
+static void test_media(void)
+{
+    g_autoptr(scene) made = refused_or_replaced(
+        HEAD "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n",
+        "scene.pbrt:5:1: participating media are not supported, found \"fog\"",
+        "5:1: medium \"fog\" becomes empty space");
+    g_autoptr(scene) used =
+        refused_or_replaced(HEAD "MediumInterface \"fog\" \"\"\nShape \"sphere\"\n",
+                            "scene.pbrt:5:17: participating media",
+                            "5:17: medium \"fog\" becomes empty space");
+    g_autoptr(scene) given =
+        refused_or_replaced(HEAD "Attribute \"medium\" \"float g\" 0.5\n",
+                            "scene.pbrt:5:11: participating media",
+                            "5:11: medium \"medium\" becomes empty space");
+}
+
+static void test_lights_of_objects(void)
+{
+    g_autoptr(scene) s = refused_or_replaced(
+        HEAD "ObjectBegin \"lamp\"\nAreaLightSource \"diffuse\"\nShape \"sphere\"\n"
+             "ObjectEnd\nObjectInstance \"lamp\"\n",
+        "scene.pbrt:6:1: a shape that moves or is part of an object can not shine",
+        "6:1: a shape that moves or is part of an object does not shine");
+    g_assert_cmpuint(s->lights->len, ==, 1);
+    g_autoptr(scene) moving = refused_or_replaced(
+        HEAD "ActiveTransform EndTime Translate 1 0 0\nLightSource \"point\"\n",
+        "scene.pbrt:6:1: a light can not move",
+        "6:1: a light that moves stands still where it starts");
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/lenient/materials", test_materials);
+    g_test_add_func("/lenient/media", test_media);
+    g_test_add_func("/lenient/lights", test_lights_of_objects);
+    return g_test_run();
+}
