@@ -1,0 +1,158 @@
+/*
+ * What went wrong in other photon mappers, each as a test of its own: photons behind a
+ * surface that shrank the radius in front of it, seams where normals are interpolated,
+ * one wide look-up that made all slow, and counters that ran over at 2³² photons.
+ *
+ * One time of the shutter for all photons of a pass is in test_motion.
+ */
+#include "math/sampler.h"
+#include "photon/estimate.h"
+#include "photon/trace.h"
+#include "rooms.h"
+#include "verify.h"
+
+#include <time.h>
+
+/* ---- Photons behind the surface ---- */
+
+/* An even field of 10,000 photons on 1 m², one W/m² from above, and `behind` times as
+   many from below. */
+static photon_map *field(uint32_t behind)
+{
+    enum { N = 10000 };
+    photon_store store = {0};
+    uint32_t n = N * (1 + behind);
+    g_assert_true(photon_store_reserve(&store, n, NULL));
+    for (uint32_t i = 0; i < n; i++) {
+        sampler random = sampler_make(5, i);
+        vec2 u = sampler_2d(&random);
+        photon p = {.p = vec3_make(u.x - 0.5f, u.y - 0.5f, 0),
+                    .wi = vec3_make(0, 0, i < N ? 1 : -1),
+                    .flux = spectrum_fill(1.0f / N)};
+        photon_store_put(&store, &p);
+    }
+    return photon_map_build(MAP_KDTREE, &store, 0, 1, NULL);
+}
+
+static void test_photons_behind(void)
+{
+    g_autoptr(photon_map) without = field(0), with = field(20);
+    const estimate_options options = {
+        .kernel = {KERNEL_CONSTANT, 1}, .nearest = 200, .radius = INFINITY, .flatten = 1};
+    estimate_scratch scratch = {0};
+    estimate_info a, b;
+    vec3 up = vec3_make(0, 0, 1), here = vec3_make(0, 0, 0);
+    spectrum alone = photon_irradiance(without, here, up, &options, &scratch, &a);
+    spectrum beside = photon_irradiance(with, here, up, &options, &scratch, &b);
+    g_test_message("radius %g and %g, irradiance %g and %g", (double)a.radius,
+                   (double)b.radius, (double)alone[0], (double)beside[0]);
+    g_assert_cmpfloat(fabsf(a.radius / b.radius - 1), <, 1e-5f);
+    g_assert_cmpfloat(fabsf(alone[0] / beside[0] - 1), <, 1e-4f);
+    estimate_scratch_clear(&scratch);
+}
+
+/* ---- Interpolated normals ---- */
+
+/* All light from photons, and from there once more, on a coarse ball that pretends to be
+   round; its seams would show in a block. */
+static void test_shading_normals(void)
+{
+    g_autoptr(scene) s = scene_of(ROOM_CAMERA SIZE(
+        32) "WorldBegin LightSource \"infinite\"\n"
+            "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
+            "Shape \"disk\" \"float radius\" 4\n"
+            "Translate 0 0 0.9 Shape \"trianglemesh\" \"point3 P\" [1 0 0 0 1 0 -1 0 0 0 "
+            "-1 "
+            "0 0 0 0.8 0 0 -0.8] \"normal N\" [1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 1 0 0 -1] "
+            "\"integer indices\" [0 1 4 1 2 4 2 3 4 3 0 4 1 0 5 2 1 5 3 2 5 0 3 5]\n");
+    int more = VERIFY_SHORT_LONG(1, 16);
+    trial path =
+        verify_render(s, "integrator=path spp=4 max_backward_bounces=-1", 32 * more);
+    trial photons = verify_render(s,
+                                  "integrator=photonmap direct_illumination=off spp=2 "
+                                  "photons=40000 max_backward_bounces=-1",
+                                  32 * more);
+    verify_agree("direct map", &photons, &path, 0.01, 0.05);
+}
+
+/* ---- One wide look-up ---- */
+
+/* A lit table; and the same with a desert to the horizon, where hardly a photon falls. */
+#define TABLE                                                                            \
+    "LookAt 0 -3 1.5  0 0 0.5  0 0 1 Camera \"perspective\" \"float fov\" 50\n" SIZE(    \
+        32) "WorldBegin LightSource \"spot\" \"rgb I\" [5 5 5] \"point3 from\" [0 0 3] " \
+            "\"point3 to\" [0 0 0] \"float coneangle\" 40\n"                             \
+            "Shape \"disk\" \"float radius\" 2\n"                                        \
+            "AttributeBegin Translate 0 0 0.5 Shape \"sphere\" \"float radius\" 0.4 "    \
+            "AttributeEnd\n"
+
+static double seconds_of(const char *text)
+{
+    g_autoptr(scene) s = scene_of(text);
+    double best = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        clock_t start = clock();
+        g_autoptr(image) img =
+            render_with(s, "integrator=photonmap passes=4 spp=4 photons=60000 threads=1");
+        best = fmin(best, (double)(clock() - start) / CLOCKS_PER_SEC);
+    }
+    return best;
+}
+
+static void test_wide_radius(void)
+{
+    double near = seconds_of(TABLE);
+    double far =
+        seconds_of(TABLE "Shape \"disk\" \"float height\" -0.01 \"float radius\" "
+                         "2000\n");
+    g_test_message("%g s, with a desert %g s", near, far);
+    g_assert_cmpfloat(far, <, 5 * near + 0.2);
+}
+
+/* ---- Beyond 2³² ---- */
+
+static void note_start(const photon_event *event, void *data)
+{
+    if (event->kind == PHOTON_EMITTED)
+        *(photon_event *)data = *event;
+}
+
+static void test_counters(void)
+{
+    g_autoptr(scene) s = scene_of(ROOM);
+    settings how = settings_default();
+    const uint64_t beyond = (uint64_t)1 << 32;
+    g_assert_true(settings_set(&how, "photons", "10000000000", NULL));
+    g_assert_cmpint(how.photons, ==, 10000000000);
+    trace_task task = {.scene = s,
+                       .how = &how,
+                       .w = wavelengths_at(0.5f),
+                       .photon_class = PHOTON_DIRECT,
+                       .n_photons = 2 * beyond};
+    trace_task few = task;
+    few.n_photons = 1024;
+    double sum = 0, sum_few = 0;
+    for (uint64_t i = 0; i < 1024; i++) {
+        photon_event low = {0}, high = {0}, of_few = {0};
+        photon_tell(&task, i, note_start, &low);
+        photon_tell(&task, beyond + i, note_start, &high);
+        photon_tell(&few, i, note_start, &of_few);
+        g_assert_cmpuint(high.index, ==, beyond + i);
+        g_assert_cmpfloat(length3(high.p - low.p), >, 0.0f);
+        sum += (double)spectrum_mean(high.flux);
+        sum_few += (double)spectrum_mean(of_few.flux);
+    }
+    /* each carries its share of the lamp, one of 2³³ */
+    g_assert_cmpfloat(fabs(sum / sum_few * 2 * (double)beyond / 1024 - 1), <, 1e-4);
+    g_assert_cmpuint(sizeof render_get_statistics(NULL).emitted[0], ==, 8);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/verify/peers/photons-behind", test_photons_behind);
+    g_test_add_func("/verify/peers/shading-normals", test_shading_normals);
+    g_test_add_func("/verify/peers/wide-radius", test_wide_radius);
+    g_test_add_func("/verify/peers/counters", test_counters);
+    return g_test_run();
+}
