@@ -24,6 +24,7 @@ typedef struct photon_path {
     ray ray;
     spectrum flux;
     int light, lane;
+    float share;        /* of its light that it carries */
     caustic_end end;    /* the lamp's end of its way, as far as is known: for the share */
     uint32_t primitive; /* of the light */
     bool from_delta;    /* the light cannot be hit by a ray */
@@ -50,6 +51,7 @@ static void tell(const photon_path *path, photon_event_kind kind, const surface_
         .light = path->light,
         .lobe = lobe,
         .flux = path->flux,
+        .share = path->share,
     };
     path->tell(&event, path->tell_data);
 }
@@ -109,6 +111,7 @@ static bool emit(photon_path *path)
     path->lane = ALL_LANES;
     path->from_delta = scene_light(task->scene, at.light)->kind->is_delta;
     path->specular_only = true;
+    path->share = 1.0f;
     path->primitive = at.primitive;
     path->end = (caustic_end){
         .light = at.light, .p = at.ray.origin, .n = at.n, .direction = at.ray.direction};
@@ -231,9 +234,6 @@ static float share_at(photon_path *path, const surface_hit *hit, const bsdf *b,
     return caustic_share_of(task->share, end);
 }
 
-/* A photon whose share is smaller than this is one of few that carry as much. */
-#define LEAST_SHARE 0.25f
-
 /* Scatters at the hit. @return false if the photon's way ends here. */
 static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
 {
@@ -254,8 +254,9 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
         minf(1.0f, power_of(task->how, flux) / power_of(task->how, path->flux));
     if (scattered) {
         float share = share_at(path, hit, b, &next);
+        path->share *= share;
         flux *= share;
-        survival *= minf(1.0f, share / LEAST_SHARE);
+        survival *= minf(1.0f, share / PHOTON_LEAST_SHARE);
     }
     if (!(u.roulette < survival)) {
         tell(path, PHOTON_ABSORBED, hit, 0);

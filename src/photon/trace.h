@@ -86,8 +86,13 @@ typedef struct photon_event {
     const surface_hit *hit; /**< NULL for EMITTED and LEFT */
     int light;
     unsigned lobe; /**< of SCATTERED */
-    spectrum flux; /**< of the photon after the event */
+    spectrum flux; /**< of the photon after the event, its share alone */
+    float share;   /**< see trace_task.share */
 } photon_event;
+
+/** @brief A photon whose share is smaller than this is one of few that carry as much: its
+ * flux is multiplied by this instead, with a probability of their ratio. */
+#define PHOTON_LEAST_SHARE 0.25f
 
 /** @brief Traces photon `index` of the task alone and tells each event (000 §4.4). */
 void photon_tell(const trace_task *task, uint64_t index,

@@ -9,7 +9,8 @@
 
 /** @brief What the last trials brought. */
 typedef struct aim_result {
-    double flux;  /**< of all lights on what the camera sees, of a pass, W per nm */
+    double noise; /**< square of the noise that a camera sample had if it had to find by
+                     itself what photons bring: (W m⁻² sr⁻¹ nm⁻¹)² */
     float *boost; /**< by light: how much denser than by the light's own emission useful
                      photons are sent; the caller frees it with g_free */
 } aim_result;

@@ -23,14 +23,14 @@ static caustic_share trial_share(const transport_plan *plan)
 /* Sends trial photons, and from what they bring decides how many a pass has. */
 static bool plan_photons(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
-    aim_result found = {.flux = (double)INFINITY};
+    aim_result found = {.noise = (double)INFINITY};
     if (!aim_caustics(plan, &found, cancel, error)) {
         g_free(found.boost);
         return false;
     }
     plan->boost = found.boost;
     plan->share.boost = found.boost;
-    caustic_budget_decide(plan, found.flux);
+    caustic_budget_decide(plan, found.noise);
     return true;
 }
 

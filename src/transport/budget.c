@@ -1,24 +1,16 @@
 #include "transport/budget.h"
 
-#include "transport/visible.h"
+#include "transport/path.h"
 
 enum {
     LEAST_PHOTONS = 20000, /* a pass, however small the picture */
     PHOTONS_PER_SAMPLE = 2,
-    VISIBLE_POINTS = 512,
+    PAIRS = 1024,
 };
 
-/* From this share of the light in sight on, a caustic is worth all photons. */
-#define FULL_SHARE 0.001
-
-/* A gather behind a diffuse bounce is one of many that a pixel averages, and is left to
-   chance where it brings little: its probability over the share of light. */
-#define BLURRED_PER_SHARE 4.0
-#define LEAST_BLURRED 0.1
-
 /* Fewer photons than this share of all are none, or if nothing else finds the light, so
-   many. */
-#define LEAST_WORTH 0.02
+   many. A caustic that adds a hundredth to the variance is not seen for it. */
+#define LEAST_WORTH 0.1
 
 uint64_t caustic_budget(const transport_plan *plan)
 {
@@ -32,37 +24,42 @@ uint64_t caustic_budget(const transport_plan *plan)
     return (uint64_t)(own > 0 ? own : MIN(how->photons, most));
 }
 
-/* Irradiance at a visible point straight from the lights, by one sample. */
-static double direct_irradiance(const scene *s, const visible_point *at, sampler *random)
+/* A sample of plain path tracing through a place of the film: mean over wavelengths. */
+static double path_sample(const path_pass *pass, vec2 raster, sampler random,
+                          transport_scratch *scratch)
 {
-    const wavelengths w = wavelengths_at(0.5f);
-    light_numbers u = sampler_light(random);
-    int index;
-    light_sample to;
-    if (!scene_sample_light(s, &w, at->p, u.light, u.primitive, u.place, &index, &to))
-        return 0.0;
-    float cosine = dot3(to.wi, at->n);
-    const surface_hit here = {.p = at->p, .n_geom = at->n, .material = NO_INDEX};
-    ray shadow = hit_ray_to(&here, to.wi, to.distance);
-    if (!(cosine > 0.0f) || scene_occluded(s, &shadow))
-        return 0.0;
-    return (double)(spectrum_mean(to.radiance) * cosine / to.pdf);
+    radiance_sample out = {.groups = NULL};
+    spectrum sum = {0};
+    vec2 u_lens = sampler_2d(&random);
+    ray r = camera_ray(&pass->plan->scene->camera, raster, u_lens, sampler_1d(&random));
+    path_radiance(pass, &r, &random, scratch, &out);
+    for (int i = 0; i < N_LAYERS; i++) {
+        if (i != LAYER_CAUSTIC)
+            sum += out.layers[i];
+    }
+    return (double)spectrum_mean(sum);
 }
 
-/* Flux straight from the lights on what the camera sees. */
-static double direct_flux(const transport_plan *plan)
+/* The square of a camera sample's noise, caustics apart: from pairs of samples. */
+static double rest_noise(const transport_plan *plan)
 {
-    visible_point points[VISIBLE_POINTS];
-    size_t n = find_visible_points(plan, VISIBLE_POINTS, points);
     const film_settings *film = &plan->scene->film;
-    double pixels_each = (double)film->width * film->height / VISIBLE_POINTS, sum = 0.0;
+    transport_scratch scratch = {0};
+    const path_pass pass = {.plan = plan,
+                            .w = wavelengths_at(0.5f),
+                            .options.deterministic = !plan->how.multiple_samples};
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x627564676574u);
-    for (size_t i = 0; i < n; i++) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < PAIRS; i++) {
         sampler random = sampler_make(key, i);
-        double area = (double)(points[i].pixel * points[i].pixel) * pixels_each;
-        sum += area * direct_irradiance(plan->scene, &points[i], &random);
+        vec2 u = sampler_2d(&random);
+        vec2 raster = {u.x * (float)film->width, u.y * (float)film->height};
+        double a = path_sample(&pass, raster, sampler_split(&random, 0), &scratch);
+        double b = path_sample(&pass, raster, sampler_split(&random, 1), &scratch);
+        sum += isfinite(a + b) ? 0.5 * (a - b) * (a - b) : 0.0;
     }
-    return sum;
+    transport_scratch_clear(&scratch);
+    return sum / PAIRS;
 }
 
 static bool has_delta_lights(const scene *s)
@@ -74,18 +71,18 @@ static bool has_delta_lights(const scene *s)
     return false;
 }
 
-void caustic_budget_decide(transport_plan *plan, double flux)
+void caustic_budget_decide(transport_plan *plan, double noise)
 {
     uint64_t *n = &plan->n_photons[PHOTON_CAUSTIC];
     plan->p_blurred = 1.0f;
-    if (isinf(flux))
+    if (isinf(noise))
         return;
-    double share = flux > 0.0 ? flux / (flux + direct_flux(plan)) : 0.0;
-    double worth = fmin(1.0, sqrt(share / FULL_SHARE));
-    plan->p_blurred = (float)CLAMP(BLURRED_PER_SHARE * share, LEAST_BLURRED, 1.0);
+    double rest = noise > 0.0 ? rest_noise(plan) : 1.0;
+    double worth = rest > 0.0 ? fmin(1.0, sqrt(noise / rest)) : 1.0;
+    plan->p_blurred = (float)fmax(worth, LEAST_WORTH);
     if (plan->how.class_photons[PHOTON_CAUSTIC] > 0)
         return;
-    bool needed = flux > 0.0 && has_delta_lights(plan->scene);
+    bool needed = noise > 0.0 && has_delta_lights(plan->scene);
     if (worth < LEAST_WORTH)
         worth = needed ? LEAST_WORTH : 0.0;
     *n = worth > 0.0 ? (uint64_t)MAX(worth * (double)*n, 1.0) : 0;

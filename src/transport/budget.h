@@ -1,10 +1,12 @@
 /*
  * How many photons a pass of auto is worth, from what trial photons were seen to bring.
  *
- * A caustic that gives the picture a thousandth of its light deserves as many photons as
- * any; from there on down their number falls with the root of what they give, and where
- * that is next to nothing and paths can find it, there are none at all: the pass is then
- * one of path tracing, and costs as much.
+ * Photons are there to take away the noise that paths from the eye would have if they had
+ * to find caustics by themselves. That noise is known from trial photons, since each
+ * knows how likely a path was to find what it brings; the noise of all other light is
+ * measured with paths. If the former is as large as the latter, a pass has all photons;
+ * below, their number falls as its root; where it is next to nothing there are none: the
+ * pass is then one of path tracing, and costs as much.
  */
 #pragma once
 
@@ -14,7 +16,7 @@
  * `photons` and not many more than the camera's samples; 0 without casters. */
 uint64_t caustic_budget(const transport_plan *plan);
 
-/** @brief Sets plan->n_photons of caustics, and p_blurred, by what they bring: `flux` of
- * one pass on what the camera sees, mean over wavelengths, W per nm; INFINITY where that
- * is not known. */
-void caustic_budget_decide(transport_plan *plan, double flux);
+/** @brief Sets plan->n_photons of caustics, and p_blurred, by the noise of a camera
+ * sample without photons, squared (aim_result.noise); INFINITY where that is not known.
+ */
+void caustic_budget_decide(transport_plan *plan, double noise);

@@ -28,8 +28,7 @@ static bool find_one(const lookout *from, ray r, sampler *random, visible_point 
             scene_bsdf(from->scene, &hit, &from->w, ALL_LANES, &from->options, &b);
         if (surface && (b.lobes & LOBE_DIFFUSE)) {
             float area = camera_pixel_area(&from->scene->camera, way);
-            *out = (visible_point){hit.p, face_forward(hit.n_geom, -r.direction),
-                                   sqrtf(area)};
+            *out = (visible_point){hit.p, sqrtf(area)};
             return true;
         }
         float u_lobe = sampler_1d(random);

@@ -7,7 +7,7 @@
 #include "transport/transport.h"
 
 typedef struct visible_point {
-    vec3 p, n;   /**< n: geometric normal on the side that is seen */
+    vec3 p;
     float pixel; /**< width of a pixel's footprint there, m */
 } visible_point;
 
