@@ -147,6 +147,8 @@ typedef struct NephCamera {
                               top; follows from fov and the picture's shape */
     double lens_radius;    /**< 0: everything is sharp */
     double focal_distance; /**< sharp at this distance along direction */
+    const char *kind; /**< "perspective", "orthographic" or "spherical"; static. A NULL
+                         is taken as the first */
 } NephCamera;
 
 /** @brief The present view. */
