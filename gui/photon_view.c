@@ -77,6 +77,18 @@ static void camera_rows(const NephCamera *c, double rows[3][3])
     }
 }
 
+/* From rays through a point to parallel ones. */
+static void flatten(double m[4][4], double near, double far, const double shift[2])
+{
+    for (int i = 0; i < 4; i++) {
+        double z = m[3][i], one = i == 3 ? 1.0 : 0.0;
+        m[0][i] += shift[0] * (one - z);
+        m[1][i] += shift[1] * (one - z);
+        m[2][i] = 2.0 / (far - near) * z - one * (far + near) / (far - near);
+        m[3][i] = one;
+    }
+}
+
 /* World to clip space, column by column. */
 static void clip_matrix(const photon_view *v, float out[16])
 {
@@ -100,6 +112,8 @@ static void clip_matrix(const photon_view *v, float out[16])
                   (i == 3 ? 2.0 * far * near / (far - near) : 0.0);
         m[3][i] = z;
     }
+    if (g_strcmp0(c->kind, "orthographic") == 0)
+        flatten(m, near, far, shift);
     for (int r = 0; r < 4; r++)
         for (int i = 0; i < 4; i++)
             out[4 * i + r] = (float)m[r][i];

@@ -350,6 +350,49 @@ static void test_wireframe(void)
     }
 }
 
+/* Two instances of a cube have twice its edges, where they stand. */
+static void test_wireframe_instances(void)
+{
+    g_autofree char *path = g_build_filename(folder, "scene.pbrt", NULL);
+    g_auto(GStrv) parts = g_strsplit(cube, "Shape", 2);
+    g_autofree char *text = g_strconcat(
+        parts[0], "ObjectBegin \"one\"\nShape", parts[1],
+        "ObjectEnd\nObjectInstance \"one\"\nTranslate 5 0 0\nObjectInstance \"one\"\n",
+        NULL);
+    g_assert_true(g_file_set_contents(path, text, -1, NULL));
+    g_autoptr(NephScene) boxes = load(path);
+    size_t n, moved = 0;
+    g_autofree float *edges = neph_scene_wireframe(boxes, 1000, &n);
+    g_assert_cmpuint(n, ==, 24);
+    for (size_t i = 0; i < n; i++)
+        moved += edges[6 * i] > 4.0f;
+    g_assert_cmpuint(moved, ==, 12);
+}
+
+/* Parallel rays, and what they meet is seen where they start. */
+static void test_camera_orthographic(void)
+{
+    g_autoptr(NephScene) scene =
+        make_scene("LookAt 0 0 -2  0 0 0  0 1 0\n"
+                   "Camera \"orthographic\" \"float screenwindow\" [-2 2 -1 1]\n");
+    NephCamera c;
+    double origin[3], direction[3], x, y, p[3];
+    neph_scene_camera(scene, &c);
+    g_assert_cmpstr(c.kind, ==, "orthographic");
+    neph_camera_ray(&c, 0.75, 0.25, origin, direction);
+    assert_near(origin, (const double[]){1, 0.5, -2}, 3, 1e-6);
+    assert_near(direction, (const double[]){0, 0, 1}, 3, 1e-9);
+    for (int i = 0; i < 3; i++)
+        p[i] = origin[i] + 7.0 * direction[i];
+    g_assert_true(neph_camera_project(&c, p, &x, &y));
+    g_assert_cmpfloat_with_epsilon(x, 0.75, 1e-6);
+    g_assert_cmpfloat_with_epsilon(y, 0.25, 1e-6);
+    c.position[0] = 1.0;
+    g_assert_true(neph_scene_set_camera(scene, &c, NULL));
+    g_autofree char *text = neph_camera_text(&c);
+    g_assert_null(strstr(text, "Camera"));
+}
+
 /* ---- Photons ---- */
 
 static NephPhotons *trace(const NephScene *scene, const char *photons)
@@ -554,6 +597,8 @@ int main(int argc, char **argv)
     g_test_add_func("/api-view/bounds", test_bounds);
     g_test_add_func("/api-view/pick", test_pick);
     g_test_add_func("/api-view/wireframe", test_wireframe);
+    g_test_add_func("/api-view/wireframe-instances", test_wireframe_instances);
+    g_test_add_func("/api-view/camera/orthographic", test_camera_orthographic);
     g_test_add_func("/api-view/photons/paths", test_photon_paths);
     g_test_add_func("/api-view/photons/cancelled", test_photons_cancelled);
     g_test_add_func("/api-view/photons/estimate", test_estimate);

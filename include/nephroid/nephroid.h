@@ -153,23 +153,25 @@ typedef struct NephCamera {
 
 /** @brief The present view. */
 NEPH_API void neph_scene_camera(const NephScene *scene, NephCamera *out);
-/** @brief Looks from elsewhere; while nothing renders the scene. Everything but screen is
- * taken over; NEPH_ERROR_USAGE if it is no view (not finite, direction zero or parallel
- * to up, fov or lens out of range), and the scene is as it was. */
+/** @brief Looks from elsewhere; while nothing renders the scene. Everything but screen
+ * and kind is taken over, and what moved stands still; NEPH_ERROR_USAGE if it is no view
+ * (not finite, direction zero or parallel to up, fov or lens out of range), and the scene
+ * is as it was. */
 NEPH_API bool neph_scene_set_camera(NephScene *scene, const NephCamera *camera,
                                     GError **error);
 /** @brief Changes fov and with it screen. */
 NEPH_API void neph_camera_set_fov(NephCamera *camera, double degrees);
 /** @brief What the middle of the lens sees at a place of the picture: x to the right and
- * y down, both 0..1. direction is unit. */
+ * y down, both 0..1. direction is unit. A spherical camera is taken as one of latitude
+ * and longitude. */
 NEPH_API void neph_camera_ray(const NephCamera *camera, double x, double y,
                               double origin[3], double direction[3]);
 /** @brief Where a point is in the picture, as above, also outside of it; false if it is
- * behind the camera. */
+ * behind the camera. Of a spherical camera: where a perspective one would see it. */
 NEPH_API bool neph_camera_project(const NephCamera *camera, const double point[3],
                                   double *x, double *y);
-/** @brief The view as pbrt directives: LookAt, after Scale if mirrored, and Camera. Owned
- * by caller. */
+/** @brief The view as pbrt directives: LookAt, after Scale if mirrored, and Camera if it
+ * is a perspective one. Owned by caller. */
 NEPH_API char *neph_camera_text(const NephCamera *camera);
 /** @brief Writes the view into a scene file: where its LookAt or Camera stands, the rest
  * as it was. The file is replaced only when whole. */

@@ -10,6 +10,7 @@
 #include "api/objects.h"
 
 #include <math.h>
+#include <string.h>
 
 static void cross(const double a[3], const double b[3], double out[3])
 {
@@ -33,6 +34,21 @@ static double make_unit(double v[3])
     return length;
 }
 
+static bool is_kind(const NephCamera *c, const char *kind)
+{
+    return g_strcmp0(c->kind, kind) == 0;
+}
+
+/* What a spherical camera sees ahead. */
+static void screen_ahead(const camera *c, NephCamera *out)
+{
+    double aspect = (double)c->width / (double)c->height;
+    double x = fmax(aspect, 1.0), y = fmax(1.0 / aspect, 1.0);
+    const double screen[4] = {-x, x, -y, y};
+    memcpy(out->screen, screen, sizeof screen);
+    out->fov = 90.0;
+}
+
 static void right_of(const NephCamera *c, double right[3])
 {
     cross(c->up, c->direction, right);
@@ -43,13 +59,15 @@ static void right_of(const NephCamera *c, double right[3])
 void neph_scene_camera(const NephScene *s, NephCamera *out)
 {
     const camera *c = &s->scene->camera;
+    const transform at = camera_at(c, 0.0f);
     double right[3], along;
+    out->kind = camera_kind_name(c);
     for (int i = 0; i < 3; i++) {
-        out->position[i] = c->to_world.m[i][3];
-        out->direction[i] = c->to_world.m[i][2];
-        right[i] = c->to_world.m[i][0];
+        out->position[i] = at.m[i][3];
+        out->direction[i] = at.m[i][2];
+        right[i] = at.m[i][0];
     }
-    out->mirrored = transform_swaps_handedness(&c->to_world);
+    out->mirrored = transform_swaps_handedness(&at);
     along = make_unit(out->direction);
     cross(out->direction, right, out->up);
     make_unit(out->up);
@@ -58,6 +76,8 @@ void neph_scene_camera(const NephScene *s, NephCamera *out)
     for (int i = 0; i < 4; i++)
         out->screen[i] = (double)c->screen[i];
     out->fov = 360.0 / G_PI * atan((double)c->half_screen);
+    if (is_kind(out, "spherical"))
+        screen_ahead(c, out);
     out->lens_radius = (double)c->lens_radius * along;
     out->focal_distance = (double)c->focal_distance * along;
 }
@@ -121,7 +141,8 @@ bool neph_scene_set_camera(NephScene *s, const NephCamera *c, GError **error)
         return refuse("a direction and another one for up", error);
     to->to_world = to_world;
     to->path = motion_still(&to_world);
-    to->half_screen = (float)tan(G_PI / 360.0 * c->fov);
+    if (strcmp(camera_kind_name(to), "spherical") != 0)
+        to->half_screen = (float)tan(G_PI / 360.0 * c->fov);
     to->lens_radius = (float)c->lens_radius;
     to->focal_distance = (float)c->focal_distance;
     camera_resize(to, to->width, to->height);
@@ -136,16 +157,33 @@ void neph_camera_set_fov(NephCamera *c, double degrees)
     c->fov = degrees;
 }
 
+/* Camera space to world: along right, up and direction. */
+static void turn_to_world(const NephCamera *c, const double at[3], double out[3])
+{
+    double right[3];
+    right_of(c, right);
+    for (int i = 0; i < 3; i++)
+        out[i] = at[0] * right[i] + at[1] * c->up[i] + at[2] * c->direction[i];
+}
+
 void neph_camera_ray(const NephCamera *c, double x, double y, double origin[3],
                      double direction[3])
 {
     const double *s = c->screen;
-    double right[3], at[2] = {s[0] + x * (s[1] - s[0]), s[3] + y * (s[2] - s[3])};
-    right_of(c, right);
-    for (int i = 0; i < 3; i++) {
-        origin[i] = c->position[i];
-        direction[i] = at[0] * right[i] + at[1] * c->up[i] + c->direction[i];
+    double on_screen[2] = {s[0] + x * (s[1] - s[0]), s[3] + y * (s[2] - s[3])};
+    double from[3] = {0}, toward[3] = {on_screen[0], on_screen[1], 1.0};
+    if (is_kind(c, "orthographic")) {
+        memcpy(from, on_screen, sizeof on_screen);
+        toward[0] = toward[1] = 0.0;
+    } else if (is_kind(c, "spherical")) {
+        toward[0] = sin(G_PI * y) * cos(2.0 * G_PI * x);
+        toward[1] = cos(G_PI * y);
+        toward[2] = sin(G_PI * y) * sin(2.0 * G_PI * x);
     }
+    turn_to_world(c, from, origin);
+    turn_to_world(c, toward, direction);
+    for (int i = 0; i < 3; i++)
+        origin[i] += c->position[i];
     make_unit(direction);
 }
 
@@ -157,8 +195,9 @@ bool neph_camera_project(const NephCamera *c, const double point[3], double *x, 
     for (int i = 0; i < 3; i++)
         to[i] = point[i] - c->position[i];
     double depth = dot(to, c->direction);
-    *x = (dot(to, right) / depth - s[0]) / (s[1] - s[0]);
-    *y = (dot(to, c->up) / depth - s[3]) / (s[2] - s[3]);
+    double scale = is_kind(c, "orthographic") ? 1.0 : depth;
+    *x = (dot(to, right) / scale - s[0]) / (s[1] - s[0]);
+    *y = (dot(to, c->up) / scale - s[3]) / (s[2] - s[3]);
     return depth > 0.0;
 }
 

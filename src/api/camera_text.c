@@ -9,7 +9,8 @@
  *   Camera "perspective" "float fov" 40
  *
  * The old transforms stay, without effect on the camera. In the Camera directive only the
- * numbers of fov, lensradius and focaldistance are changed, or added.
+ * numbers of fov, lensradius and focaldistance are changed, or added; in one of another
+ * kind than perspective, nothing.
  */
 #include "api/objects.h"
 
@@ -49,6 +50,11 @@ typedef struct optic {
 
 enum { N_OPTICS = 3 };
 
+static bool is_perspective(const NephCamera *c)
+{
+    return !c->kind || strcmp(c->kind, "perspective") == 0;
+}
+
 static void list_optics(const NephCamera *c, optic out[N_OPTICS])
 {
     const bool lens = c->lens_radius > 0.0;
@@ -69,6 +75,10 @@ char *neph_camera_text(const NephCamera *c)
     GString *out = g_string_new(NULL);
     list_optics(c, optics);
     put_look_at(out, c);
+    if (!is_perspective(c)) {
+        g_string_append_c(out, '\n');
+        return g_string_free(out, FALSE);
+    }
     g_string_append(out, "\nCamera \"perspective\"");
     for (int i = 0; i < N_OPTICS; i++)
         if (optics[i].wanted)
@@ -138,14 +148,13 @@ static const char *value_end(const char *p)
 }
 
 /* Copies the Camera directive [p, end) with the optics changed. */
-static void put_camera(GString *out, const char *p, const char *end,
-                       optic optics[N_OPTICS])
+static void put_camera(GString *out, const char *p, const char *end, optic *optics, int n)
 {
     while (p < end) {
         const char *token = skip_blanks(p), *after = token_end(token);
         g_string_append_len(out, p, after - p);
         p = after;
-        for (int i = 0; i < N_OPTICS && *token == '"'; i++) {
+        for (int i = 0; i < n && *token == '"'; i++) {
             if (!names_optic(token, after, optics[i].name))
                 continue;
             put_number(out, optics[i].value);
@@ -153,7 +162,7 @@ static void put_camera(GString *out, const char *p, const char *end,
             p = value_end(skip_blanks(p));
         }
     }
-    for (int i = 0; i < N_OPTICS; i++)
+    for (int i = 0; i < n; i++)
         if (optics[i].wanted)
             put_optic(out, &optics[i]);
 }
@@ -182,7 +191,7 @@ static char *changed_text(const NephCamera *c, const char *text, const char *dir
     put_look_at(out, c);
     g_string_append(out, MARK "\n");
     const char *end = directive_end(directive);
-    put_camera(out, directive, end, optics);
+    put_camera(out, directive, end, optics, is_perspective(c) ? N_OPTICS : 0);
     g_string_append(out, end);
     return g_string_free(out, FALSE);
 }

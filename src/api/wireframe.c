@@ -22,12 +22,17 @@ typedef struct edge {
 } edge;
 
 typedef struct wire {
-    GArray *segments;  /* of float, NUMBERS each */
-    size_t stride, at; /* every stride-th edge is kept */
+    GArray *segments;          /* of float, NUMBERS each */
+    size_t stride, at;         /* every stride-th edge is kept */
+    const transform *to_world; /* of the instance; NULL: already there */
 } wire;
 
 static void put_segment(wire *w, vec3 a, vec3 b)
 {
+    if (w->to_world) {
+        a = transform_point(w->to_world, a);
+        b = transform_point(w->to_world, b);
+    }
     const float line[NUMBERS] = {a[0], a[1], a[2], b[0], b[1], b[2]};
     bool finite = true;
     for (int i = 0; i < NUMBERS; i++)
@@ -136,23 +141,38 @@ static void put_shape(wire *w, const shape *s)
     put_lines(w, s, false);
 }
 
-static size_t count_edges(const scene *s)
+/* Calls put for every shape of the world, and of every instance. */
+static void each_shape(const scene *s, wire *w, void (*put)(wire *w, const shape *one))
 {
-    size_t n = 0;
-    for (guint i = 0; i < s->shapes->len; i++) {
-        const shape *one = s->shapes->pdata[i];
-        const mesh *m = one->kind->triangles ? one->kind->triangles(one->self) : NULL;
-        n += m ? 3 * m->n_triangles / 2 : 2 * CURVED_LINES * CURVED_STEPS;
+    for (guint k = 0; k <= s->instances->len; k++) {
+        bool in_world = k == s->instances->len;
+        const transform at =
+            in_world ? transform_identity() : accel_instance_at(s->accel, (int)k, 0.0f);
+        int object =
+            in_world ? NO_INDEX : g_array_index(s->instances, instance, k).object;
+        w->to_world = in_world ? NULL : &at;
+        for (guint i = 0; i < s->shapes->len; i++) {
+            const shape *one = s->shapes->pdata[i];
+            if (one->object == object)
+                put(w, one);
+        }
     }
-    return n;
+}
+
+/* Roughly, into w->at. */
+static void count_edges(wire *w, const shape *one)
+{
+    const mesh *m = one->kind->triangles ? one->kind->triangles(one->self) : NULL;
+    w->at += m ? 3 * m->n_triangles / 2 : 2 * CURVED_LINES * CURVED_STEPS;
 }
 
 float *neph_scene_wireframe(const NephScene *s, size_t most, size_t *n)
 {
     wire w = {.segments = g_array_new(FALSE, FALSE, sizeof(float))};
-    w.stride = MAX(count_edges(s->scene) / MAX(most, 1), 1);
-    for (guint i = 0; i < s->scene->shapes->len; i++)
-        put_shape(&w, s->scene->shapes->pdata[i]);
+    each_shape(s->scene, &w, count_edges);
+    w.stride = MAX(w.at / MAX(most, 1), 1);
+    w.at = 0;
+    each_shape(s->scene, &w, put_shape);
     *n = MIN(w.segments->len / NUMBERS, most);
     return (float *)(void *)g_array_free(w.segments, FALSE);
 }
