@@ -13,6 +13,8 @@ typedef struct model {
     double least_albedo; /* what it must send back at least, at 45 degrees */
 } model;
 
+static coat_table *lacquer; /* made when first used */
+
 static const spectrum RAMP = {0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.9f};
 static const spectrum FLINT = {1.76f, 1.74f, 1.73f, 1.72f, 1.71f, 1.705f, 1.7f, 1.695f};
 
@@ -29,6 +31,35 @@ static spectrum gold_k(void)
 static void make_diffuse(bsdf *b)
 {
     bsdf_make_diffuse(b, RAMP);
+}
+
+static void make_lacquer(bsdf *b, ggx coat, ggx metal)
+{
+    if (!lacquer)
+        lacquer = coat_table_new(&(coat_range){
+            .alpha_max = 1.0f, .eta_min = 1.5f, .eta_max = 1.5f, .thickness = 0.01f});
+    bsdf_make_coated_conductor(b, &(coated_metal){.eta = gold_eta(),
+                                                  .k = gold_k(),
+                                                  .coat_eta = 1.5f,
+                                                  .thickness = 0.01f,
+                                                  .coat = coat,
+                                                  .metal = metal,
+                                                  .table = lacquer});
+}
+
+static void make_lacquered_mirror(bsdf *b)
+{
+    make_lacquer(b, (ggx){0}, (ggx){0});
+}
+
+static void make_car_paint(bsdf *b)
+{
+    make_lacquer(b, (ggx){0}, ggx_make(0.4f, 0.25f));
+}
+
+static void make_frosted_gold(bsdf *b)
+{
+    make_lacquer(b, ggx_make(0.2f, 0.2f), ggx_make(0.3f, 0.3f));
 }
 
 static void make_leaf(bsdf *b)
@@ -127,6 +158,7 @@ static inline void zoo_close(void)
     coat_table_free(satin_coat);
     coat_table_free(rough_coat);
     coat_table_free(brushed_coat);
+    coat_table_free(lacquer);
 }
 
 static void make_plastic(bsdf *b)
@@ -214,6 +246,9 @@ static void make_gltf_white(bsdf *b)
 static const model MODELS[] = {
     {"diffuse", make_diffuse, 0.2},
     {"leaf", make_leaf, 0.6},
+    {"lacquered mirror", make_lacquered_mirror, 0.3},
+    {"car paint", make_car_paint, 0.3},
+    {"frosted gold", make_frosted_gold, 0.3},
     {"mirror", make_mirror, 0.3},
     {"satin gold", make_satin_gold, 0.3},
     {"brushed gold", make_brushed_gold, 0.3},

@@ -3,6 +3,7 @@
  * known is refused at its place.
  */
 #include "scene/bsdf_models.h"
+#include "scene/fresnel.h"
 #include "scene/material.h"
 #include "scene/scene.h"
 
@@ -455,6 +456,108 @@ static void test_diffuse_transmission(void)
            "m.pbrt:4:9: parameter 'scale': expected a number >= 0, found -1");
 }
 
+/* Two smooth layers: the geometric series of reflections, written out. */
+static void test_smooth_lacquer(void)
+{
+    params *p = list();
+    add_float(p, "thickness", 0.1f);
+    material *m = make("coatedconductor", p);
+    bsdf b = at(m, &plain);
+    g_assert_cmpuint(b.lobes & ~(unsigned)LOBE_DIFFUSE, ==,
+                     LOBE_SPECULAR | LOBE_REFLECTION);
+    const wavelengths w = wavelengths_at(0.5f);
+    g_autoptr(curve) eta = curve_named("metal-Cu-eta");
+    g_autoptr(curve) k = curve_named("metal-Cu-k");
+    spectrum ce = curve_eval(eta, &w) / 1.5f, ck = curve_eval(k, &w) / 1.5f;
+    for (int i = 0; i < 4; i++) {
+        float cosine = (float[]){1, 0.8f, 0.5f, 0.2f}[i];
+        float inside = sqrtf(1 - (1 - cosine * cosine) / 2.25f);
+        float f = fresnel_dielectric(cosine, 1.5f), a = expf(-0.1f / inside);
+        spectrum r = fresnel_conductor(inside, ce, ck), expected = spectrum_fill(f);
+        spectrum going = spectrum_fill((1 - f) * a);
+        for (int round = 0; round < 40; round++) {
+            going *= r * a;
+            expected += going * (1 - f);
+            going *= f * a;
+        }
+        vec3 wo = vec3_make(sqrtf(1 - cosine * cosine), 0, cosine);
+        bsdf_sample s;
+        g_assert_true(bsdf_sample_direction(&b, wo, 0.3f, (vec2){0.5f, 0.5f}, LOBE_ALL,
+                                            TRANSPORT_RADIANCE, &s));
+        for (int lane = 0; lane < N_LANES; lane++)
+            g_assert_cmpfloat(fabsf(s.weight[lane] / expected[lane] - 1), <, 1e-3f);
+        g_assert_cmpfloat(length3(s.wi - vec3_make(-wo[0], 0, wo[2])), <, 1e-5f);
+    }
+    material_free(m);
+}
+
+/* A number that tells bsdfs apart: what two directions see, and the lobes. */
+static float look_of(params *p)
+{
+    material *m = make("coatedconductor", p);
+    bsdf b = at(m, &plain);
+    vec3 wo = normalize3(vec3_make(0.3f, 0.2f, 1)),
+         wi = normalize3(vec3_make(-0.1f, 0.3f, 1));
+    spectrum f = bsdf_eval(&b, wo, wi, LOBE_ALL, TRANSPORT_RADIANCE);
+    f += bsdf_albedo(&b, wo, LOBE_ALL);
+    material_free(m);
+    return spectrum_mean(f) + 0.3f * f[6];
+}
+
+static params *satin(void)
+{
+    params *p = list();
+    add_float(p, "interface.roughness", 0.02f);
+    add_float(p, "conductor.roughness", 0.1f);
+    return p;
+}
+
+static void test_lacquer_parameters_act(void)
+{
+    static const char *const numbers[] = {"interface.uroughness", "interface.vroughness",
+                                          "interface.eta",        "thickness",
+                                          "conductor.uroughness", "conductor.vroughness"};
+    float plain_look = look_of(satin());
+    for (size_t i = 0; i < G_N_ELEMENTS(numbers); i++) {
+        params *p = satin();
+        add_float(p, numbers[i], i == 2 ? 1.8f : 0.4f);
+        float look = look_of(p);
+        g_test_message("%s: %g to %g", numbers[i], (double)plain_look, (double)look);
+        g_assert_cmpfloat(fabsf(look - plain_look), >, 1e-3f);
+    }
+    static const char *const spectra[] = {"conductor.eta", "conductor.k", "reflectance"};
+    for (size_t i = 0; i < G_N_ELEMENTS(spectra); i++) {
+        params *p = satin();
+        add_rgb(p, spectra[i], 0.3f, 0.6f, 0.2f);
+        g_assert_cmpfloat(fabsf(look_of(p) - plain_look), >, 1e-3f);
+    }
+    params *p = satin();
+    add_bool(p, "remaproughness", 0);
+    g_assert_cmpfloat(fabsf(look_of(p) - plain_look), >, 1e-3f);
+    p = satin();
+    add_rgb(p, "albedo", 0.5f, 0.5f, 0.5f);
+    refuse("coatedconductor", p,
+           "m.pbrt:4:9: parameter 'albedo': a coat that scatters is not supported, "
+           "expected 0");
+    p = list();
+    add_rgb(p, "reflectance", 1, 1, 1);
+    add_rgb(p, "conductor.k", 1, 1, 1);
+    refuse("coatedconductor", p,
+           "m.pbrt:4:9: a conductor has either 'reflectance' or 'eta' and 'k'");
+    p = list();
+    add_float(p, "roughness", 0.1f);
+    refuse("coatedconductor", p,
+           "m.pbrt:4:9: unknown parameter 'roughness' of material 'coatedconductor'");
+    static const char *const unknown[] = {"hair", "subsurface", "measured"};
+    for (int i = 0; i < 3; i++) {
+        g_autoptr(GError) error = NULL;
+        g_autoptr(params) q = list();
+        g_assert_null(material_new(NULL, unknown[i], q, &error));
+        g_assert_true(g_str_has_prefix(error->message, "m.pbrt:2:1: "));
+        g_assert_nonnull(strstr(error->message, unknown[i]));
+    }
+}
+
 static void test_refusals(void)
 {
     params *p = list();
@@ -504,6 +607,8 @@ int main(int argc, char **argv)
     g_test_add_func("/material/coated-diffuse", test_coated_diffuse);
     g_test_add_func("/material/phong", test_phong);
     g_test_add_func("/material/textured-inputs", test_textured_inputs);
+    g_test_add_func("/material/lacquer/smooth", test_smooth_lacquer);
+    g_test_add_func("/material/lacquer/parameters", test_lacquer_parameters_act);
     g_test_add_func("/material/mix", test_mix);
     g_test_add_func("/material/diffuse-transmission", test_diffuse_transmission);
     g_test_add_func("/material/refusals", test_refusals);

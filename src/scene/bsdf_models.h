@@ -80,5 +80,16 @@ void bsdf_make_clear(bsdf *b);
 void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, ggx roughness,
                       const coat_table *table, int bounces);
 
+/** @brief A metal under a coat that may absorb. */
+typedef struct coated_metal {
+    spectrum eta, k; /**< of the metal, over vacuum */
+    float coat_eta;  /**< of the coat over that outside, within the table's range */
+    float thickness; /**< optical depth of the coat, straight through */
+    ggx coat, metal;
+    const coat_table *table; /**< of the coat, borrowed */
+} coated_metal;
+
+void bsdf_make_coated_conductor(bsdf *b, const coated_metal *from);
+
 /** @brief Normalised Blinn-Phong; where reflectance + specular > 1 the former is cut. */
 void bsdf_make_phong(bsdf *b, spectrum reflectance, spectrum specular, float exponent);

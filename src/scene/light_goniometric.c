@@ -166,8 +166,10 @@ static light_bound bound(const void *self, const wavelengths *w)
 {
     const goniometric_light *l = self;
     float peak = l->peak * spectrum_mean(emitter_eval(&l->intensity, w));
+    /* between what the brightest direction and what all together get */
+    float mean = spectrum_mean(power(self, w));
     return (light_bound){
-        .is_local = true, .box = {l->p, l->p}, .power = 4.0f * PI_F * peak};
+        .is_local = true, .box = {l->p, l->p}, .power = sqrtf(4.0f * PI_F * peak * mean)};
 }
 
 static light_emission leave(const goniometric_light *l, vec3 direction, float pdf,

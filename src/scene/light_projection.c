@@ -168,8 +168,10 @@ static light_bound bound(const void *self, const wavelengths *w)
     const float white[3] = {l->peak, l->peak, l->peak};
     float peak =
         l->scale * spectrum_mean(rgb_eval(l->pic.space, white, CURVE_EMISSION, w));
+    /* between what the brightest direction and what all together get */
+    float mean = spectrum_mean(power(self, w));
     return (light_bound){
-        .is_local = true, .box = {l->p, l->p}, .power = 4.0f * PI_F * peak};
+        .is_local = true, .box = {l->p, l->p}, .power = sqrtf(4.0f * PI_F * peak * mean)};
 }
 
 /* Density per solid angle, of one over the picture. */

@@ -13,6 +13,7 @@ static const material_kind *const kinds[] = {
     &material_gltf,
     &material_diffuse_transmission,
     &material_mix,
+    &material_coated_conductor,
 };
 
 const material_kind *material_kind_at(size_t i)

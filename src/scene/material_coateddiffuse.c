@@ -27,51 +27,6 @@ static void plastic_free(void *self)
     g_free(m);
 }
 
-static bool check_medium(const params *p, GError **error)
-{
-    g_autoptr(curve) albedo = NULL;
-    float g = 0.0f, most = 0.0f;
-    if (!params_curve(p, "albedo", CURVE_ALBEDO, &albedo, error) ||
-        !params_float(p, "g", &g, error))
-        return false;
-    for (float nm = LAMBDA_MIN; albedo && nm <= LAMBDA_MAX; nm += 5.0f)
-        most = maxf(most, curve_at(albedo, nm));
-    if (most > 1e-4f) {
-        error_at(error, params_find(p, "albedo")->place,
-                 "parameter 'albedo': a coat that scatters is not supported, expected 0");
-        return false;
-    }
-    if (fabsf(g) > 1.0f) {
-        error_at(error, params_find(p, "g")->place,
-                 "parameter 'g': expected a number in -1..1, found %g", (double)g);
-        return false;
-    }
-    return true;
-}
-
-static bool read_count(const params *p, const char *name, int *out, GError **error)
-{
-    if (!params_integer(p, name, out, error))
-        return false;
-    if (*out >= 1)
-        return true;
-    error_at(error, params_find(p, name)->place,
-             "parameter '%s': expected a number >= 1, found %d", name, *out);
-    return false;
-}
-
-static bool read_thickness(const params *p, float *out, GError **error)
-{
-    *out = 0.01f;
-    if (!params_float(p, "thickness", out, error))
-        return false;
-    if (*out >= 0.0f)
-        return true;
-    error_at(error, params_find(p, "thickness")->place,
-             "parameter 'thickness': expected a number >= 0, found %g", (double)*out);
-    return false;
-}
-
 static coat_range range_of(const plastic *m, float thickness)
 {
     coat_range range = {
@@ -92,11 +47,11 @@ static bool read_coat(plastic *m, const struct scene *s, const params *p, GError
 {
     int depth = 10, samples = 1;
     float thickness;
-    m->eta = eta_input(p, error);
-    if (!m->eta || !roughness_input_init(&m->roughness, s, p, error) ||
-        !read_thickness(p, &thickness, error) ||
-        !read_count(p, "maxdepth", &depth, error) ||
-        !read_count(p, "nsamples", &samples, error) || !check_medium(p, error))
+    m->eta = eta_input(p, "eta", error);
+    if (!m->eta || !roughness_input_init(&m->roughness, "", s, p, error) ||
+        !coat_input_thickness(p, &thickness, error) ||
+        !coat_input_count(p, "maxdepth", &depth, error) ||
+        !coat_input_count(p, "nsamples", &samples, error) || !coat_input_medium(p, error))
         return false;
     /* The walk meets base and coat in turn. */
     m->bounces = depth / 2 + depth % 2;

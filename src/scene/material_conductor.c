@@ -45,7 +45,8 @@ static bool read_colour(metal *m, const struct scene *s, const params *p, GError
 static void *metal_create(const struct scene *s, const params *p, GError **error)
 {
     metal *m = g_new0(metal, 1);
-    if (read_colour(m, s, p, error) && roughness_input_init(&m->roughness, s, p, error))
+    if (read_colour(m, s, p, error) &&
+        roughness_input_init(&m->roughness, "", s, p, error))
         return m;
     metal_free(m);
     return NULL;

@@ -27,8 +27,8 @@ static void glass_free(void *self)
 static void *glass_create(const struct scene *s, const params *p, GError **error)
 {
     glass *g = g_new0(glass, 1);
-    g->eta = eta_input(p, error);
-    if (g->eta && roughness_input_init(&g->roughness, s, p, error) &&
+    g->eta = eta_input(p, "eta", error);
+    if (g->eta && roughness_input_init(&g->roughness, "", s, p, error) &&
         spectrum_input_init(&g->tint, s, p, "tint", CURVE_ALBEDO, NULL, error) &&
         medium_read(p, &g->interior, error))
         return g;
@@ -75,7 +75,7 @@ static void *pane_create(const struct scene *s, const params *p, GError **error)
 {
     (void)s;
     glass *g = g_new0(glass, 1);
-    g->eta = eta_input(p, error);
+    g->eta = eta_input(p, "eta", error);
     if (g->eta)
         return g;
     glass_free(g);

@@ -72,7 +72,7 @@ static bool read_layers(gltf_material *m, const struct scene *s, const params *p
 static bool read_inside(gltf_material *m, const params *p, GError **error)
 {
     m->thin = true;
-    m->eta = eta_input(p, error);
+    m->eta = eta_input(p, "eta", error);
     return m->eta && params_bool(p, "thin", &m->thin, error) &&
            (m->thin || medium_read(p, &m->interior, error));
 }
