@@ -307,6 +307,63 @@ static void test_slide_stands_upright(void)
     light_free(l);
 }
 
+/* ---- Pictures on shapes ---- */
+
+static shape *unit_panel(void)
+{
+    static const float points[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+    static const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+    static const int indices[6] = {0, 1, 2, 0, 2, 3};
+    g_autoptr(params) p = list(NULL);
+    params_add_numbers(p, here, PARAM_POINT3, "P", points, 12, NULL);
+    params_add_numbers(p, here, PARAM_POINT2, "uv", uvs, 8, NULL);
+    params_add_integers(p, here, PARAM_INTEGER, "indices", indices, 6, NULL);
+    const shape_place at = {.to_world = transform_identity()};
+    return shape_new("trianglemesh", p, &at, NULL);
+}
+
+/* The slide is bright in the upper left: so is the panel, with the power asked for. */
+static void test_pictured_panel(void)
+{
+    const transform identity = transform_identity();
+    const vec3 up = vec3_make(0, 0, 1);
+    shape *on = unit_panel();
+    g_autoptr(params) p = number(list(slide_path), "power", 3);
+    light *l = light_new(NULL, "diffuse", p, &identity, on, NULL);
+    double y = 0;
+    for (int k = 0; k < 4; k++) {
+        const wavelengths w = wavelengths_at(((float)k + 0.5f) / 4);
+        enum { N = 20000 };
+        for (uint32_t n = 0; n < N; n++) {
+            sampler s = sampler_make(71, n);
+            vec2 u = sampler_2d(&s), v = sampler_2d(&s);
+            light_emission e;
+            float xyz[3] = {0};
+            if (l->kind->emit(l->self, &w, sampler_1d(&s), u, v, &e))
+                spectrum_to_xyz(&w, e.flux, xyz);
+            y += (double)xyz[1] / N / 4;
+        }
+    }
+    g_assert_cmpfloat(fabs(y / 3 - 1), <, 0.04);
+    g_assert_cmpfloat(fabs(luminous_power(l) / 3 - 1), <, 0.01);
+    const wavelengths w = wavelengths_at(0.5f);
+    float seen[4];
+    for (int i = 0; i < 4; i++) {
+        surface_hit hit = {.n = up, .n_geom = up};
+        hit.uv = (vec2){i & 1 ? 0.8f : 0.2f, i & 2 ? 0.8f : 0.2f};
+        seen[i] = spectrum_mean(l->kind->radiance(l->self, &hit, up, &w));
+    }
+    for (int i = 0; i < 4; i++)
+        g_assert_true(i == 2 || seen[2] > 5 * seen[i]);
+    light_free(l);
+    const float white[3] = {1, 1, 1};
+    params_add_numbers(p, here, PARAM_RGB, "L", white, 3, NULL);
+    g_autoptr(GError) error = NULL;
+    g_assert_null(light_new(NULL, "diffuse", p, &identity, on, &error));
+    g_assert_nonnull(strstr(error->message, "either 'L' or 'filename'"));
+    shape_free(on);
+}
+
 static void refuse(const char *kind, params *p, const char *part)
 {
     g_autoptr(GError) error = NULL;
@@ -367,6 +424,7 @@ int main(int argc, char **argv)
     g_test_add_func("/directed/emission", test_emission);
     g_test_add_func("/directed/power", test_power_and_scale);
     g_test_add_func("/directed/upright", test_slide_stands_upright);
+    g_test_add_func("/directed/panel", test_pictured_panel);
     g_test_add_func("/directed/refusals", test_refusals);
     int status = g_test_run();
     char *const paths[] = {map_path, slide_path, ies_path};

@@ -5,12 +5,9 @@
  *
  * Statistical tests: six standard errors, chi-square below its 1 - 1e-6 quantile.
  */
-#include "image/image.h"
 #include "math/frame.h"
 #include "scene/light_kinds.h"
 #include "shape_subjects.h"
-
-#include <glib/gstdio.h>
 
 /* ---- Lights to test ---- */
 
@@ -630,67 +627,6 @@ static void expect_error(const char *kind, params *p, shape *on, const char *tex
     shape_free(on);
 }
 
-/* A picture on a square, bright in its right half: shines there, upright, with the power
- * that is asked for. */
-static void test_pictured_area(void)
-{
-    static const char *const names[] = {"R", "G", "B"};
-    g_autofree char *folder = g_dir_make_tmp("nephroid-light-XXXXXX", NULL);
-    g_autofree char *path = g_build_filename(folder, "panel.pfm", NULL);
-    g_autoptr(image) img = image_new(8, 8, 3, names, NULL);
-    for (int i = 0; i < 64 * 3; i++)
-        img->pixels[i] = i / 3 % 8 >= 4 && i / 24 < 4 ? 4.0f : 0.0f; /* upper right */
-    g_assert_true(image_write(img, path, NULL, NULL));
-    static const float points[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
-    static const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
-    static const int indices[6] = {0, 1, 2, 0, 2, 3};
-    g_autoptr(params) p = params_new(here, "/", NULL);
-    params_add_numbers(p, here, PARAM_POINT3, "P", points, 12, NULL);
-    params_add_numbers(p, here, PARAM_POINT2, "uv", uvs, 8, NULL);
-    params_add_integers(p, here, PARAM_INTEGER, "indices", indices, 6, NULL);
-    shape_place at = {.to_world = transform_identity()};
-    g_autoptr(params) q = numbers_of("power", 3.0, NULL);
-    const char *name = path;
-    params_add_strings(q, here, PARAM_STRING, "filename", &name, 1, NULL);
-    lamp a = make_lamp("diffuse", q, shape_new("trianglemesh", p, &at, NULL));
-    double y = 0;
-    for (int k = 0; k < 4; k++) {
-        const wavelengths w = wavelengths_at(((float)k + 0.5f) / 4);
-        tally t = {0};
-        for (uint32_t n = 0; n < 20000; n++) {
-            sampler s = sampler_make(71, n);
-            vec2 u = sampler_2d(&s), v = sampler_2d(&s);
-            light_emission e;
-            float xyz[3] = {0};
-            if (a.l->kind->emit(a.l->self, &w, sampler_1d(&s), u, v, &e))
-                spectrum_to_xyz(&w, e.flux, xyz);
-            add_to(&t, (double)xyz[1]);
-        }
-        y += mean_of(&t) / 4;
-    }
-    g_assert_cmpfloat(fabs(y / 3 - 1), <, 0.04);
-    const wavelengths w = wavelengths_at(0.5f);
-    const vec3 up = vec3_make(0, 0, 1);
-    for (int i = 0; i < 4; i++) {
-        surface_hit hit = {
-            .n = up, .n_geom = up, .uv = {i & 1 ? 0.8f : 0.2f, i & 2 ? 0.8f : 0.2f}};
-        bool dark = spectrum_is_black(a.l->kind->radiance(a.l->self, &hit, up, &w));
-        g_assert_true(dark == (i != 3));
-    }
-    clear_lamp(&a);
-    g_autoptr(params) both = numbers_of(NULL, NULL);
-    params_add_strings(both, here, PARAM_STRING, "filename", &name, 1, NULL);
-    const float white[3] = {1, 1, 1};
-    params_add_numbers(both, here, PARAM_RGB, "L", white, 3, NULL);
-    g_autoptr(GError) error = NULL;
-    shape *on = unit_square(&at);
-    g_assert_null(light_new(NULL, "diffuse", both, &at.to_world, on, &error));
-    g_assert_nonnull(strstr(error->message, "either 'L' or 'filename'"));
-    shape_free(on);
-    g_unlink(path);
-    g_rmdir(folder);
-}
-
 static void test_bad_input_is_named(void)
 {
     shape_place at = {.to_world = transform_identity()};
@@ -728,7 +664,6 @@ int main(int argc, char **argv)
     g_test_add_func("/light/irradiance/quad", test_irradiance_of_quad);
     g_test_add_func("/light/sides", test_sides);
     g_test_add_func("/light/scales", test_scales);
-    g_test_add_func("/light/pictured-area", test_pictured_area);
     g_test_add_func("/light/bad/input", test_bad_input_is_named);
     return g_test_run();
 }
