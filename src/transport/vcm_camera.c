@@ -232,6 +232,14 @@ static float merge_weight(const camera_walk *c, const vcm_vertex *v,
     return 1.0f / (lamp_side + 1.0f + eye_side);
 }
 
+/* What transmits gathers from both sides, but the other face of a thin pane is another
+ * surface: its normal points away. */
+static bool is_other_face(const vcm_vertex *v, const light_vertex *l)
+{
+    return (v->bsdf.lobes & LOBE_TRANSMISSION) &&
+           dot3(l->hit.n_geom, v->hit->n_geom) < 0.0f;
+}
+
 /* Light vertices are a density over the true surface; light sees the shading normal by
    the cosine that is in f. */
 static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *l,
@@ -244,7 +252,7 @@ static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *
         wi = normalize3(transform_vector(&by, wi));
     }
     float cosine = fabsf(dot3(wi, v->hit->n_geom));
-    if (!(cosine > 0.0f) ||
+    if (!(cosine > 0.0f) || is_other_face(v, l) ||
         time_slice(l->hit.time, n_slices) != time_slice(v->hit->time, n_slices) ||
         !vcm_length_allowed(c->pass, c->walk.counts.n + l->before.n + 1))
         return;
