@@ -107,6 +107,8 @@ static size_t group_offset(const film *f, size_t pixel)
 
 void film_put_groups(film *f, const film_pass *pass, int x, int y, const spectrum *sums)
 {
+    if (f->n_groups == 0)
+        return;
     float *xyz = f->pass_groups + group_offset(f, pixel_index(f, x, y));
     for (int i = 0; i < f->n_groups; i++)
         spectrum_to_xyz(pass->w, sums[i], xyz + 3 * i);
