@@ -66,12 +66,9 @@ static void add_keys(GtkApplication *app)
         {"win.open", "<Control>o", NULL},
         {"win.reload", "<Control>r", NULL},
         {"win.save-picture", "<Control>s", NULL},
-        {"win.play", "space", NULL},
         {"win.stop", "<Control>period", NULL},
         {"win.restart", "F5", NULL},
         {"win.trace-photons", "<Control>t", NULL},
-        {"win.reset-view", "Home", NULL},
-        {"win.frame-view", "End", NULL},
         {"win.copy-view", "<Control><Shift>c", NULL},
         {"win.save-view", "<Control><Shift>s", NULL},
         {"win.focus-tool", "<Control>d", NULL},
@@ -139,11 +136,19 @@ static int local_options(void)
     return 0;
 }
 
+/* The window is being drawn: once more in a moment, ms. */
+enum { RETRY_MS = 150 };
+
 static gboolean take_screenshot(void *data)
 {
     GtkWindow *shown = data;
     g_autoptr(GError) error = NULL;
-    if (!screenshot_take(shown, given.screenshot, &error))
+    bool taken = screenshot_take(shown, given.screenshot, &error);
+    if (!taken && g_error_matches(error, G_IO_ERROR, G_IO_ERROR_BUSY)) {
+        g_timeout_add(RETRY_MS, take_screenshot, shown);
+        return G_SOURCE_REMOVE;
+    }
+    if (!taken)
         g_printerr("nephroid-view: %s\n", error->message);
     gtk_window_destroy(shown);
     return G_SOURCE_REMOVE;

@@ -10,8 +10,8 @@ bool screenshot_take(GtkWindow *window, const char *path, GError **error)
     g_autoptr(GskRenderNode) node = gtk_snapshot_free_to_node(snapshot);
     GskRenderer *renderer = gtk_native_get_renderer(GTK_NATIVE(window));
     if (!node || !renderer) {
-        g_set_error_literal(error, G_IO_ERROR, G_IO_ERROR_FAILED,
-                            "the window is not on the screen");
+        g_set_error_literal(error, G_IO_ERROR, G_IO_ERROR_BUSY,
+                            "the window is just being drawn");
         return false;
     }
     const graphene_rect_t all = {{0, 0}, {(float)width, (float)height}};

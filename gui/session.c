@@ -7,7 +7,7 @@
 
 /* A quick look while the view moves takes about this long, s; those that follow when it
    stands still, until the first pass is done. */
-#define LOOK_MOVING 0.06
+#define LOOK_MOVING 0.05
 static const double looks_still[] = {0.25};
 
 /* Shares of its time that a render may spend on handing pictures over. */

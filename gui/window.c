@@ -82,14 +82,14 @@ static void size_changed(int width, int height, void *data)
 
 /* ---- Building ---- */
 
-static GtkWidget *open_buttons(void)
+static GtkWidget *open_buttons(window *w)
 {
     GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 0);
     GtkWidget *open = text_button_make("Open", "Open a scene (Ctrl+O)", "win.open");
     GtkWidget *more = gtk_menu_button_new();
-    g_autoptr(GMenu) menu = g_menu_new();
-    window_fill_scenes_menu(menu);
-    gtk_menu_button_set_menu_model(GTK_MENU_BUTTON(more), G_MENU_MODEL(menu));
+    w->scenes = g_menu_new();
+    window_fill_scenes_menu(w->scenes);
+    gtk_menu_button_set_menu_model(GTK_MENU_BUTTON(more), G_MENU_MODEL(w->scenes));
     widget_name(more, "Recent scenes and examples");
     gtk_widget_add_css_class(box, "linked");
     gtk_box_append(GTK_BOX(box), open);
@@ -103,7 +103,7 @@ static GtkWidget *header_make(window *w)
     GtkHeaderBar *bar = GTK_HEADER_BAR(header);
     w->play_button = icon_button_make("media-playback-start-symbolic",
                                       "Start or pause (Space)", "win.play");
-    gtk_header_bar_pack_start(bar, open_buttons());
+    gtk_header_bar_pack_start(bar, open_buttons(w));
     gtk_header_bar_pack_start(bar, w->play_button);
     gtk_header_bar_pack_start(bar, icon_button_make("media-playback-stop-symbolic",
                                                     "Stop (Ctrl+.)", "win.stop"));
@@ -330,9 +330,25 @@ static void destroyed(window *w)
     settings_panel_free(w->settings);
     error_page_free(w->errors);
     status_free(w->status);
+    g_object_unref(w->scenes);
     held_scene_unref(w->scene);
     neph_settings_free(w->of_scene);
     g_free(w);
+}
+
+/* Keys that mean something else where text is typed or a button has the focus: they come
+   last. */
+static void add_plain_keys(window *w)
+{
+    static const char *const keys[][2] = {
+        {"space", "win.play"}, {"Home", "win.reset-view"}, {"End", "win.frame-view"}};
+    GtkEventController *controller = gtk_shortcut_controller_new();
+    for (size_t i = 0; i < G_N_ELEMENTS(keys); i++)
+        gtk_shortcut_controller_add_shortcut(
+            GTK_SHORTCUT_CONTROLLER(controller),
+            gtk_shortcut_new(gtk_shortcut_trigger_parse_string(keys[i][0]),
+                             gtk_named_action_new(keys[i][1])));
+    gtk_widget_add_controller(GTK_WIDGET(w->gtk), controller);
 }
 
 static void set_help(window *w)
@@ -354,6 +370,7 @@ window *window_new(GtkApplication *app)
     w->session = session_new(window_on_news, w);
     window_add_actions(w);
     set_help(w);
+    add_plain_keys(w);
     window_add_view_actions(w);
     build(w);
     window_apply_theme(w);

@@ -80,8 +80,11 @@ static void scene_loaded(window *w, held_scene *scene)
     lobe_view_set_scene(w->lobes, scene);
     camera_panel_show(w->camera_panel, &w->view.camera);
     document_remember(w->document);
+    window_fill_scenes_menu(w->scenes);
     show_name(w);
     window_show_content(w, "main");
+    if (!w->reloading)
+        gtk_widget_grab_focus(canvas_widget(w->canvas));
     if (w->reloading)
         window_toast(w, "The scene has been read again");
     w->reloading = false;

@@ -31,6 +31,7 @@ struct window {
     GtkWidget *views;   /* stack: picture, ... */
     GtkWidget *pages;   /* stack in the sidebar */
     GtkWidget *paned, *sidebar, *toast, *play_button, *name;
+    GMenu *scenes; /* recent ones and examples */
     guint toast_timer;
     window_state remembered;
 

@@ -89,6 +89,7 @@ void window_view_switched(window *w)
     if (!photons_in_view(w))
         return;
     gtk_stack_set_visible_child_name(GTK_STACK(w->pages), "photons");
+    gtk_widget_grab_focus(photon_view_widget(w->photon_view));
     if (!w->photons && !w->tracing)
         window_trace_photons(w);
 }

@@ -184,6 +184,23 @@ static void test_each_setting(void)
     view_close(w);
 }
 
+/* Settings that the integrator does not read are dimmed. */
+static void test_unused_settings(void)
+{
+    g_autofree char *path = view_write("unused.pbrt", view_scene);
+    window *w = open_scene(path);
+    view_wait(view_is_done, w);
+    setting_control *kind = settings_panel_find(w->settings, "integrator");
+    GtkWidget *rays =
+        setting_control_row(settings_panel_find(w->settings, "gather_rays"));
+    g_assert_true(gtk_widget_get_sensitive(rays));
+    turn(setting_control_input(kind), setting_control_info(kind), "path");
+    g_assert_false(gtk_widget_get_sensitive(rays));
+    turn(setting_control_input(kind), setting_control_info(kind), "photonmap");
+    g_assert_true(gtk_widget_get_sensitive(rays));
+    view_close(w);
+}
+
 static void test_search(void)
 {
     g_autofree char *path = view_write("search.pbrt", view_scene);
@@ -322,6 +339,7 @@ int main(int argc, char **argv)
     view_add_test("/view/broken", test_broken);
     view_add_test("/view/reload", test_reload);
     view_add_test("/view/each-setting", test_each_setting);
+    view_add_test("/view/unused-settings", test_unused_settings);
     view_add_test("/view/search", test_search);
     view_add_test("/view/pause-and-stop", test_pause_and_stop);
     view_add_test("/view/save", test_save);

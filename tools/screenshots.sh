@@ -25,6 +25,4 @@ mkdir -p "$folder"
 shot picture cornell-box/cornell-box.pbrt 60 --view picture --page settings --theme light
 shot photons ring/ring.pbrt 20 --view photons --page photons --theme dark
 shot inspect glass-ball/glass-ball.pbrt 60 --view picture --page inspect --theme dark
-shot camera cornell-box/cornell-box.pbrt 20 --view picture --page camera --theme light
-shot numbers cornell-box/cornell-box.pbrt 20 --view photons --page numbers --theme light
 shot materials ring/ring.pbrt 8 --view materials --page settings --theme light
