@@ -73,6 +73,21 @@ static void test_materials(void)
                 "Kr\" [0 0 0] " BALL),
          WORLD4("Material \"coateddiffuse\" \"rgb reflectance\" [.1 .5 .1] \"float eta\" "
                 "1.6 \"float roughness\" 0.461745 \"bool remaproughness\" false " BALL)},
+        {"translucent",
+         WORLD3(
+             "Material \"translucent\" \"rgb Kd\" [.6 .8 .4] \"rgb reflect\" [.5 .5 .5] "
+             "\"rgb transmit\" [.25 .25 .25] " BALL),
+         WORLD4("Material \"diffusetransmission\" \"rgb reflectance\" [.3 .4 .2] \"rgb "
+                "transmittance\" [.15 .2 .1] " BALL)},
+        {"mix",
+         WORLD3("MakeNamedMaterial \"a\" \"string type\" \"matte\" MakeNamedMaterial "
+                "\"b\" \"string type\" \"mirror\" Material \"mix\" \"string "
+                "namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" \"rgb amount\" "
+                "[.7 .7 .7] " BALL),
+         WORLD4("MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial "
+                "\"b\" \"string type\" \"conductor\" \"rgb reflectance\" [.9 .9 .9] "
+                "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" "
+                ".3 " BALL)},
         {"named",
          WORLD3("MakeNamedMaterial \"a\" \"string type\" \"matte\" \"rgb Kd\" [.1 .5 .1] "
                 "NamedMaterial \"a\" " BALL),
@@ -137,6 +152,16 @@ static void test_rest(void)
              "Material \"diffuse\" \"rgb reflectance\" [.1 .5 .1] Shape \"trianglemesh\" "
              "\"point3 P\" [-1 0 0 1 0 0 0 0 2] \"normal N\" [0 -1 0 0 -1 0 0 -1 0] "
              "\"point2 uv\" [0 0 1 0 0 1] \"integer indices\" [0 1 2]\n")},
+        {"scaled",
+         WORLD3(
+             "Texture \"c\" \"color\" \"checkerboard\" \"float uscale\" 8 \"rgb tex1\" "
+             "[.1 .2 .3] \"rgb tex2\" [.8 .9 .8] Texture \"s\" \"color\" \"scale\" "
+             "\"texture tex1\" \"c\" \"rgb tex2\" [.5 .5 .5] Material \"matte\" "
+             "\"texture Kd\" \"s\" " BALL),
+         WORLD4("Texture \"c\" \"spectrum\" \"checkerboard\" \"float uscale\" 8 \"rgb "
+                "tex1\" [.1 .2 .3] \"rgb tex2\" [.8 .9 .8] Texture \"s\" \"spectrum\" "
+                "\"scale\" \"texture tex\" \"c\" \"float scale\" .5 Material \"diffuse\" "
+                "\"texture reflectance\" \"s\" " BALL)},
         {"texture",
          WORLD3(
              "Texture \"t\" \"color\" \"constant\" \"color value\" [.3 .2 .1] Material "

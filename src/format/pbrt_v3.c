@@ -357,13 +357,36 @@ static void translate_material(const translation *t)
 
 /* ---- Textures ---- */
 
+static double mean_of_rgb(const param *q)
+{
+    return ((double)q->numbers[0] + (double)q->numbers[1] + (double)q->numbers[2]) / 3.0;
+}
+
+/* v3 multiplies two colours, v4 a colour by a number. */
+static void translate_scale(const translation *t)
+{
+    param *a = find(t, "tex1"), *b = find(t, "tex2");
+    if (is_rgb(a) && is_rgb(b)) {
+        for (int i = 0; i < 3; i++)
+            a->numbers[i] *= b->numbers[i];
+        drop(t, "tex2");
+    } else if (is_rgb(a) || is_rgb(b)) {
+        bool second = is_rgb(b);
+        double mean = mean_of_rgb(second ? b : a);
+        note(t, NULL, "a texture is scaled by the mean of the colour's components");
+        drop(t, second ? "tex2" : "tex1");
+        give_float(t->p, "scale", mean);
+        rename_to(t, second ? "tex1" : "tex2", "tex");
+    }
+    rename_to(t, "tex1", "tex");
+    rename_to(t, "tex2", "scale");
+}
+
 static void translate_texture(const translation *t)
 {
     const param *gamma = find(t, "gamma"), *trilinear = find(t, "trilinear");
-    if (strcmp(*t->kind, "scale") == 0) {
-        rename_to(t, "tex1", "tex");
-        rename_to(t, "tex2", "scale");
-    }
+    if (strcmp(*t->kind, "scale") == 0)
+        translate_scale(t);
     drop(t, "aamode");
     if (strcmp(*t->kind, "imagemap") != 0)
         return;

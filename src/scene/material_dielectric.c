@@ -101,7 +101,8 @@ static unsigned pane_lobes(const void *self)
 
 const material_kind material_dielectric = {
     .name = "dielectric",
-    .parameters = "eta roughness uroughness vroughness remaproughness " MEDIUM_PARAMETERS,
+    .parameters =
+        "eta roughness uroughness vroughness remaproughness tint " MEDIUM_PARAMETERS,
     .create = glass_create,
     .free = glass_free,
     .make_bsdf = glass_bsdf,

@@ -15,6 +15,11 @@
 
 #include <string.h>
 
+/* No matter reflects less than 2 % straight on: what is said to (Blender writes a colour of
+ * black for "no specular") is dimmed at grazing angles too (Lagarde & de Rousiers, "Moving
+ * Frostbite to Physically Based Rendering", 2014). */
+#define GRAZING_PER_F0 50.0f
+
 typedef struct gltf_material {
     spectrum_input base_color, specular_color;
     float_input metallic, roughness, specular, coat, coat_roughness, transmission;
@@ -118,15 +123,16 @@ static gltf_surface surface_of(const gltf_material *m, const surface_hit *hit,
     spectrum r = (at->eta - 1.0f) / (at->eta + 1.0f);
     spectrum plain = r * r * spectrum_input_eval(&m->specular_color, hit, w);
     plain = spectrum_clamp(plain, 0.0f, 1.0f) * specular;
+    float grazing = specular * minf(1.0f, GRAZING_PER_F0 * spectrum_max(plain));
     float through = m->thin ? at->transmission : 0.0f;
     float matt = m->thin || at->transmission >= 1.0f
                      ? 1.0f - metal - at->transmission
                      : (1.0f - metal - at->transmission) / (1.0f - at->transmission);
     return (gltf_surface){
         .f0 = plain * (1.0f - metal) + at->base * metal,
-        .f90 = specular * (1.0f - metal) + metal,
+        .f90 = grazing * (1.0f - metal) + metal,
         .plain_f0 = spectrum_max(plain),
-        .plain_f90 = specular,
+        .plain_f90 = grazing,
         .diffuse = at->base * maxf(0.0f, matt),
         .through = at->base * through,
         .coat = share_of(&m->coat, hit),
