@@ -240,6 +240,118 @@ static void test_camera_refuses(void)
     assert_refused(error, "realistic");
 }
 
+/* ---- other cameras ---- */
+
+static camera camera_of(const char *kind, const char *mapping, int width, int height)
+{
+    camera c;
+    GError *error = NULL;
+    transform identity = transform_identity();
+    g_autoptr(params) p = no_params();
+    if (mapping)
+        params_add_strings(p, p->place, PARAM_STRING, "mapping", &mapping, 1, NULL);
+    g_assert_true(camera_init(&c, kind, p, &identity, width, height, &error));
+    g_assert_no_error(error);
+    g_assert_cmpstr(camera_kind_name(&c), ==, kind);
+    return c;
+}
+
+/* All rays look the same way, from -2..2 by 1..-1 on a film twice as wide as high; with a
+ * lens they meet in the plane in focus. */
+static void test_orthographic(void)
+{
+    camera c = camera_of("orthographic", NULL, 40, 20);
+    ray r = camera_ray(&c, (vec2){0, 0}, (vec2){0, 0}, 0);
+    assert_near3(r.origin, vec3_make(-2, 1, 0), 1e-6);
+    assert_near3(r.direction, vec3_make(0, 0, 1), 1e-7);
+    assert_near3(camera_ray(&c, (vec2){30, 15}, (vec2){0, 0}, 0).origin,
+                 vec3_make(1, -0.5f, 0), 1e-6);
+    vec2 raster;
+    g_assert_true(camera_project(&c, vec3_make(1, -0.5f, 7), &raster));
+    g_assert_cmpfloat(fabsf(raster.x - 30) + fabsf(raster.y - 15), <, 1e-4f);
+    g_assert_false(camera_project(&c, vec3_make(0, 0, -1), &raster));
+    g_assert_cmpfloat_with_epsilon((double)camera_pixel_area(&c, 9), 0.01, 1e-7);
+    g_assert_false(camera_connects(&c));
+    c.lens_radius = 0.2f;
+    c.focal_distance = 3;
+    for (uint32_t i = 0; i < 50; i++) {
+        sampler s = sampler_make(3, i);
+        r = camera_ray(&c, (vec2){30, 15}, sampler_2d(&s), 0);
+        vec3 in_focus = r.origin + r.direction * (3 / r.direction[2]);
+        assert_near3(in_focus, vec3_make(1, -0.5f, 3), 1e-5);
+        g_assert_cmpfloat(length3(r.origin - vec3_make(1, -0.5f, 0)), <, 0.2001f);
+    }
+}
+
+/* θ = π y / h from +y, φ = 2π x / w from +x to +z. */
+static void test_equirectangular(void)
+{
+    camera c = camera_of("spherical", "equirectangular", 80, 40);
+    const struct {
+        float x, y;
+        vec3 d;
+    } known[] = {{0, 20, {1, 0, 0}},
+                 {20, 20, {0, 0, 1}},
+                 {40, 20, {-1, 0, 0}},
+                 {60, 20, {0, 0, -1}},
+                 {13, 0, {0, 1, 0}},
+                 {50, 40, {0, -1, 0}},
+                 {10, 10, {0.5f, 0.70710678f, 0.5f}}};
+    for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
+        assert_near3(direction_at(&c, known[i].x, known[i].y), known[i].d, 1e-6);
+}
+
+/* pbrt's square: the middle is +y (its z, exchanged), the corners are -y, the middles of
+ * the sides lie on the horizon. */
+static void test_equal_area(void)
+{
+    camera c = camera_of("spherical", NULL, 64, 64);
+    assert_near3(direction_at(&c, 32, 32), vec3_make(0, 1, 0), 1e-6);
+    assert_near3(direction_at(&c, 64, 32), vec3_make(1, 0, 0), 1e-6);
+    assert_near3(direction_at(&c, 32, 64), vec3_make(0, 0, 1), 1e-6);
+    assert_near3(direction_at(&c, 0, 0), vec3_make(0, -1, 0), 1e-6);
+    /* Beyond the border the picture goes on. */
+    assert_near3(direction_at(&c, 64.01f, 20), direction_at(&c, 63.99f, 44), 1e-3);
+    assert_near3(direction_at(&c, 20, -0.01f), direction_at(&c, 44, 0.01f), 1e-3);
+}
+
+/* Back to the raster, and pixels per solid angle by differences. */
+static void test_spherical_connects(void)
+{
+    for (int k = 0; k < 2; k++) {
+        camera c = camera_of("spherical", k ? "equalarea" : "equirectangular", 50, 40);
+        c.to_world = transform_rotate(40, 1, 2, 3);
+        g_assert_true(camera_connects(&c));
+        for (uint32_t i = 0; i < 200; i++) {
+            sampler s = sampler_make(8, i);
+            vec2 u = sampler_2d(&s), at = {1 + 48 * u.x, 2 + 36 * u.y};
+            vec3 d = camera_ray(&c, at, (vec2){0, 0}, 0).direction;
+            camera_connection found;
+            g_assert_true(camera_connect(&c, 3.0f * d, (vec2){0, 0}, 0, &found));
+            g_assert_cmpfloat(fabsf(found.raster.x - at.x), <, 1e-3f);
+            g_assert_cmpfloat(fabsf(found.raster.y - at.y), <, 1e-3f);
+            g_assert_cmpfloat(fabsf(found.distance - 3), <, 1e-5f);
+            const float h = 0.02f;
+            vec2 right = {at.x + h, at.y}, down = {at.x, at.y + h};
+            vec3 dx = camera_ray(&c, right, (vec2){0, 0}, 0).direction - d;
+            vec3 dy = camera_ray(&c, down, (vec2){0, 0}, 0).direction - d;
+            float solid_angle = length3(cross3(dx, dy)) / (h * h);
+            bool smooth = k == 0 || (fabsf(at.x - 25) > 1 && fabsf(at.y - 20) > 1);
+            if (smooth)
+                g_assert_cmpfloat(fabsf(found.pdf * solid_angle - 1), <, 0.05f);
+        }
+    }
+}
+
+/* Half the field of view is half of it. */
+static void test_half_field_of_view(void)
+{
+    const float fov = 50, half = 25;
+    camera a = make_camera("fov", &fov, 1, 30, 20),
+           b = make_camera("halffov", &half, 1, 30, 20);
+    assert_near3(direction_at(&a, 3, 4), direction_at(&b, 3, 4), 1e-7);
+}
+
 /* ---- filters ---- */
 
 static const char *const kinds[] = {"box", "triangle", "gaussian", "mitchell", "sinc"};
@@ -440,6 +552,11 @@ static void test_filter_parameters(void)
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/camera/orthographic", test_orthographic);
+    g_test_add_func("/camera/equirectangular", test_equirectangular);
+    g_test_add_func("/camera/equal-area", test_equal_area);
+    g_test_add_func("/camera/spherical/connects", test_spherical_connects);
+    g_test_add_func("/camera/halffov", test_half_field_of_view);
     g_test_add_func("/camera/centre", test_centre_and_sides);
     g_test_add_func("/camera/fov", test_fov_spans_shorter_side);
     g_test_add_func("/camera/window", test_window_and_aspect);

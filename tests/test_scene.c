@@ -398,10 +398,10 @@ static void test_bad_film_is_named(void)
     params_add_strings(p, here, PARAM_STRING, "sensor", sensor, 1, NULL);
     expect_film_error(p, "rgb", "canon_eos_100d");
     expect_film_error(one_number("iso", 0), "rgb", "iso");
-    expect_film_error(one_number("whitebalance", 5000), "rgb", "whitebalance");
-    expect_film_error(one_number("maxcomponentvalue", 10), "rgb", "maxcomponentvalue");
+    expect_film_error(one_number("whitebalance", 500), "rgb", "whitebalance");
+    expect_film_error(one_number("maxcomponentvalue", 0), "rgb", "maxcomponentvalue");
     expect_film_error(one_number("exposuretime", 1), "rgb", "exposuretime");
-    expect_film_error(no_params(), "gbuffer", "gbuffer");
+    expect_film_error(no_params(), "spectral", "spectral");
     expect_film_error(no_params(), "spectral", "spectral");
 }
 

@@ -1,6 +1,7 @@
 #include "render/film.h"
 
 #include "base/memory.h"
+#include "color/balance.h"
 
 enum { LUMINANCE = 1 /* of X, Y, Z */ };
 
@@ -39,7 +40,14 @@ bool film_open(film *f, const scene *s, GError **error)
         .y0 = (int)ceilf(how->crop[2] * (float)how->height),
         .scale = scene_imaging_ratio(s),
         .space = how->space ? how->space : color_space_srgb(),
+        .most = how->most,
+        .balanced = how->kelvin > 0.0f,
+        .in_camera = how->in_camera,
     };
+    if (f->balanced)
+        color_balance(how->kelvin, f->space, f->balance);
+    transform to_world = camera_at(&s->camera, 0.0f);
+    f->to_camera = transform_inverse(&to_world);
     f->width = x1 - f->x0;
     f->height = y1 - f->y0;
     if (f->width < 1 || f->height < 1) {
@@ -64,10 +72,22 @@ void film_clear(film *f)
 
 /* ---- A pass ---- */
 
-film_pass film_pass_for(const wavelengths *w)
+film_pass film_pass_for(const film *f, const wavelengths *w)
 {
     g_autoptr(curve) d65 = curve_named("stdillum-D65");
-    return (film_pass){w, curve_eval(d65, w) / curve_photometric(d65)};
+    return (film_pass){w, curve_eval(d65, w) / curve_photometric(d65),
+                       f->most > 0.0f ? f->most / f->scale : INFINITY};
+}
+
+/* What radiance must be scaled by so as not to be brighter than allowed. */
+static float dimming(const film_pass *pass, spectrum radiance)
+{
+    float xyz[3];
+    if (isinf(pass->most))
+        return 1.0f;
+    spectrum_to_xyz(pass->w, radiance, xyz);
+    float largest = maxf(xyz[0], maxf(xyz[1], xyz[2]));
+    return largest > pass->most ? pass->most / largest : 1.0f;
 }
 
 static void add_color(double sum[3], const wavelengths *w, spectrum radiance,
@@ -79,19 +99,24 @@ static void add_color(double sum[3], const wavelengths *w, spectrum radiance,
         sum[i] += (double)(xyz[i] * weight);
 }
 
-void film_add(film_sum *sum, const film_pass *pass, const radiance_sample *sample,
-              float weight)
+float film_add(film_sum *sum, const film_pass *pass, const radiance_sample *sample,
+               float weight)
 {
+    spectrum all = {0};
     for (int i = 0; i < N_LAYERS; i++)
-        add_color(sum->color[i], pass->w, sample->layers[i], weight);
+        all += sample->layers[i];
+    float dimmed = dimming(pass, all);
+    for (int i = 0; i < N_LAYERS; i++)
+        add_color(sum->color[i], pass->w, sample->layers[i], weight * dimmed);
     sum->weight += (double)weight;
     if (!(sample->depth > 0.0f))
-        return;
+        return dimmed;
     add_color(sum->color[N_LAYERS], pass->w, sample->albedo * pass->white, weight);
     for (int i = 0; i < 3; i++)
         sum->normal[i] += (double)(sample->normal[i] * weight);
     sum->depth += (double)(sample->depth * weight);
     sum->surface_weight += (double)weight;
+    return dimmed;
 }
 
 static size_t pixel_index(const film *f, int x, int y)
@@ -147,7 +172,7 @@ static void add_splat(film *f, const film_pass *pass, const pixel_filter *filter
                       const splat *s)
 {
     float xyz[3];
-    spectrum_to_xyz(pass->w, s->value, xyz);
+    spectrum_to_xyz(pass->w, s->value * dimming(pass, s->value), xyz);
     /* Pixels whose centres are within the filter's radius. */
     vec2 at = {s->raster.x - 0.5f, s->raster.y - 0.5f};
     int x0 = MAX((int)ceilf(at.x - filter->x_radius), f->x0);
@@ -287,8 +312,11 @@ static GPtrArray *channel_names(const film *f)
 static void to_rgb(const film *f, const double sum[3], double weight, float out[3])
 {
     float xyz[3] = {0};
-    for (int i = 0; i < 3 && fabs(weight) > 0.0; i++)
-        xyz[i] = (float)(sum[i] / weight);
+    for (int i = 0; i < 3 && fabs(weight) > 0.0; i++) {
+        const double *m = f->balance + 3 * i;
+        double balanced = m[0] * sum[0] + m[1] * sum[1] + m[2] * sum[2];
+        xyz[i] = (float)((f->balanced ? balanced : sum[i]) / weight);
+    }
     color_space_from_xyz(f->space, xyz, out);
 }
 
@@ -306,8 +334,12 @@ static void write_sum(const film *f, const film_sum *sum, float *out)
     }
     float *rest = layers + 3 * FILM_COLORS;
     double weight = fabs(sum->surface_weight) > 0.0 ? sum->surface_weight : 1.0;
+    vec3 n = vec3_make((float)(sum->normal[0] / weight), (float)(sum->normal[1] / weight),
+                       (float)(sum->normal[2] / weight));
+    if (f->in_camera)
+        n = length3(n) * normalize3(transform_normal(&f->to_camera, n));
     for (int i = 0; i < 3; i++)
-        rest[i] = (float)(sum->normal[i] / weight);
+        rest[i] = n[i];
     rest[3] = (float)(sum->depth / weight);
 }
 

@@ -59,6 +59,11 @@ typedef struct film {
     const char *const *group_names; /**< the scene's */
     int64_t n_passes;               /**< done */
     float scale;                    /**< the sensor's: scene_imaging_ratio */
+    float most;                     /**< film_settings.most */
+    bool balanced;                  /**< by this matrix of XYZ */
+    double balance[9];
+    bool in_camera; /**< normals are turned by this */
+    transform to_camera;
     const color_space *space;
 } film;
 
@@ -70,13 +75,15 @@ void film_clear(film *f);
 typedef struct film_pass {
     const wavelengths *w;
     spectrum white; /**< the illuminant under which the albedo is seen, Y = 1 */
+    float most;     /**< the largest of X, Y, Z that a sample may have; INFINITY: any */
 } film_pass;
 
-film_pass film_pass_for(const wavelengths *w);
+film_pass film_pass_for(const film *f, const wavelengths *w);
 
-/** @brief Adds a sample to the sum of a pixel. */
-void film_add(film_sum *sum, const film_pass *pass, const radiance_sample *sample,
-              float weight);
+/** @brief Adds a sample to the sum of a pixel. @return what it was scaled by, 1 unless it
+ * was brighter than allowed */
+float film_add(film_sum *sum, const film_pass *pass, const radiance_sample *sample,
+               float weight);
 /** @brief Pixel (x, y) of the whole picture is done in this pass. */
 void film_put(film *f, int x, int y, const film_sum *sum);
 /** @brief The same for what the light groups gave: Σ of weighed radiance, n_groups. */

@@ -161,9 +161,9 @@ static void render_sample(camera_loop *loop, vec2 pixel, sampler *random, unsign
         groups->sample[k] = (spectrum){0};
     r->transport->radiance(loop->pass, &from_eye, random, &loop->scratch[thread],
                            &sample);
-    film_add(sum, &loop->film_pass, &sample, weight);
+    float dimmed = film_add(sum, &loop->film_pass, &sample, weight);
     for (size_t k = 0; k < groups->n; k++)
-        groups->sum[k] += weight * groups->sample[k];
+        groups->sum[k] += weight * dimmed * groups->sample[k];
 }
 
 static void render_pixel(camera_loop *loop, int x, int y, unsigned thread)
@@ -296,7 +296,7 @@ static bool look(render *r, const void *pass, GError **error)
     camera_loop loop = {
         .render = r,
         .pass = pass,
-        .film_pass = film_pass_for(r->transport->pass_wavelengths(pass)),
+        .film_pass = film_pass_for(&r->film, r->transport->pass_wavelengths(pass)),
         .index = r->passes_done,
         .n_tiles_x = (f->width + FILM_TILE - 1) / FILM_TILE,
     };
@@ -318,7 +318,7 @@ static void add_splats(render *r, const void *pass)
 {
     if (!r->transport->splats)
         return;
-    film_pass colors = film_pass_for(r->transport->pass_wavelengths(pass));
+    film_pass colors = film_pass_for(&r->film, r->transport->pass_wavelengths(pass));
     film_add_splats(&r->film, &colors, &r->plan.scene->filter,
                     r->transport->splats(pass));
 }

@@ -1,12 +1,14 @@
 /*
- * The film directive: pbrt's "rgb" film.
+ * The film directive: pbrt's "rgb" and "gbuffer" films. Every picture has layers of
+ * albedo, shading normal, depth and variance; a gbuffer adds to that only the choice of
+ * the normals' space, which is the camera's unless it says "world".
  *
  * What has no meaning here is refused with its place rather than dropped: sensors other
- * than cie1931, white balance, a largest component. "diagonal" acts on realistic cameras
- * only, in pbrt too, and those are refused by the camera; "savefp16" asks for less than
- * the float images that are written.
+ * than cie1931. "diagonal" acts on realistic cameras only, in pbrt too, and those are
+ * refused by the camera; "savefp16" asks for less than the float images that are written.
  */
 #include "scene/scene_film.h"
+#include "color/balance.h"
 #include "scene/scene.h"
 
 #include <string.h>
@@ -36,25 +38,35 @@ static bool read_number_above_zero(const params *p, const char *name, float *out
     return false;
 }
 
-static bool check_sensor(const params *p, GError **error)
+static bool read_sensor(const params *p, film_settings *film, GError **error)
 {
     static const char *const sensors[] = {"cie1931", NULL};
     int sensor = 0;
-    float kelvin = 0.0f;
     if (!params_choice(p, "sensor", sensors, &sensor, error) ||
-        !params_float(p, "whitebalance", &kelvin, error))
+        !params_float(p, "whitebalance", &film->kelvin, error))
         return false;
-    if (fabsf(kelvin) > 0.0f) {
+    if (fabsf(film->kelvin) > 0.0f &&
+        !(film->kelvin >= DAYLIGHT_COLDEST && film->kelvin <= DAYLIGHT_HOTTEST)) {
         error_at(error, params_find(p, "whitebalance")->place,
-                 "white balance is not supported; \"whitebalance\" must be 0, found %g",
-                 (double)kelvin);
+                 "\"whitebalance\" must be 0 or the temperature of daylight, %g to %g "
+                 "kelvin, found %g",
+                 (double)DAYLIGHT_COLDEST, (double)DAYLIGHT_HOTTEST,
+                 (double)film->kelvin);
         return false;
     }
-    if (!params_has(p, "maxcomponentvalue"))
-        return true;
-    error_at(error, params_find(p, "maxcomponentvalue")->place,
-             "\"maxcomponentvalue\" is not supported: it would darken the picture");
-    return false;
+    return !params_has(p, "maxcomponentvalue") ||
+           read_number_above_zero(p, "maxcomponentvalue", &film->most, error);
+}
+
+/* What a gbuffer has and other films have not: the space of its normals. */
+static bool read_gbuffer(const params *p, film_settings *film, GError **error)
+{
+    static const char *const spaces[] = {"camera", "world", NULL};
+    int space = 0;
+    if (!params_choice(p, "coordinatesystem", spaces, &space, error))
+        return false;
+    film->in_camera = space == 0;
+    return true;
 }
 
 /* Half a pixel inside, so that ceil(crop * size) gives the bounds back. */
@@ -113,7 +125,7 @@ static bool read_film(const params *p, film_settings *film, GError **error)
     const char *filename = NULL;
     if (!read_size(p, "xresolution", &film->width, error) ||
         !read_size(p, "yresolution", &film->height, error) ||
-        !read_crop(p, film, error) || !check_sensor(p, error) ||
+        !read_crop(p, film, error) || !read_sensor(p, film, error) ||
         !read_number_above_zero(p, "iso", &film->iso, error) ||
         !read_number_above_zero(p, "diagonal", &diagonal, error) ||
         !params_bool(p, "savefp16", &save_half, error) ||
@@ -135,12 +147,16 @@ film_settings film_default(void)
 
 bool film_init(film_settings *film, const char *kind, const params *p, GError **error)
 {
-    if (strcmp(kind, "rgb") != 0) {
-        error_at(error, p->place, "film \"%s\" is not supported; known is rgb", kind);
+    bool is_gbuffer = strcmp(kind, "gbuffer") == 0;
+    if (!is_gbuffer && strcmp(kind, "rgb") != 0) {
+        error_at(error, p->place,
+                 "film \"%s\" is not supported; known are rgb and gbuffer", kind);
         return false;
     }
     film_settings read = film_default();
-    if (read_film(p, &read, error) && params_all_used(p, "film \"rgb\"", error)) {
+    g_autofree char *what = g_strdup_printf("film \"%s\"", kind);
+    if (read_film(p, &read, error) && (!is_gbuffer || read_gbuffer(p, &read, error)) &&
+        params_all_used(p, what, error)) {
         *film = read;
         return true;
     }
