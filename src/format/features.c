@@ -5,6 +5,7 @@
  */
 #include "format/features.h"
 
+#include "format/gltf_extensions.h"
 #include "scene/scene.h"
 
 #include <string.h>
@@ -149,5 +150,6 @@ char *features_markdown(void)
         for (char **kind = kinds; *kind; kind++)
             append_row(out, &lists[i], *kind);
     }
+    gltf_append_features(out);
     return g_string_free(out, FALSE);
 }

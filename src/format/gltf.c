@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "format/defaults.h"
+#include "format/gltf_extensions.h"
 #include "format/input.h"
 #include "format/reader.h"
 
@@ -17,22 +18,6 @@ enum {
     CHUNK_HEADER = 8,
     CHUNK_JSON = 0x4E4F534A,
     CHUNK_BIN = 0x004E4942
-};
-
-/* Extensions that may be required. The rest of what we do not read changes what is seen,
- * or how it is stored. */
-static const char *const known_extensions[] = {
-    "KHR_lights_punctual",
-    "KHR_materials_clearcoat",
-    "KHR_materials_dispersion",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_volume",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-    NULL,
 };
 
 /* ---- For all parts ---- */
@@ -229,6 +214,13 @@ static void check_version(gltf *g)
                   version ? version : "none");
 }
 
+/* What is left out may change what is seen, or how it is stored. */
+static bool may_be_required(const char *name)
+{
+    const gltf_extension_row *row = gltf_find_extension(name);
+    return row && (row->support == GLTF_RENDERED || row->support == GLTF_APPROXIMATED);
+}
+
 static void check_required(gltf *g)
 {
     json_value required = json_member(&g->root, "extensionsRequired");
@@ -239,9 +231,26 @@ static void check_required(gltf *g)
                        json_node_get_value_type(name.node) == G_TYPE_STRING;
         if (!is_text)
             json_fail(&name, "expected a string");
-        else if (!g_strv_contains(known_extensions, json_node_get_string(name.node)))
+        else if (!may_be_required(json_node_get_string(name.node)))
             json_fail(&name, "the file requires the extension %s, which is not supported",
                       json_node_get_string(name.node));
+    }
+}
+
+/* Of the extensions that a file uses, those that are left out, and those not known. */
+static void note_extensions(gltf *g)
+{
+    json_value used = json_member(&g->root, "extensionsUsed");
+    guint n = json_length(&used);
+    for (guint i = 0; i < n; i++) {
+        json_value name = json_element(&used, i);
+        if (!JSON_NODE_HOLDS_VALUE(name.node) ||
+            json_node_get_value_type(name.node) != G_TYPE_STRING)
+            continue;
+        const gltf_extension_row *row =
+            gltf_find_extension(json_node_get_string(name.node));
+        if (!row || row->support == GLTF_LEFT_OUT)
+            gltf_note(g, LOG_WARNING, "%s is left out", json_node_get_string(name.node));
     }
 }
 
@@ -272,6 +281,7 @@ static void read_document(gltf *g)
     if (gltf_failed(g))
         return;
     make_room(g);
+    note_extensions(g);
     note_animations(g);
     if (!gltf_failed(g))
         add_scene(g);

@@ -198,19 +198,8 @@ static params *read_alpha(gltf *g, const json_value *m)
 
 /* ---- All of it ---- */
 
-/* Extensions that are read elsewhere or here, and those whose want shows little. */
-static void note_extensions(gltf *g, const json_value *m)
+static void note_occlusion(gltf *g, const json_value *m)
 {
-    static const char *const left_out[] = {
-        "KHR_materials_sheen",      "KHR_materials_iridescence",
-        "KHR_materials_anisotropy", "KHR_materials_diffuse_transmission",
-        "KHR_materials_unlit",      "KHR_materials_pbrSpecularGlossiness"};
-    json_value extensions;
-    for (size_t i = 0; i < G_N_ELEMENTS(left_out); i++) {
-        json_value e = gltf_extension(m, left_out[i], &extensions);
-        if (json_exists(&e))
-            gltf_note(g, LOG_WARNING, "%s is left out", left_out[i]);
-    }
     json_value occlusion = json_member(m, "occlusionTexture");
     if (json_exists(&occlusion))
         gltf_note(g, LOG_NOTE,
@@ -253,7 +242,7 @@ static void read_info(gltf *g, const json_value *m, gltf_material_info *info)
     info->transmits = json_exists(&e) && !has_volume(m);
     info->area_light = read_emission(g, m);
     info->alpha = read_alpha(g, m);
-    note_extensions(g, m);
+    note_occlusion(g, m);
 }
 
 static void make(gltf *g, const json_value *m, gltf_material_info *info, bool solid)

@@ -1,0 +1,54 @@
+/* The list of glTF's extensions. */
+#include "format/gltf_extensions.h"
+
+#include <string.h>
+
+static const gltf_extension_row rows[] = {
+    {"KHR_lights_punctual", GLTF_RENDERED,
+     "candela and lux become W/sr and W/m² by 683 lm/W, as Blender writes them"},
+    {"KHR_materials_clearcoat", GLTF_APPROXIMATED, "with the surface's own normals"},
+    {"KHR_materials_dispersion", GLTF_RENDERED, "Cauchy's formula with the Abbe number"},
+    {"KHR_materials_emissive_strength", GLTF_RENDERED, ""},
+    {"KHR_materials_ior", GLTF_RENDERED, ""},
+    {"KHR_materials_specular", GLTF_RENDERED,
+     "what reflects less than 2 % is dimmed at grazing angles too"},
+    {"KHR_materials_transmission", GLTF_RENDERED,
+     "a thin pane; closed meshes are read as solid glass, with a note"},
+    {"KHR_materials_volume", GLTF_RENDERED,
+     "absorption over the way that light goes; thickness above 0 means solid"},
+    {"KHR_mesh_quantization", GLTF_RENDERED, ""},
+    {"KHR_texture_transform", GLTF_APPROXIMATED, "normal maps are not moved"},
+    {"EXT_mesh_gpu_instancing", GLTF_LEFT_OUT, "one of the copies is shown"},
+    {"KHR_animation_pointer", GLTF_LEFT_OUT, ""},
+    {"KHR_materials_anisotropy", GLTF_LEFT_OUT, ""},
+    {"KHR_materials_diffuse_transmission", GLTF_LEFT_OUT, ""},
+    {"KHR_materials_iridescence", GLTF_LEFT_OUT, ""},
+    {"KHR_materials_pbrSpecularGlossiness", GLTF_LEFT_OUT, ""},
+    {"KHR_materials_sheen", GLTF_LEFT_OUT, ""},
+    {"KHR_materials_unlit", GLTF_LEFT_OUT, "lit like everything"},
+    {"KHR_materials_variants", GLTF_LEFT_OUT, "the first look is shown"},
+    {"EXT_meshopt_compression", GLTF_REFUSED, ""},
+    {"EXT_texture_webp", GLTF_REFUSED, "unless a PNG or JPEG stands beside it"},
+    {"KHR_draco_mesh_compression", GLTF_REFUSED, ""},
+    {"KHR_texture_basisu", GLTF_REFUSED, "unless a PNG or JPEG stands beside it"},
+};
+
+const gltf_extension_row *gltf_find_extension(const char *name)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(rows); i++)
+        if (strcmp(rows[i].name, name) == 0)
+            return &rows[i];
+    return NULL;
+}
+
+void gltf_append_features(GString *out)
+{
+    static const char *const words[] = {[GLTF_RENDERED] = "rendered",
+                                        [GLTF_APPROXIMATED] = "approximated",
+                                        [GLTF_LEFT_OUT] = "left out, with a note",
+                                        [GLTF_REFUSED] = "refused"};
+    g_string_append(out, "\n| glTF 2.0 | | |\n|---|---|---|\n");
+    for (size_t i = 0; i < G_N_ELEMENTS(rows); i++)
+        g_string_append_printf(out, "| `%s` | %s | %s |\n", rows[i].name,
+                               words[rows[i].support], rows[i].note);
+}
