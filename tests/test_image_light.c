@@ -108,7 +108,7 @@ static light *turned_sky(const char *path)
 static double seen(const light *l, vec3 d)
 {
     const wavelengths w = wavelengths_at(0.5f);
-    return (double)spectrum_mean(l->kind->environment(l->self, d, &w));
+    return (double)spectrum_mean(l->kind->environment(l->self, (vec3){0}, d, &w));
 }
 
 static vec3 direction_number(uint32_t i)
@@ -215,12 +215,13 @@ static void test_power(void)
             l->kind->emit_pdf(l->self, e.ray.origin, e.n, e.ray.direction, &position,
                               &direction);
             double le = (double)spectrum_mean(
-                l->kind->environment(l->self, -e.ray.direction, &w));
+                l->kind->environment(l->self, (vec3){0}, -e.ray.direction, &w));
             g_assert_cmpfloat(fabs(flux * (double)(position * direction) / le - 1), <,
                               2e-2);
             vec3 d = direction_number(n);
-            integral += (double)spectrum_mean(l->kind->environment(l->self, d, &w)) * 4 *
-                        G_PI / N;
+            integral +=
+                (double)spectrum_mean(l->kind->environment(l->self, (vec3){0}, d, &w)) *
+                4 * G_PI / N;
         }
         double mean = sum / N, error = sqrt((sum2 / N - mean * mean) / N);
         g_assert_cmpfloat(error, <, 0.01 * mean); /* drawn in proportion */
@@ -239,7 +240,7 @@ static double illuminance(const light *l)
         for (uint32_t i = 0; i < N; i++) {
             vec3 d = direction_number(i);
             float xyz[3];
-            spectrum_to_xyz(&w, l->kind->environment(l->self, d, &w), xyz);
+            spectrum_to_xyz(&w, l->kind->environment(l->self, (vec3){0}, d, &w), xyz);
             y += (double)(xyz[1] * fmaxf(d[2], 0)) * 4 * G_PI / N / 16;
         }
     }
@@ -262,6 +263,94 @@ static void test_scale_and_illuminance(void)
     light_free(dim);
 }
 
+/* ---- Through a portal ---- */
+
+static params *portal_params(void)
+{
+    static const float corners[12] = {-0.5f, 1, 0, 0.5f, 1, 0, 0.5f, 1, 1, -0.5f, 1, 1};
+    params *p = sky_params(wide_path);
+    params_add_numbers(p, here, PARAM_POINT3, "portal", corners, 12, NULL);
+    return p;
+}
+
+/* The sky is seen through the rectangle and nowhere else; light samples have the density
+ * of what they claim, and give what the environment has. */
+static void test_portal_is_seen(void)
+{
+    light *l = make_sky(portal_params(), NULL),
+          *open = make_sky(sky_params(wide_path), NULL);
+    const wavelengths w = wavelengths_at(0.5f);
+    const vec3 ref = vec3_make(0.2f, -1, 0.1f);
+    double by_sampling = 0, by_looking = 0;
+    enum { N = 40000 };
+    for (uint32_t i = 0; i < N; i++) {
+        sampler s = sampler_make(8, i);
+        vec2 u = sampler_2d(&s);
+        vec3 d = warp_sphere(sampler_2d(&s));
+        float t = (1 - ref[1]) / d[1];
+        vec3 at = ref + t * d;
+        bool passes = t > 0 && fabsf(at[0]) < 0.5f && at[2] > 0 && at[2] < 1;
+        spectrum here_seen = l->kind->environment(l->self, ref, d, &w);
+        g_assert_true(spectrum_is_black(here_seen) == !passes);
+        float pdf = l->kind->pdf(l->self, ref, d, NULL);
+        g_assert_true((pdf > 0) == passes);
+        if (passes)
+            g_assert_cmpfloat(fabs((double)spectrum_mean(here_seen) / seen(open, d) - 1),
+                              <, 1e-4);
+        by_looking += (double)spectrum_mean(here_seen) * 4 * G_PI / N;
+        light_sample to;
+        g_assert_true(l->kind->sample(l->self, &w, ref, 0, u, &to));
+        pdf = l->kind->pdf(l->self, ref, to.wi, NULL);
+        if (pdf > 0) /* but for rounding at the edge */
+            g_assert_cmpfloat(fabsf(pdf / to.pdf - 1), <, 1e-3f);
+        by_sampling += (double)(spectrum_mean(to.radiance) / to.pdf) / N;
+    }
+    g_assert_cmpfloat(fabs(by_sampling / by_looking - 1), <, 0.05);
+    light_free(l);
+    light_free(open);
+}
+
+/* Photons pass it, with the power A ∫ L cosθ dω. */
+static void test_portal_power(void)
+{
+    light *l = make_sky(portal_params(), NULL);
+    const wavelengths w = wavelengths_at(0.5f);
+    double power = (double)spectrum_mean(l->kind->power(l->self, &w)), sum = 0, sum2 = 0;
+    double integral = 0;
+    enum { N = 40000 };
+    for (uint32_t i = 0; i < N; i++) {
+        sampler s = sampler_make(9, i);
+        vec2 u = sampler_2d(&s), v = sampler_2d(&s);
+        light_emission e;
+        vec3 d = warp_sphere(sampler_2d(&s)), middle = vec3_make(0, 0.999f, 0.5f);
+        integral += (double)(spectrum_mean(l->kind->environment(l->self, middle, d, &w)) *
+                             fmaxf(0, d[1])) *
+                    4 * G_PI / N;
+        if (!l->kind->emit(l->self, &w, 0, u, v, &e))
+            continue;
+        double flux = (double)spectrum_mean(e.flux);
+        float t = (1 - e.ray.origin[1]) / e.ray.direction[1];
+        vec3 at = e.ray.origin + t * e.ray.direction;
+        g_assert_true(e.ray.direction[1] < 0 && fabsf(at[0]) < 0.5001f);
+        g_assert_true(at[2] > -1e-4f && at[2] < 1.0001f);
+        float position, direction;
+        l->kind->emit_pdf(l->self, e.ray.origin, e.n, e.ray.direction, &position,
+                          &direction);
+        ray away = e.ray;
+        g_assert_true(l->kind->admits(l->self, &away) == (position > 0));
+        away.origin[0] += 3;
+        g_assert_false(l->kind->admits(l->self, &away));
+        if (position > 0)
+            g_assert_cmpfloat(fabsf(position / e.pdf_position - 1), <, 1e-3f);
+        sum += flux;
+        sum2 += flux * flux;
+    }
+    double mean = sum / N, error = sqrt((sum2 / N - mean * mean) / N);
+    g_assert_cmpfloat(fabs(mean - power), <, 6 * error + 3e-3 * power);
+    g_assert_cmpfloat(fabs(integral / power - 1), <, 0.05);
+    light_free(l);
+}
+
 /* ---- Refusals ---- */
 
 static void refuse(params *p, const transform *to_world, const char *part)
@@ -281,6 +370,10 @@ static void test_refusals(void)
     transform stretched = transform_scale(1, 2, 1);
     refuse(sky_params(odd_path), NULL, "found 7 x 5");
     refuse(sky_params(black_path), NULL, "is black");
+    params *skew = sky_params(wide_path);
+    static const float corners[12] = {0, 0, 0, 1, 0, 0, 2, 1, 0, 1, 1, 0};
+    params_add_numbers(skew, here, PARAM_POINT3, "portal", corners, 12, NULL);
+    refuse(skew, NULL, "'portal'");
     refuse(sky_params("/nowhere.exr"), NULL, "/nowhere.exr");
     refuse(sky_params(wide_path), &stretched, "stretched");
     params *p = sky_params(wide_path);
@@ -313,6 +406,8 @@ int main(int argc, char **argv)
     g_test_add_func("/image-light/drawn", test_drawn);
     g_test_add_func("/image-light/power", test_power);
     g_test_add_func("/image-light/scale", test_scale_and_illuminance);
+    g_test_add_func("/image-light/portal/seen", test_portal_is_seen);
+    g_test_add_func("/image-light/portal/power", test_portal_power);
     g_test_add_func("/image-light/refusals", test_refusals);
     int status = g_test_run();
     clean_up();

@@ -92,7 +92,7 @@ static const feature_note notes[] = {
      "two facet lobes and what goes to and fro between them; an `albedo` > 0 is refused"},
     {"Texture", "imagemap", "approximated", "`EWA` filters as `trilinear` does"},
     {"LightSource", "infinite", "approximated",
-     "pictures are mixed bilinearly; `portal` is refused"},
+     "pictures are mixed bilinearly; `portal` needs a `filename`"},
 };
 
 static const feature_note *find_note(const char *directive, const char *kind)

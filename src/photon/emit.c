@@ -92,7 +92,8 @@ bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
     if (!l->kind->emit_toward(l->self, w, u_primitive, u, target, &emission))
         return false;
     emission.ray.time = out->ray.time;
-    if (!meets_caster(s, emission.ray))
+    if (!meets_caster(s, emission.ray) ||
+        (l->kind->admits && !l->kind->admits(l->self, &emission.ray)))
         return false;
     double density = aimed_density(s, emission.ray, l->kind->is_parallel);
     return density > 0.0 && finish(&emission, (float)density, out);
@@ -120,7 +121,7 @@ static bool emit_at_disc(const scene *s, const light *l, const wavelengths *w,
     frame f = frame_from_normal(out->ray.direction);
     out->ray.origin += s->caustic_radius * (disk.x * f.s + disk.y * f.t);
     out->flux *= PI_F * s->caustic_radius * s->caustic_radius;
-    return true;
+    return !l->kind->admits || l->kind->admits(l->self, &out->ray);
 }
 
 /* 1 - cos of the half angle of the cone in which p sees the sphere. */

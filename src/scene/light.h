@@ -81,8 +81,11 @@ typedef struct light_kind {
     /** Radiance leaving the hit toward wo (area lights); NULL otherwise. */
     spectrum (*radiance)(const void *self, const surface_hit *hit, vec3 wo,
                          const wavelengths *w);
-    /** Radiance arriving from direction d (environment); NULL otherwise. */
-    spectrum (*environment)(const void *self, vec3 d, const wavelengths *w);
+    /** Radiance arriving at p from direction d (environment); NULL otherwise. */
+    spectrum (*environment)(const void *self, vec3 p, vec3 d, const wavelengths *w);
+    /** False if no light comes along this ray, which emit_toward's direction was given
+     * another start: behind a portal. NULL: light comes everywhere. */
+    bool (*admits)(const void *self, const ray *r);
 } light_kind;
 
 struct light {

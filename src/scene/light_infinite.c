@@ -110,9 +110,9 @@ static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
     return 1.0f / all_around;
 }
 
-static spectrum environment(const void *self, vec3 d, const wavelengths *w)
+static spectrum environment(const void *self, vec3 p, vec3 d, const wavelengths *w)
 {
-    (void)d;
+    (void)p, (void)d;
     const infinite_light *l = self;
     return emitter_eval(&l->radiance, w);
 }

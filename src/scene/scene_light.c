@@ -18,7 +18,7 @@ spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w)
     spectrum sum = spectrum_fill(0.0f);
     for (int i = 0; i < s->n_environments; i++) {
         const light *l = scene_light(s, s->environments[i]);
-        sum += l->kind->environment(l->self, d, w);
+        sum += l->kind->environment(l->self, s->center, d, w);
     }
     return sum;
 }

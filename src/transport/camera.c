@@ -89,8 +89,8 @@ static void see_sky(camera_tree *tree, const camera_branch *branch)
     for (int i = 0; i < s->n_environments; i++) {
         int index = s->environments[i];
         const light *l = scene_light(s, index);
-        spectrum radiance =
-            l->kind->environment(l->self, branch->ray.direction, &pass->w);
+        spectrum radiance = l->kind->environment(l->self, branch->ray.origin,
+                                                 branch->ray.direction, &pass->w);
         float weight = met_light_weight(tree, branch, index, NULL);
         add_from(tree, branch, LAYER_EMISSION, radiance * weight, index);
     }

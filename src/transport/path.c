@@ -133,8 +133,8 @@ static void meet_sky(path_walk *walk, const camera_path *path)
     for (int i = 0; i < s->n_environments; i++) {
         int index = s->environments[i];
         const light *l = scene_light(s, index);
-        spectrum radiance =
-            l->kind->environment(l->self, path->ray.direction, &walk->pass->w);
+        spectrum radiance = l->kind->environment(l->self, path->ray.origin,
+                                                 path->ray.direction, &walk->pass->w);
         float weight = met_light_weight(walk, path, index, NULL) *
                        left_by_photons(walk, path, index, NULL);
         add_from(walk, path, radiance * weight, index);

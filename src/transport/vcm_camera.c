@@ -98,7 +98,7 @@ static void meet_sky(camera_walk *c)
     for (int i = 0; i < s->n_environments; i++) {
         const light *l = scene_light(s, s->environments[i]);
         meet_light(c, s->environments[i], NULL,
-                   l->kind->environment(l->self, d, &c->pass->w));
+                   l->kind->environment(l->self, c->walk.ray.origin, d, &c->pass->w));
     }
 }
 
