@@ -36,13 +36,13 @@ static const char *light_at(size_t i, const char **parameters)
 
 static const char *shape_at(size_t i, const char **parameters)
 {
-    *parameters = NULL;
+    *parameters = shape_kind_parameters(i);
     return shape_kind_name(i);
 }
 
 static const char *camera_kind_of(size_t i, const char **parameters)
 {
-    *parameters = NULL;
+    *parameters = camera_kind_parameters(i);
     return camera_kind_at(i);
 }
 
@@ -63,7 +63,7 @@ static const feature_list lists[] = {
     {"Camera", "perspective orthographic spherical realistic", camera_kind_of, NULL},
     {"PixelFilter", "box gaussian mitchell sinc triangle", filter_at, NULL},
     {"Shape", "bilinearmesh curve cylinder disk loopsubdiv plymesh sphere trianglemesh",
-     shape_at, NULL},
+     shape_at, "alpha camera_visible"},
     {"LightSource", "distant goniometric infinite point projection spot", light_at,
      LIGHT_PARAMETERS},
     {"AreaLightSource", "diffuse", light_at, LIGHT_PARAMETERS},
@@ -85,6 +85,12 @@ typedef struct feature_note {
 
 static const feature_note notes[] = {
     {"Shape", "plymesh", "rendered", "a triangle mesh from a file"},
+    {"Shape", "curve", "approximated",
+     "a `cylinder` is a tube, which pbrt draws as a flat ribbon with a tube's normals"},
+    {"Shape", "loopsubdiv", "approximated",
+     "boundaries are put on their exact limit, which pbrt's are near"},
+    {"Camera", "orthographic", "approximated",
+     "every place on the screen has a lens of its own, where pbrt's rays leave one lens"},
     {"Material", "interface", "rendered", "lets light pass"},
     {"Material", "coateddiffuse", "approximated",
      "the mean of pbrt's random walk in closed form; an `albedo` > 0 is refused"},

@@ -25,6 +25,7 @@
 /* How a kind of camera works, in camera space. */
 struct camera_kind {
     const char *name;
+    const char *parameters; /* blank-separated, for the manual */
     bool (*read)(camera *c, const params *p, GError **error);
     /* Origin and direction, not unit, through a place on the film and one on the lens. */
     void (*start)(const camera *c, vec2 raster, vec3 lens, vec3 *origin, vec3 *direction);
@@ -255,17 +256,27 @@ static float pixel_area_spherical(const camera *c, float z)
 /* ---- all of them ---- */
 
 static const camera_kind kinds[] = {
-    {"perspective", read_perspective, start_perspective, see_perspective,
-     density_perspective, pixel_area_perspective},
-    {"orthographic", read_orthographic, start_orthographic, see_orthographic, NULL,
+    {"perspective",
+     "fov halffov screenwindow frameaspectratio lensradius focaldistance shutteropen "
+     "shutterclose",
+     read_perspective, start_perspective, see_perspective, density_perspective,
+     pixel_area_perspective},
+    {"orthographic",
+     "screenwindow frameaspectratio lensradius focaldistance shutteropen shutterclose",
+     read_orthographic, start_orthographic, see_orthographic, NULL,
      pixel_area_orthographic},
-    {"spherical", read_spherical, start_spherical, see_spherical, density_spherical,
-     pixel_area_spherical},
+    {"spherical", "mapping shutteropen shutterclose", read_spherical, start_spherical,
+     see_spherical, density_spherical, pixel_area_spherical},
 };
 
 const char *camera_kind_at(size_t i)
 {
     return i < G_N_ELEMENTS(kinds) ? kinds[i].name : NULL;
+}
+
+const char *camera_kind_parameters(size_t i)
+{
+    return i < G_N_ELEMENTS(kinds) ? kinds[i].parameters : NULL;
 }
 
 static const camera_kind *find_kind(const char *name, const params *p, GError **error)

@@ -40,6 +40,8 @@ bool camera_init(camera *c, const char *kind, const params *p, const transform *
 const char *camera_kind_name(const camera *c);
 /** @brief Name of kind number i of the table; NULL behind the last. */
 const char *camera_kind_at(size_t i);
+/** @brief What it may be given, blank-separated; NULL as above. */
+const char *camera_kind_parameters(size_t i);
 /** @brief Changes the film's size, keeping the field of view as pbrt would for that size.
  */
 void camera_resize(camera *c, int width, int height);

@@ -412,6 +412,7 @@ static float pdf_toward(const void *self, vec3 ref, const surface_hit *hit)
 
 const shape_kind mesh_kind = {
     .name = "trianglemesh",
+    .parameters = "P N S uv indices faceIndices",
     .create = create,
     .free = mesh_shape_free,
     .bounds = bounds,

@@ -19,6 +19,11 @@ const char *shape_kind_name(size_t i)
     return i < G_N_ELEMENTS(kinds) ? kinds[i]->name : NULL;
 }
 
+const char *shape_kind_parameters(size_t i)
+{
+    return i < G_N_ELEMENTS(kinds) ? kinds[i]->parameters : NULL;
+}
+
 static const shape_kind *find_kind(const char *name)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {

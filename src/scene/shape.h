@@ -47,7 +47,8 @@ typedef struct shape shape;
 /** @brief What a kind of shape must do; one of traced by Embree as triangles or by
  * intersect. */
 typedef struct shape_kind {
-    const char *name; /**< "sphere" */
+    const char *name;       /**< "sphere" */
+    const char *parameters; /**< names, blank-separated, for the manual */
     /** What create makes is of that kind; NULL: of this one. */
     const struct shape_kind *becomes;
     /** From parameters. NULL with ERROR_INPUT. */
@@ -92,6 +93,8 @@ struct shape {
 
 /** @brief Name of kind number i of the table; NULL behind the last. */
 const char *shape_kind_name(size_t i);
+/** @brief What it may be given, blank-separated; NULL as above. */
+const char *shape_kind_parameters(size_t i);
 shape *shape_new(const char *kind, const params *p, const shape_place *at,
                  GError **error);
 /** @brief A shape from a mesh in object space (moved to world space here; arrays are

@@ -273,6 +273,7 @@ static shape_sample sample_area(const void *self, float u_primitive, vec2 u)
 
 const shape_kind bilinear_kind = {
     .name = "bilinearmesh",
+    .parameters = "P N uv indices faceIndices emissionfilename",
     .create = create,
     .free = free_mesh,
     .bounds = bounds,

@@ -374,6 +374,7 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
 
 const shape_kind curve_kind = {
     .name = "curve",
+    .parameters = "P type basis degree width width0 width1 N splitdepth",
     .create = create,
     .free = free_curve,
     .bounds = bounds,

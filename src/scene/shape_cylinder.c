@@ -97,6 +97,7 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
 
 const shape_kind cylinder_kind = {
     .name = "cylinder",
+    .parameters = "radius zmin zmax phimax",
     .create = create,
     .free = g_free,
     .bounds = bounds,

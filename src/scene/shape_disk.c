@@ -104,6 +104,7 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
 
 const shape_kind disk_kind = {
     .name = "disk",
+    .parameters = "height radius innerradius phimax",
     .create = create,
     .free = g_free,
     .bounds = bounds,

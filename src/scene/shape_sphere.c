@@ -207,6 +207,7 @@ static float pdf_toward(const void *self, vec3 ref, const surface_hit *hit)
 
 const shape_kind sphere_kind = {
     .name = "sphere",
+    .parameters = "radius zmin zmax phimax",
     .create = create,
     .free = g_free,
     .bounds = bounds,

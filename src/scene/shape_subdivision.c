@@ -381,6 +381,7 @@ static void *create(const params *p, const shape_place *at, GError **error)
 
 const shape_kind subdivision_kind = {
     .name = "loopsubdiv",
+    .parameters = "P indices faceIndices levels scheme",
     .becomes = &mesh_kind,
     .create = create,
 };
