@@ -1,8 +1,25 @@
 #include "held.h"
 
+/* Every object begins with its count. C's own atomics, which the thread sanitizer sees.
+ */
+
+static void *hold(void *object)
+{
+    if (object)
+        atomic_fetch_add((atomic_int *)object, 1);
+    return object;
+}
+
+/* True if that was the last holder. */
+static bool let_go(void *object)
+{
+    return object && atomic_fetch_sub((atomic_int *)object, 1) == 1;
+}
+
 held_scene *held_scene_new(NephScene *scene)
 {
-    held_scene *held = g_atomic_rc_box_new(held_scene);
+    held_scene *held = g_new0(held_scene, 1);
+    atomic_init(&held->holders, 1);
     held->scene = scene;
     neph_scene_camera(scene, &held->camera);
     neph_scene_size(scene, &held->width, &held->height);
@@ -11,66 +28,60 @@ held_scene *held_scene_new(NephScene *scene)
 
 held_picture *held_picture_new(NephImage *image, int width, int height, bool coarse)
 {
-    held_picture *held = g_atomic_rc_box_new(held_picture);
-    *held = (held_picture){image, width, height, coarse};
+    held_picture *held = g_new0(held_picture, 1);
+    atomic_init(&held->holders, 1);
+    held->image = image;
+    held->width = width;
+    held->height = height;
+    held->coarse = coarse;
     return held;
 }
 
 held_photons *held_photons_new(NephPhotons *photons, held_scene *scene)
 {
-    held_photons *held = g_atomic_rc_box_new(held_photons);
-    *held = (held_photons){photons, held_scene_ref(scene)};
+    held_photons *held = g_new0(held_photons, 1);
+    atomic_init(&held->holders, 1);
+    held->photons = photons;
+    held->scene = held_scene_ref(scene);
     return held;
 }
 
 held_scene *held_scene_ref(held_scene *scene)
 {
-    return scene ? g_atomic_rc_box_acquire(scene) : NULL;
+    return hold(scene);
 }
 
 held_picture *held_picture_ref(held_picture *picture)
 {
-    return picture ? g_atomic_rc_box_acquire(picture) : NULL;
+    return hold(picture);
 }
 
 held_photons *held_photons_ref(held_photons *photons)
 {
-    return photons ? g_atomic_rc_box_acquire(photons) : NULL;
-}
-
-static void clear_scene(void *data)
-{
-    held_scene *held = data;
-    neph_scene_free(held->scene);
-}
-
-static void clear_picture(void *data)
-{
-    held_picture *held = data;
-    neph_image_free(held->image);
-}
-
-static void clear_photons(void *data)
-{
-    held_photons *held = data;
-    neph_photons_free(held->photons);
-    held_scene_unref(held->scene);
+    return hold(photons);
 }
 
 void held_scene_unref(held_scene *scene)
 {
-    if (scene)
-        g_atomic_rc_box_release_full(scene, clear_scene);
+    if (!let_go(scene))
+        return;
+    neph_scene_free(scene->scene);
+    g_free(scene);
 }
 
 void held_picture_unref(held_picture *picture)
 {
-    if (picture)
-        g_atomic_rc_box_release_full(picture, clear_picture);
+    if (!let_go(picture))
+        return;
+    neph_image_free(picture->image);
+    g_free(picture);
 }
 
 void held_photons_unref(held_photons *photons)
 {
-    if (photons)
-        g_atomic_rc_box_release_full(photons, clear_photons);
+    if (!let_go(photons))
+        return;
+    neph_photons_free(photons->photons);
+    held_scene_unref(photons->scene);
+    g_free(photons);
 }

@@ -8,8 +8,10 @@
 #pragma once
 
 #include <nephroid/nephroid.h>
+#include <stdatomic.h>
 
 typedef struct held_scene {
+    atomic_int holders;
     NephScene *scene;
     NephCamera camera; /**< as the file says */
     int width, height; /**< as the file says */
@@ -17,12 +19,14 @@ typedef struct held_scene {
 
 /** @brief One state of the picture. */
 typedef struct held_picture {
+    atomic_int holders;
     NephImage *image;
     int width, height; /**< of the picture it stands for; the image may be coarser */
     bool coarse;       /**< a quick look, not a pass */
 } held_picture;
 
 typedef struct held_photons {
+    atomic_int holders;
     NephPhotons *photons;
     held_scene *scene; /**< kept alive with them */
 } held_photons;

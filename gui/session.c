@@ -3,6 +3,8 @@
 #include "preview.h"
 
 #include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <sys/resource.h>
 
 /* A quick look while the view moves takes about this long, s; those that follow when it
@@ -26,13 +28,16 @@ typedef struct session_order {
 } session_order;
 
 struct session {
-    GThread *thread;
+    atomic_int holders;
+    pthread_t thread;
+    bool has_thread;
     GMainContext *context;
     session_listener listener; /* NULL once closed; main thread only */
     void *listener_data;
 
-    GMutex lock; /* guards what follows, up to the next comment */
-    GCond wake;
+    /* POSIX's own, which the thread sanitizer sees. */
+    pthread_mutex_t lock; /* guards what follows, up to the next comment */
+    pthread_cond_t wake;
     session_order wanted;
     NephRender *running;    /* to be cancelled */
     NephSettings *rendered; /* what the render was given; NULL: none yet */
@@ -70,13 +75,13 @@ static void session_unref(session *s);
 static gboolean tell_news(void *data)
 {
     session *s = data;
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
     session_news news = s->news;
     GError *error = g_steal_pointer(&s->news_error);
     s->news.loaded = NULL;
     s->news.picture = NULL;
     s->news_pending = false;
-    g_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&s->lock);
     news.error = error;
     if (s->listener)
         s->listener(&news, s->listener_data);
@@ -85,9 +90,8 @@ static gboolean tell_news(void *data)
     return G_SOURCE_REMOVE;
 }
 
-static void free_session(void *data)
+static void free_session(session *s)
 {
-    session *s = data;
     clear_news(&s->news);
     g_clear_error(&s->news_error);
     g_free(s->wanted.path);
@@ -95,14 +99,16 @@ static void free_session(void *data)
     neph_settings_free(s->order.settings);
     neph_settings_free(s->rendered);
     held_scene_unref(s->scene);
-    g_mutex_clear(&s->lock);
-    g_cond_clear(&s->wake);
+    pthread_mutex_destroy(&s->lock);
+    pthread_cond_destroy(&s->wake);
     g_main_context_unref(s->context);
+    g_free(s);
 }
 
 static void session_unref(session *s)
 {
-    g_atomic_rc_box_release_full(s, free_session);
+    if (atomic_fetch_sub(&s->holders, 1) == 1)
+        free_session(s);
 }
 
 /* With the lock held. */
@@ -113,28 +119,28 @@ static void send_news(session *s)
     s->news_pending = true;
     g_autoptr(GSource) idle = g_idle_source_new();
     g_source_set_priority(idle, G_PRIORITY_DEFAULT);
-    g_source_set_callback(idle, tell_news, g_atomic_rc_box_acquire(s),
-                          (GDestroyNotify)session_unref);
+    atomic_fetch_add(&s->holders, 1);
+    g_source_set_callback(idle, tell_news, s, (GDestroyNotify)session_unref);
     g_source_attach(idle, s->context);
 }
 
 static void tell_state(session *s, session_state state)
 {
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
     s->news.state = state;
     send_news(s);
-    g_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&s->lock);
 }
 
 /* Takes the error. */
 static void tell_error(session *s, GError *error, bool of_load)
 {
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
     g_clear_error(&s->news_error);
     s->news_error = error;
     s->news.error_of_load = of_load;
     send_news(s);
-    g_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&s->lock);
 }
 
 /* Takes the image. */
@@ -142,20 +148,20 @@ static void tell_picture(session *s, NephImage *image, bool coarse)
 {
     held_picture *picture =
         held_picture_new(image, s->order.width, s->order.height, coarse);
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
     held_picture_unref(s->news.picture);
     s->news.picture = picture;
     send_news(s);
-    g_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&s->lock);
 }
 
 static void tell_progress(session *s, double fraction, const NephStatistics *statistics)
 {
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
     s->news.fraction = fraction;
     s->news.statistics = *statistics;
     send_news(s);
-    g_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&s->lock);
 }
 
 /* ---- Rendering, on the worker ---- */
@@ -171,18 +177,18 @@ static bool outdated(const session *s)
 
 static void set_running(session *s, NephRender *render)
 {
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
     s->running = render;
     if (render && outdated(s))
         neph_render_cancel(render);
-    g_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&s->lock);
 }
 
 static bool is_outdated(session *s)
 {
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
     bool is = outdated(s);
-    g_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&s->lock);
     return is;
 }
 
@@ -254,10 +260,10 @@ static bool begin_render(session *s, GError **error)
         going = !s->look_was_whole && quick_look(s, looks_still[i]);
     neph_scene_resize(s->scene->scene, s->order.width, s->order.height, NULL);
     s->render = neph_render_new(s->scene->scene, s->order.settings, error);
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
     neph_settings_free(s->rendered);
     s->rendered = neph_settings_copy(s->order.settings);
-    g_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&s->lock);
     return s->render != NULL;
 }
 
@@ -302,7 +308,7 @@ static void measure(session *s)
 static void take_over(session *s)
 {
     NephScene *scene = s->scene->scene;
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
     neph_settings_free(s->wanted.settings);
     s->wanted.settings = neph_scene_settings(scene);
     s->wanted.width = s->scene->width;
@@ -312,7 +318,7 @@ static void take_over(session *s)
     held_scene_unref(s->news.loaded);
     s->news.loaded = held_scene_ref(s->scene);
     send_news(s);
-    g_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&s->lock);
 }
 
 static void load(session *s, const char *path)
@@ -348,9 +354,9 @@ static bool has_work(const session *s)
    NULL. */
 static char *next_order(session *s, bool *changed)
 {
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
     while (!has_work(s))
-        g_cond_wait(&s->wake, &s->lock);
+        pthread_cond_wait(&s->wake, &s->lock);
     char *path = g_steal_pointer(&s->wanted.path);
     *changed = s->wanted.version != s->order.version;
     bool keep = *changed && s->wanted.keep;
@@ -359,7 +365,7 @@ static char *next_order(session *s, bool *changed)
     s->order.settings =
         s->wanted.settings ? neph_settings_copy(s->wanted.settings) : NULL;
     s->wanted.keep = true;
-    g_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&s->lock);
     *changed = *changed && !keep;
     return path;
 }
@@ -401,23 +407,24 @@ static void *work(void *data)
 
 session *session_new(session_listener listener, void *data)
 {
-    session *s = g_atomic_rc_box_new0(session);
+    session *s = g_new0(session, 1);
+    atomic_init(&s->holders, 1);
     s->listener = listener;
     s->listener_data = data;
     s->context = g_main_context_ref_thread_default();
     s->wanted.playing = true;
     s->wanted.keep = true;
     s->news.statistics.noise = (double)INFINITY;
-    g_mutex_init(&s->lock);
-    g_cond_init(&s->wake);
-    s->thread = g_thread_new("render", work, s);
+    pthread_mutex_init(&s->lock, NULL);
+    pthread_cond_init(&s->wake, NULL);
+    s->has_thread = pthread_create(&s->thread, NULL, work, s) == 0;
     return s;
 }
 
 /* Between lock and unlock, `wanted` is changed. */
 static void order_begin(session *s)
 {
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
 }
 
 /* anew: what is rendered changes, not only whether. */
@@ -428,8 +435,8 @@ static void order_end(session *s, bool anew)
         s->wanted.keep = false;
     if (s->running && outdated(s))
         neph_render_cancel(s->running);
-    g_cond_signal(&s->wake);
-    g_mutex_unlock(&s->lock);
+    pthread_cond_signal(&s->wake);
+    pthread_mutex_unlock(&s->lock);
 }
 
 void session_close(session *s)
@@ -440,7 +447,8 @@ void session_close(session *s)
     order_begin(s);
     s->wanted.quit = true;
     order_end(s, true);
-    g_thread_join(s->thread);
+    if (s->has_thread)
+        pthread_join(s->thread, NULL);
     session_unref(s);
 }
 
@@ -464,9 +472,9 @@ void session_set_settings(session *s, const NephSettings *settings)
 
 NephSettings *session_rendered_settings(session *s)
 {
-    g_mutex_lock(&s->lock);
+    pthread_mutex_lock(&s->lock);
     NephSettings *copy = s->rendered ? neph_settings_copy(s->rendered) : NULL;
-    g_mutex_unlock(&s->lock);
+    pthread_mutex_unlock(&s->lock);
     return copy;
 }
 
