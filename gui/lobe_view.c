@@ -180,6 +180,11 @@ bool lobe_view_choose(lobe_view *v, const char *material)
     return false;
 }
 
+void lobe_view_choose_number(lobe_view *v, unsigned i)
+{
+    gtk_drop_down_set_selected(GTK_DROP_DOWN(v->material), i);
+}
+
 char *lobe_view_svg(const lobe_view *v)
 {
     guint i = gtk_drop_down_get_selected(GTK_DROP_DOWN(v->material));

@@ -47,6 +47,7 @@ void window_open(window *w, const char *path)
     w->reloading = g_strcmp0(document_path(w->document), whole) == 0;
     document_set_path(w->document, whole);
     session_load(w->session, whole);
+    window_update_actions(w);
 }
 
 static void file_changed(void *data)

@@ -63,6 +63,17 @@ static void take_view(window *w, const held_scene *scene)
         session_set_camera(w->session, &w->view.camera, false);
 }
 
+/* The material in the middle of the picture comes first. */
+static void show_materials(window *w, held_scene *scene)
+{
+    NephSurfacePoint at;
+    double origin[3], direction[3];
+    lobe_view_set_scene(w->lobes, scene);
+    neph_camera_ray(&scene->camera, 0.5, 0.5, origin, direction);
+    if (neph_scene_pick(scene->scene, origin, direction, &at) && at.material >= 0)
+        lobe_view_choose_number(w->lobes, (unsigned)at.material);
+}
+
 static void scene_loaded(window *w, held_scene *scene)
 {
     g_autoptr(NephSettings) fresh = neph_scene_settings(scene->scene);
@@ -77,7 +88,7 @@ static void scene_loaded(window *w, held_scene *scene)
     held_scene_unref(w->scene);
     w->scene = held_scene_ref(scene);
     window_photons_new_scene(w);
-    lobe_view_set_scene(w->lobes, scene);
+    show_materials(w, scene);
     camera_panel_show(w->camera_panel, &w->view.camera);
     document_remember(w->document);
     window_fill_scenes_menu(w->scenes);

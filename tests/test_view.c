@@ -77,6 +77,7 @@ static void test_broken(void)
     GtkWidget *page = error_page_widget(w->errors);
     view_wait(shows_error, w);
     g_assert_true(has_text(page, "broken.pbrt:3"));
+    g_assert_true(g_action_group_get_action_enabled(G_ACTION_GROUP(w->gtk), "reload"));
     g_assert_true(has_text(page, "Shape \"spere\""));
     g_assert_true(g_file_set_contents(broken, view_scene, -1, NULL));
     view_activate(w, "win.reload");
