@@ -31,6 +31,7 @@ typedef struct photon_path {
     bool specular_only; /* no lobe but SPECULAR so far */
     unsigned n_followed; /* specular or glossy bounces */
     unsigned n_diffuse;
+    unsigned n_after; /* followed bounces since the last diffuse one */
     chunk_store *out; /* NULL when telling */
     bool want_normals;
     void (*tell)(const photon_event *event, void *data);
@@ -118,8 +119,17 @@ static bool emit(photon_path *path)
     return true;
 }
 
+/* Caustics that are shared with paths go on: the light of a bright spot that glass throws
+   elsewhere is a caustic too. */
+static bool goes_on(const trace_task *task)
+{
+    return task->photon_class == PHOTON_CAUSTIC && task->share;
+}
+
 static photon_class class_here(const photon_path *path)
 {
+    if (goes_on(path->task) && path->n_after > 0)
+        return PHOTON_CAUSTIC;
     if (path->n_diffuse > 0)
         return PHOTON_INDIRECT;
     return path->n_followed > 0 ? PHOTON_CAUSTIC : PHOTON_DIRECT;
@@ -192,14 +202,14 @@ static void land(photon_path *path, const surface_hit *hit, const bsdf *b)
 }
 
 /* The lobes that a photon of this class may take on its way: a caustic one has only met
-   specular and glossy ones, a direct one none. */
-static unsigned lobes_to_take(const trace_task *task)
+   specular and glossy ones, or goes on after it has landed; a direct one none. */
+static unsigned lobes_to_take(const photon_path *path)
 {
-    switch (task->photon_class) {
+    switch (path->task->photon_class) {
     case PHOTON_DIRECT:
         return 0;
     case PHOTON_CAUSTIC:
-        return LOBE_FOLLOWED;
+        return goes_on(path->task) && path->n_after > 0 ? LOBE_ALL : LOBE_FOLLOWED;
     default:
         return LOBE_ALL;
     }
@@ -238,7 +248,7 @@ static float share_at(photon_path *path, const surface_hit *hit, const bsdf *b,
 static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
 {
     const trace_task *task = path->task;
-    unsigned lobes = lobes_to_take(task);
+    unsigned lobes = lobes_to_take(path);
     if (!(b->lobes & lobes & ~(unsigned)LOBE_ANY_SIDE)) {
         tell(path, PHOTON_ENDED, hit, 0);
         return false;
@@ -266,10 +276,10 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
     path->lane = next.lane;
     path->ray = hit_ray(hit, next.wi);
     path->specular_only &= (next.lobe & LOBE_SPECULAR) != 0;
-    if (next.lobe & LOBE_DIFFUSE)
-        path->n_diffuse++;
-    else
-        path->n_followed++;
+    bool diffuse = (next.lobe & LOBE_DIFFUSE) != 0;
+    path->n_diffuse += diffuse;
+    path->n_followed += !diffuse;
+    path->n_after = diffuse ? 0 : path->n_after + 1;
     tell(path, PHOTON_SCATTERED, hit, next.lobe);
     return true;
 }

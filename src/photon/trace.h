@@ -37,7 +37,9 @@ typedef struct trace_task {
     photon_class photon_class;
     const emission_guide *guide; /**< for EMISSION_GUIDED caustics; NULL: uniform */
     const caustic_share *share;  /**< of caustics: what they leave to paths from the eye;
-                                    NULL: nothing */
+                                    NULL: nothing. With it, photons that landed go on and
+                                    land again where specular or glossy bounces take them
+                                    next */
     uint64_t n_photons;          /**< to emit */
     uint64_t first;              /**< index of the first of them */
     int slice, n_slices; /**< of the shutter's time, that they are emitted in; 0 of 0: all

@@ -189,8 +189,10 @@ static void sample_lights(path_walk *walk, const camera_path *path,
 }
 
 /* What the caustic map says of this surface; a photon there has scattered once at least.
-   Light that a lobe of n_diffuse > 0 would take from photons of delta lights on glossy
-   lobes has been counted at the diffuse surface before. */
+   Where a path came by way of glass or metal from a diffuse surface, photons have gone
+   the same way and were counted there. Light that a lobe of n_diffuse > 0 would take from
+   photons of delta lights on glossy lobes has been counted at the diffuse surface
+   before. */
 static void gather_caustics(path_walk *walk, const camera_path *path,
                             const surface_hit *hit, const bsdf *b)
 {
@@ -198,7 +200,9 @@ static void gather_caustics(path_walk *walk, const camera_path *path,
     unsigned delta = path->n_diffuse == 0 && photons->has_delta_lights ? LOBE_GLOSSY : 0;
     camera_path seen = *path;
     int64_t limit = walk->how->max_backward_bounces;
-    if (!(b->lobes & (LOBE_DIFFUSE | delta)) || (limit >= 0 && path->bounces + 2 > limit))
+    bool came_with_photons = path->n_diffuse > 0 && path->n_after > 0;
+    if (!(b->lobes & (LOBE_DIFFUSE | delta)) || came_with_photons ||
+        (limit >= 0 && path->bounces + 2 > limit))
         return;
     const shading_point at = {hit, b, -path->ray.direction, path->n_diffuse > 0};
     float p = at.blurred ? walk->pass->plan->p_blurred : 1.0f;
