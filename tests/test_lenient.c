@@ -72,14 +72,17 @@ static void test_media(void)
         HEAD "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n",
         "scene.pbrt:5:1: participating media are not supported, found \"fog\"",
         "5:1: medium \"fog\" becomes empty space");
+    g_assert_nonnull(made);
     g_autoptr(scene) used =
         refused_or_replaced(HEAD "MediumInterface \"fog\" \"\"\nShape \"sphere\"\n",
                             "scene.pbrt:5:17: participating media",
                             "5:17: medium \"fog\" becomes empty space");
+    g_assert_nonnull(used);
     g_autoptr(scene) given =
         refused_or_replaced(HEAD "Attribute \"medium\" \"float g\" 0.5\n",
                             "scene.pbrt:5:11: participating media",
                             "5:11: medium \"medium\" becomes empty space");
+    g_assert_nonnull(given);
 }
 
 static void test_lights_of_objects(void)
