@@ -97,6 +97,7 @@ static void test_lights_of_objects(void)
         HEAD "ActiveTransform EndTime Translate 1 0 0\nLightSource \"point\"\n",
         "scene.pbrt:6:1: a light can not move",
         "6:1: a light that moves stands still where it starts");
+    g_assert_cmpuint(moving->lights->len, ==, s->lights->len + 1);
 }
 
 int main(int argc, char **argv)

@@ -94,6 +94,7 @@ static double seconds_of(const char *text)
         clock_t start = clock();
         g_autoptr(image) img =
             render_with(s, "integrator=photonmap passes=4 spp=4 photons=60000 threads=1");
+        g_assert_nonnull(img);
         best = fmin(best, (double)(clock() - start) / CLOCKS_PER_SEC);
     }
     return best;
