@@ -61,8 +61,8 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
         loop->out->wi[at] = loop->normals[i];
         if (n_groups)
             loop->out->tag[at] = (uint32_t)at;
-        loop->out->flux[at] =
-            irradiance_at(loop->pass, p.p, n, &scratch, loop->groups + at * n_groups);
+        spectrum *groups = n_groups > 0 ? loop->groups + at * n_groups : NULL;
+        loop->out->flux[at] = irradiance_at(loop->pass, p.p, n, &scratch, groups);
     }
     if (scratch.failed || !ready)
         loop->failed[begin / 256] = true;

@@ -310,10 +310,12 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
 /* Puts chunk c's vertices and splats behind those before it. */
 static void append(light_paths *to, light_chunk *from, size_t c)
 {
-    memcpy(to->vertices + to->n_vertices, from->vertices,
-           from->n_vertices * sizeof *from->vertices);
-    memcpy(to->splats + to->n_splats, from->splats,
-           from->n_splats * sizeof *from->splats);
+    if (from->n_vertices > 0)
+        memcpy(to->vertices + to->n_vertices, from->vertices,
+               from->n_vertices * sizeof *from->vertices);
+    if (from->n_splats > 0)
+        memcpy(to->splats + to->n_splats, from->splats,
+               from->n_splats * sizeof *from->splats);
     for (size_t i = c * CHUNK; i < MIN((c + 1) * CHUNK, to->n); i++)
         to->end[i] += to->n_vertices;
     to->n_vertices += from->n_vertices;
