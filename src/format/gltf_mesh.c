@@ -201,8 +201,9 @@ static bool alpha_hides_all(const shape_place *at)
 }
 
 static void add_shape(gltf *g, const json_value *primitive, mesh *m,
-                      const gltf_material_info *info, shape_place *at)
+                      const gltf_material_info *info, const shape_place *stands)
 {
+    shape_place at = *stands;
     GError *error = NULL;
     float_input alpha;
     const source_place place = {g_intern_string(g->path), 0, 0};
@@ -211,9 +212,9 @@ static void add_shape(gltf *g, const json_value *primitive, mesh *m,
             gltf_take_error(g, primitive, error);
             return;
         }
-        at->alpha = &alpha;
+        at.alpha = &alpha;
     }
-    if (!alpha_hides_all(at) && !scene_add_mesh(g->scene, m, at, place, &error))
+    if (!alpha_hides_all(&at) && !scene_add_mesh(g->scene, m, &at, place, &error))
         gltf_take_error(g, primitive, error);
 }
 
