@@ -22,13 +22,14 @@ static bool is_possible(const scene *s, photon_class c)
  */
 static uint64_t budget(const scene *s, const settings *how, photon_class c)
 {
-    int n_sharing = 0;
+    int n_sharing = 1; /* c itself */
     if (!is_possible(s, c))
         return 0;
     if (how->class_photons[c] > 0)
         return (uint64_t)how->class_photons[c];
     for (int i = 0; i < N_PHOTON_CLASSES; i++)
-        n_sharing += is_possible(s, (photon_class)i) && how->class_photons[i] == 0;
+        n_sharing +=
+            i != (int)c && is_possible(s, (photon_class)i) && how->class_photons[i] == 0;
     return (uint64_t)MAX(how->photons / n_sharing, 1);
 }
 

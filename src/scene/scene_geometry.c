@@ -161,9 +161,9 @@ static void add_caster(scene *s, GArray *areas, int i, int of_instance, double f
 /* The shapes of each object, or (first) of the world, that cast caustics. */
 static GArray **casters_by_object(const scene *s)
 {
-    guint n = s->objects->len + 1;
-    GArray **lists = g_new(GArray *, n);
-    for (guint i = 0; i < n; i++)
+    size_t n = (size_t)s->objects->len + 1;
+    GArray **lists = g_new0(GArray *, n);
+    for (size_t i = 0; i < n; i++)
         lists[i] = g_array_new(FALSE, FALSE, sizeof(int));
     for (guint i = 0; i < s->shapes->len; i++) {
         const shape *on = s->shapes->pdata[i];
@@ -203,8 +203,8 @@ static void list_all_casters(scene *s, GArray *areas, box3 *box)
     list_casters(s, lists[0], NO_INDEX, areas, box);
     for (guint i = 0; i < s->instances->len; i++)
         list_casters(s, lists[instance_at(s, (int)i)->object + 1], (int)i, areas, box);
-    for (guint i = 0; i <= s->objects->len; i++)
-        g_array_unref(lists[i]);
+    for (size_t i = 0; i < (size_t)s->objects->len + 1; i++)
+        g_clear_pointer(&lists[i], g_array_unref);
     g_free(lists);
 }
 

@@ -253,8 +253,9 @@ static void *bilerp_create(const struct scene *s, bool is_spectrum, const params
 
 #define BLEND_KIND(name_, parameters_, create_)                                          \
     {                                                                                    \
-        .name = name_, .parameters = parameters_, .create = create_, .free = blend_free, \
-        .eval_float = blend_eval_float, .eval_spectrum = blend_eval_spectrum,            \
+        .name = (name_), .parameters = (parameters_), .create = (create_),               \
+        .free = blend_free, .eval_float = blend_eval_float,                              \
+        .eval_spectrum = blend_eval_spectrum,                                            \
     }
 
 const texture_kind texture_scale = BLEND_KIND("scale", "tex scale", scale_create);

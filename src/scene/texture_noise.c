@@ -153,8 +153,8 @@ static spectrum marble_eval(const void *self, const surface_hit *hit,
 
 #define FLOAT_KIND(name_, parameters_, create_)                                          \
     {                                                                                    \
-        .name = name_, .parameters = parameters_, .create = create_, .free = g_free,     \
-        .eval_float = cloud_eval,                                                        \
+        .name = (name_), .parameters = (parameters_), .create = (create_),               \
+        .free = g_free, .eval_float = cloud_eval,                                        \
     }
 
 const texture_kind texture_fbm = FLOAT_KIND("fbm", "octaves roughness", fbm_create);
