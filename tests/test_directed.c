@@ -411,6 +411,29 @@ static void write_files(void)
     g_string_free(text, TRUE);
 }
 
+/* Photons are aimed in two steps, the first at a point that the light may not shine on:
+   where they leave must be known all the same. */
+static void test_aimed_beside(void)
+{
+    static const struct {
+        const char *kind;
+        char **path;
+    } cases[] = {{"projection", &slide_path}, {"goniometric", &map_path}};
+    const wavelengths w = wavelengths_at(0.5f);
+    transform at = transform_translate(3, -2, 5);
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        light *l = make(cases[i].kind, list(*cases[i].path), &at);
+        for (int k = 0; k < 6; k++) {
+            vec3 target = {3, -2, 5};
+            target[k / 2] += k & 1 ? -1.0f : 1.0f;
+            light_emission out = {0};
+            l->kind->emit_toward(l->self, &w, 0.5f, (vec2){0.5f, 0.5f}, target, &out);
+            g_assert_cmpfloat(length3(out.ray.origin - vec3_make(3, -2, 5)), <, 1e-5);
+        }
+        light_free(l);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -426,6 +449,7 @@ int main(int argc, char **argv)
     g_test_add_func("/directed/upright", test_slide_stands_upright);
     g_test_add_func("/directed/panel", test_pictured_panel);
     g_test_add_func("/directed/refusals", test_refusals);
+    g_test_add_func("/directed/aimed-beside", test_aimed_beside);
     int status = g_test_run();
     char *const paths[] = {map_path, slide_path, ies_path};
     for (size_t i = 0; i < G_N_ELEMENTS(paths); i++) {

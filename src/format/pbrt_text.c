@@ -3,23 +3,6 @@
  */
 #include "format/pbrt_text.h"
 
-static const char *const type_names[] = {
-    [PARAM_FLOAT] = "float",
-    [PARAM_INTEGER] = "integer",
-    [PARAM_BOOL] = "bool",
-    [PARAM_STRING] = "string",
-    [PARAM_POINT2] = "point2",
-    [PARAM_VECTOR2] = "vector2",
-    [PARAM_POINT3] = "point3",
-    [PARAM_VECTOR3] = "vector3",
-    [PARAM_NORMAL] = "normal",
-    [PARAM_RGB] = "rgb",
-    [PARAM_BLACKBODY] = "blackbody",
-    [PARAM_SPECTRUM] = "spectrum",
-    [PARAM_SPECTRUM_NAME] = "spectrum",
-    [PARAM_TEXTURE] = "texture",
-};
-
 enum { PER_LINE = 12 };
 
 static void append_number(GString *out, const char *format, double x)
@@ -67,7 +50,7 @@ static void append_value(GString *out, const param *q, char *const *strings, siz
 
 void pbrt_text_param(GString *out, const param *q, char *const *strings)
 {
-    g_string_append_printf(out, " \"%s %s\" [", type_names[q->type], q->name);
+    g_string_append_printf(out, " \"%s %s\" [", param_type_name(q->type), q->name);
     for (size_t i = 0; i < q->n; i++) {
         g_string_append_c(out, i > 0 && i % PER_LINE == 0 ? '\n' : ' ');
         append_value(out, q, strings ? strings : q->strings, i);

@@ -194,3 +194,34 @@ float light_disk_area(const light_disk *disk)
 {
     return PI_F * disk->radius * disk->radius;
 }
+
+light_emission light_leave_point(vec3 p, vec3 direction, float pdf_direction,
+                                 spectrum flux)
+{
+    return (light_emission){
+        .ray = {.origin = p, .direction = direction, .t_max = INFINITY},
+        .n = direction,
+        .flux = flux,
+        .pdf_position = 1.0f,
+        .pdf_direction = pdf_direction};
+}
+
+bool light_arrive_from_point(vec3 p, vec3 ref, spectrum intensity, light_sample *out)
+{
+    vec3 to = p - ref;
+    float distance = length3(to);
+    if (!(distance > 0.0f) || spectrum_is_black(intensity))
+        return false;
+    *out = (light_sample){.wi = to / distance,
+                          .distance = distance,
+                          .radiance = intensity / square(distance),
+                          .pdf = 1.0f,
+                          .n = -to / distance};
+    return true;
+}
+
+float light_delta_pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
+{
+    (void)self, (void)ref, (void)wi, (void)hit;
+    return 0.0f;
+}

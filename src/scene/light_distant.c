@@ -110,12 +110,6 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     return true;
 }
 
-static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
-{
-    (void)self, (void)ref, (void)wi, (void)hit;
-    return 0.0f;
-}
-
 const light_kind distant_light_kind = {
     .name = "distant",
     .parameters = "L scale illuminance from to",
@@ -130,5 +124,5 @@ const light_kind distant_light_kind = {
     .emit_pdf = emit_pdf,
     .emit_toward = emit_toward,
     .sample = sample,
-    .pdf = pdf,
+    .pdf = light_delta_pdf,
 };

@@ -172,17 +172,6 @@ static light_bound bound(const void *self, const wavelengths *w)
         .is_local = true, .box = {l->p, l->p}, .power = sqrtf(4.0f * PI_F * peak * mean)};
 }
 
-static light_emission leave(const goniometric_light *l, vec3 direction, float pdf,
-                            spectrum flux)
-{
-    return (light_emission){
-        .ray = {.origin = l->p, .direction = direction, .t_max = INFINITY},
-        .n = direction,
-        .flux = flux,
-        .pdf_position = 1.0f,
-        .pdf_direction = pdf};
-}
-
 static bool emit(const void *self, const wavelengths *w, float u_primitive,
                  vec2 u_position, vec2 u_direction, light_emission *out)
 {
@@ -190,8 +179,8 @@ static bool emit(const void *self, const wavelengths *w, float u_primitive,
     const goniometric_light *l = self;
     float pdf;
     vec3 local = sphere_map_sample(&l->map, u_direction, &pdf);
-    *out = leave(l, frame_to_world(&l->axes, local), pdf,
-                 emitter_eval(&l->intensity, w) * (value_in(l, local) / pdf));
+    *out = light_leave_point(l->p, frame_to_world(&l->axes, local), pdf,
+                             emitter_eval(&l->intensity, w) * (value_in(l, local) / pdf));
     return pdf > 0.0f;
 }
 
@@ -212,8 +201,8 @@ static bool emit_toward(const void *self, const wavelengths *w, float u_primitiv
     vec3 direction = normalize3(target - l->p);
     vec3 local = frame_to_local(&l->axes, direction);
     float value = value_in(l, local);
-    *out = leave(l, direction, sphere_map_pdf(&l->map, local),
-                 value * emitter_eval(&l->intensity, w));
+    *out = light_leave_point(l->p, direction, sphere_map_pdf(&l->map, local),
+                             value * emitter_eval(&l->intensity, w));
     return value > 0.0f && length3_2(direction) > 0.0f;
 }
 
@@ -222,24 +211,9 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
 {
     (void)u_primitive, (void)u;
     const goniometric_light *l = self;
-    vec3 to = l->p - ref;
-    float distance = length3(to);
-    if (!(distance > 0.0f))
-        return false;
-    vec3 wi = to / distance;
-    float share = value_in(l, frame_to_local(&l->axes, -wi)) / square(distance);
-    *out = (light_sample){.wi = wi,
-                          .distance = distance,
-                          .radiance = share * emitter_eval(&l->intensity, w),
-                          .pdf = 1.0f,
-                          .n = -wi};
-    return share > 0.0f;
-}
-
-static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
-{
-    (void)self, (void)ref, (void)wi, (void)hit;
-    return 0.0f;
+    vec3 local = frame_to_local(&l->axes, normalize3(ref - l->p));
+    spectrum intensity = value_in(l, local) * emitter_eval(&l->intensity, w);
+    return light_arrive_from_point(l->p, ref, intensity, out);
 }
 
 const light_kind goniometric_light_kind = {
@@ -254,5 +228,5 @@ const light_kind goniometric_light_kind = {
     .emit_pdf = emit_pdf,
     .emit_toward = emit_toward,
     .sample = sample,
-    .pdf = pdf,
+    .pdf = light_delta_pdf,
 };

@@ -65,3 +65,12 @@ typedef struct light_disk {
 vec3 light_disk_start(const light_disk *disk, vec3 direction, vec2 u);
 vec3 light_disk_before(const light_disk *disk, vec3 direction, vec3 target);
 float light_disk_area(const light_disk *disk);
+
+/** @brief What leaves a point. */
+light_emission light_leave_point(vec3 p, vec3 direction, float pdf_direction,
+                                 spectrum flux);
+/** @brief What arrives at ref from a point at p that sends `intensity` that way. @return
+ *  false if that is nothing */
+bool light_arrive_from_point(vec3 p, vec3 ref, spectrum intensity, light_sample *out);
+/** @brief light_kind.pdf of lights that no direction drawn by others meets: 0. */
+float light_delta_pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit);

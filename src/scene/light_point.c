@@ -42,11 +42,7 @@ static spectrum power(const void *self, const wavelengths *w)
 
 static light_emission leave(const point_light *l, vec3 direction, spectrum flux)
 {
-    return (light_emission){.ray = {l->p, direction, INFINITY, 0.0f, NULL},
-                            .n = direction,
-                            .flux = flux,
-                            .pdf_position = 1.0f,
-                            .pdf_direction = 1.0f / all_around};
+    return light_leave_point(l->p, direction, 1.0f / all_around, flux);
 }
 
 static light_bound bound(const void *self, const wavelengths *w)
@@ -87,20 +83,8 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
 {
     (void)u_primitive, (void)u;
     const point_light *l = self;
-    vec3 to = l->p - ref;
-    float distance = length3(to);
-    *out = (light_sample){.wi = to / distance,
-                          .distance = distance,
-                          .radiance = emitter_eval(&l->intensity, w) / square(distance),
-                          .pdf = 1.0f,
-                          .n = -to / distance};
-    return distance > 0.0f;
-}
-
-static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
-{
-    (void)self, (void)ref, (void)wi, (void)hit;
-    return 0.0f;
+    spectrum intensity = emitter_eval(&l->intensity, w);
+    return light_arrive_from_point(l->p, ref, intensity, out);
 }
 
 const light_kind point_light_kind = {
@@ -115,5 +99,5 @@ const light_kind point_light_kind = {
     .emit_pdf = emit_pdf,
     .emit_toward = emit_toward,
     .sample = sample,
-    .pdf = pdf,
+    .pdf = light_delta_pdf,
 };

@@ -180,17 +180,6 @@ static float over_sphere(const projection_light *l, float pdf, float cosine)
     return pdf / (plane_area(l) * cosine * cosine * cosine);
 }
 
-static light_emission leave(const projection_light *l, vec3 direction, float pdf,
-                            spectrum flux)
-{
-    return (light_emission){
-        .ray = {.origin = l->p, .direction = direction, .t_max = INFINITY},
-        .n = direction,
-        .flux = flux,
-        .pdf_position = 1.0f,
-        .pdf_direction = pdf};
-}
-
 static bool emit(const void *self, const wavelengths *w, float u_primitive,
                  vec2 u_position, vec2 u_direction, light_emission *out)
 {
@@ -200,21 +189,34 @@ static bool emit(const void *self, const wavelengths *w, float u_primitive,
     vec2 st = distribution2_sample(&l->drawn, u_direction, &pdf);
     vec3 local = direction_of(l, st);
     pdf = over_sphere(l, pdf, local[2]);
-    *out = leave(l, frame_to_world(&l->axes, local), pdf, intensity_at(l, st, w) / pdf);
+    *out = light_leave_point(l->p, frame_to_world(&l->axes, local), pdf,
+                             intensity_at(l, st, w) / pdf);
     return pdf > 0.0f;
+}
+
+static spectrum intensity_toward(const projection_light *l, vec3 direction,
+                                 const wavelengths *w)
+{
+    vec2 st;
+    bool inside = place_of(l, frame_to_local(&l->axes, direction), &st);
+    return inside ? intensity_at(l, st, w) : (spectrum){0};
+}
+
+static float density_toward(const projection_light *l, vec3 direction)
+{
+    vec3 local = frame_to_local(&l->axes, direction);
+    vec2 st;
+    if (!place_of(l, local, &st))
+        return 0.0f;
+    return over_sphere(l, distribution2_pdf(&l->drawn, st), local[2]);
 }
 
 static void emit_pdf(const void *self, vec3 p, vec3 n, vec3 direction,
                      float *pdf_position, float *pdf_direction)
 {
     (void)p, (void)n;
-    const projection_light *l = self;
-    vec3 local = frame_to_local(&l->axes, direction);
-    vec2 st;
     *pdf_position = 1.0f;
-    *pdf_direction = place_of(l, local, &st)
-                         ? over_sphere(l, distribution2_pdf(&l->drawn, st), local[2])
-                         : 0.0f;
+    *pdf_direction = density_toward(self, direction);
 }
 
 static bool emit_toward(const void *self, const wavelengths *w, float u_primitive, vec2 u,
@@ -223,13 +225,9 @@ static bool emit_toward(const void *self, const wavelengths *w, float u_primitiv
     (void)u_primitive, (void)u;
     const projection_light *l = self;
     vec3 direction = normalize3(target - l->p);
-    vec3 local = frame_to_local(&l->axes, direction);
-    vec2 st;
-    if (!place_of(l, local, &st))
-        return false;
-    *out = leave(l, direction, over_sphere(l, distribution2_pdf(&l->drawn, st), local[2]),
-                 intensity_at(l, st, w));
-    return true;
+    *out = light_leave_point(l->p, direction, density_toward(l, direction),
+                             intensity_toward(l, direction, w));
+    return out->pdf_direction > 0.0f;
 }
 
 static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_primitive,
@@ -237,23 +235,8 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
 {
     (void)u_primitive, (void)u;
     const projection_light *l = self;
-    vec3 to = l->p - ref;
-    float distance = length3(to);
-    vec2 st;
-    if (!(distance > 0.0f) || !place_of(l, frame_to_local(&l->axes, -to / distance), &st))
-        return false;
-    *out = (light_sample){.wi = to / distance,
-                          .distance = distance,
-                          .radiance = intensity_at(l, st, w) / square(distance),
-                          .pdf = 1.0f,
-                          .n = -to / distance};
-    return true;
-}
-
-static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
-{
-    (void)self, (void)ref, (void)wi, (void)hit;
-    return 0.0f;
+    spectrum intensity = intensity_toward(l, normalize3(ref - l->p), w);
+    return light_arrive_from_point(l->p, ref, intensity, out);
 }
 
 const light_kind projection_light_kind = {
@@ -268,5 +251,5 @@ const light_kind projection_light_kind = {
     .emit_pdf = emit_pdf,
     .emit_toward = emit_toward,
     .sample = sample,
-    .pdf = pdf,
+    .pdf = light_delta_pdf,
 };

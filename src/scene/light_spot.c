@@ -133,11 +133,8 @@ static vec3 sample_cone(const spot_light *l, vec2 u)
 
 static light_emission leave(const spot_light *l, vec3 direction, spectrum flux)
 {
-    return (light_emission){.ray = {l->p, direction, INFINITY, 0.0f, NULL},
-                            .n = direction,
-                            .flux = flux,
-                            .pdf_position = 1.0f,
-                            .pdf_direction = falloff(l, direction) / l->solid_angle};
+    return light_leave_point(l->p, direction, falloff(l, direction) / l->solid_angle,
+                             flux);
 }
 
 static light_bound bound(const void *self, const wavelengths *w)
@@ -182,24 +179,9 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
 {
     (void)u_primitive, (void)u;
     const spot_light *l = self;
-    vec3 to = l->p - ref;
-    float distance = length3(to);
-    vec3 wi = to / distance;
-    float share = falloff(l, -wi) / square(distance);
-    if (!(distance > 0.0f) || !(share > 0.0f))
-        return false;
-    *out = (light_sample){.wi = wi,
-                          .distance = distance,
-                          .radiance = share * emitter_eval(&l->intensity, w),
-                          .pdf = 1.0f,
-                          .n = -wi};
-    return true;
-}
-
-static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
-{
-    (void)self, (void)ref, (void)wi, (void)hit;
-    return 0.0f;
+    spectrum intensity =
+        falloff(l, normalize3(ref - l->p)) * emitter_eval(&l->intensity, w);
+    return light_arrive_from_point(l->p, ref, intensity, out);
 }
 
 const light_kind spot_light_kind = {
@@ -214,5 +196,5 @@ const light_kind spot_light_kind = {
     .emit_pdf = emit_pdf,
     .emit_toward = emit_toward,
     .sample = sample,
-    .pdf = pdf,
+    .pdf = light_delta_pdf,
 };

@@ -28,6 +28,11 @@ static const char *const type_names[] = {
     [PARAM_TEXTURE] = "texture",
 };
 
+const char *param_type_name(param_type type)
+{
+    return type_names[type];
+}
+
 static void param_free(void *data)
 {
     param *q = data;

@@ -27,6 +27,9 @@ typedef enum param_type {
     PARAM_TEXTURE,       /**< a texture's name in strings[0] */
 } param_type;
 
+/** @brief pbrt's word for a type: "float", "point3". */
+const char *param_type_name(param_type type);
+
 /** @brief One parameter. Owned by its list. */
 typedef struct param {
     const char *name; /**< interned */
