@@ -210,10 +210,15 @@ static spectrum term(const photon *p, float d2, float r2, const bsdf *b, vec3 wo
     return f * p->flux * ratio * kernel_eval(&o->kernel, d2, r2);
 }
 
-static bool counts(const photon *p, const bsdf *b, vec3 wo, unsigned lobes)
+/* Photons that count: on the side seen; where light goes through, on the face seen, that
+   is whose normal points as the wall's, and in its plane. */
+static bool counts(const photon *p, vec3 x, const bsdf *b, vec3 wo, unsigned lobes)
 {
-    bool transmits = b->lobes & lobes & LOBE_TRANSMISSION;
-    return transmits || dot3(p->wi, b->n_geom) * dot3(wo, b->n_geom) > 0.0f;
+    bool behind = p->flags & PHOTON_BEHIND, above = dot3(p->wi, b->n_geom) > 0.0f;
+    float height = fabsf(dot3(p->p - x, b->n_geom));
+    if (b->lobes & lobes & LOBE_TRANSMISSION)
+        return above != behind || height < sqrtf(1e-5f) * length3(p->p - x);
+    return above == (dot3(wo, b->n_geom) > 0.0f);
 }
 
 /* Squared radius: fixed, or that of the k-th photon that counts. */
@@ -228,7 +233,7 @@ static float formula_radius2(const photon_store *s, vec3 x, const bsdf *b, vec3 
         for (size_t i = 0; i < s->n; i++) {
             photon p = photon_store_get(s, i);
             float d2 = length3_2(p.p - x);
-            if (d2 > r2 && d2 < next && counts(&p, b, wo, o->lobes | o->delta_lobes))
+            if (d2 > r2 && d2 < next && counts(&p, x, b, wo, o->lobes | o->delta_lobes))
                 next = d2;
         }
         r2 = next;
@@ -246,7 +251,7 @@ static spectrum formula(const photon_store *s, vec3 x, const bsdf *b, vec3 wo,
     for (size_t i = 0; i < s->n; i++) {
         photon p = photon_store_get(s, i);
         float d2 = length3_2(p.p - x);
-        if (d2 < reach2 && counts(&p, b, wo, o->lobes | o->delta_lobes))
+        if (d2 < reach2 && counts(&p, x, b, wo, o->lobes | o->delta_lobes))
             sum += term(&p, fminf(d2, r2), r2, b, wo, o);
     }
     return sum / kernel_area(&o->kernel, r2);
@@ -264,6 +269,7 @@ static photon cloud_photon(uint32_t i)
 {
     sampler s = sampler_make(9, i);
     photon p = {.wi = warp_sphere(sampler_2d(&s)), .flags = i % 3 == 0};
+    p.flags |= i % 7 < 3 ? PHOTON_BEHIND : 0;
     p.p = vec3_make(sampler_1d(&s), sampler_1d(&s), 0.1f * sampler_1d(&s));
     for (int lane = 0; lane < N_LANES; lane++)
         p.flux[lane] = sampler_1d(&s);

@@ -95,7 +95,7 @@ static const struct {
 static photon field_photon(field_place place, uint64_t key, uint32_t i)
 {
     sampler s = sampler_make(key, i / 2);
-    photon p = {.p = place(&s), .wi = warp_sphere(sampler_2d(&s)), .flags = i / 2 % 2};
+    photon p = {.p = place(&s), .wi = warp_sphere(sampler_2d(&s)), .flags = i / 2 % 4};
     p.flux = spectrum_fill(sampler_1d(&s));
     if (i % 2 && i % 8 < 6) {
         sampler own = sampler_make(key + 1, i);
@@ -218,7 +218,7 @@ static void compare_maps(pair *maps, field_place place, float extent)
         if (i % 3)
             p += (i % 3 == 1 ? 0.01f : 1.5f) * extent * warp_sphere(sampler_2d(&s));
         photon_filter filter = {warp_sphere(sampler_2d(&s)), i % 4 > 1,
-                                flatten[i % 5 % 3]};
+                                flatten[i % 5 % 3], (int)(i % 7 % 3) - 1};
         const photon_filter *used = i % 2 ? &filter : NULL;
         for (size_t r = 0; r < G_N_ELEMENTS(radii); r++) {
             compare_within(maps, p, radii[r] * extent, used);
@@ -301,7 +301,7 @@ static void test_list_by_definition(void)
     g_autoptr(photon_map) list = build_map(MAP_LIST, &store, 0, 1);
     photon_hits hits = {0};
     vec3 p = vec3_make(0.4f, 0.5f, 0.6f), n = normalize3(vec3_make(1, 2, 2));
-    photon_filter filter = {n, true, 0.5f};
+    photon_filter filter = {.n = n, .one_sided = true, .flatten = 0.5f};
     g_assert_true(photon_map_within(list, p, 0.3f, &filter, &hits));
     size_t expected = 0, nearer = 0, as_near = 0;
     for (size_t i = 0; i < N; i++) {
@@ -323,6 +323,31 @@ static void test_list_by_definition(void)
     g_assert_cmpuint(hits.n, ==, 40);
     g_assert_cmpuint(nearer, <, 40);
     g_assert_cmpuint(as_near, >=, 40);
+    photon_hits_clear(&hits);
+}
+
+/* Of a surface seen from behind, only photons on faces that lie alike. */
+static void test_faces_by_definition(void)
+{
+    enum { N = 500 };
+    photon_store store = make_store(place_cube, N);
+    g_autoptr(photon_map) list = build_map(MAP_LIST, &store, 0, 1);
+    const photon_store *kept = photon_map_store(list);
+    photon_hits hits = {0};
+    vec3 p = vec3_make(0.4f, 0.5f, 0.6f), n = normalize3(vec3_make(1, 2, 2));
+    for (int face = -1; face <= 1; face += 2) {
+        photon_filter filter = {.n = n, .flatten = 1, .face = face};
+        size_t expected = 0;
+        g_assert_true(photon_map_within(list, p, 0.3f, &filter, &hits));
+        for (size_t i = 0; i < N; i++) {
+            photon q = photon_store_get(kept, i);
+            bool above = dot3(q.wi, n) > 0.0f, behind = q.flags & PHOTON_BEHIND;
+            vec3 own = above != behind ? n : -n;
+            expected += length3(q.p - p) < 0.3f && dot3(own, n) * (float)face > 0.0f;
+        }
+        g_assert_cmpuint(hits.n, ==, expected);
+        g_assert_cmpuint(expected, >, 5);
+    }
     photon_hits_clear(&hits);
 }
 
@@ -430,6 +455,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/map/list/by-definition", test_list_by_definition);
+    g_test_add_func("/map/list/faces", test_faces_by_definition);
     g_test_add_func("/map/kdtree/same-as-list", test_kdtree_same_as_list);
     g_test_add_func("/map/grid/same-as-list", test_grid_same_as_list);
     g_test_add_func("/map/grid/hashed-rows", test_grid_hashed_rows);

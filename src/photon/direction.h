@@ -30,6 +30,12 @@ static inline float direction_dot(uint32_t packed, vec3 n)
     return fused(o[2], n[2], fused(o[1], n[1], o[0] * n[0]));
 }
 
+/** @brief The flags of a packed direction. */
+static inline unsigned direction_flags(uint32_t packed)
+{
+    return packed >> 30;
+}
+
 /** @brief Eight points on the octahedron. */
 typedef struct directions8 {
     floats8 x, y, z;

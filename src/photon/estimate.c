@@ -317,9 +317,12 @@ spectrum photon_estimate(const photon_map *map, vec3 p, const bsdf *b, vec3 wo,
     unsigned lobes = options->lobes | options->delta_lobes;
     bool lambertian = is_lambertian(b, options->lobes) && is_lambertian(b, lobes);
     bool bent = is_bent(b);
+    bool transmits = lobes & b->lobes & LOBE_TRANSMISSION;
+    int face = dot3(b->n_geom, wo) < 0.0f ? -1 : 1;
     photon_filter filter = {
-        .n = face_forward(b->n_geom, wo),
-        .one_sided = !(lobes & b->lobes & LOBE_TRANSMISSION),
+        .n = face < 0 ? -b->n_geom : b->n_geom,
+        .one_sided = !transmits,
+        .face = transmits ? face : 0,
         .flatten = options->flatten,
     };
     gather g;

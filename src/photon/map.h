@@ -29,6 +29,10 @@ typedef struct photon_filter {
     float flatten;  /**< the neighbourhood is a disc of this height over radius: distance
                        is the larger of |d| and |d·n| / flatten (0 is taken as 0.001);
                        >= 1: a ball */
+    int face; /**< where both sides count: 1, -1: n is, or is opposite to, the normal
+                  of the surface itself, and photons off its plane count only if
+                  theirs points alike (by PHOTON_BEHIND), so that those on the other
+                  face of a thin pane do not; 0: all */
 } photon_filter;
 
 /** @brief Photons found: indices into photon_map_store(map) and squared distances.

@@ -197,8 +197,3 @@ vec3 direction_unpack(uint32_t packed)
 {
     return normalize3(direction_octahedron(packed));
 }
-
-unsigned direction_flags(uint32_t packed)
-{
-    return packed >> 30;
-}

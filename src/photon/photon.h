@@ -33,12 +33,16 @@ typedef enum photon_class {
  */
 enum { PHOTON_FROM_DELTA = 1u };
 
+/** @brief Arrived on the side of its surface that the geometric normal points away from.
+ */
+enum { PHOTON_BEHIND = 2u };
+
 /** @brief One photon, unpacked. */
 typedef struct photon {
     vec3 p;
     vec3 wi;        /**< unit, to where it came from */
     spectrum flux;  /**< W per nm */
-    unsigned flags; /**< PHOTON_FROM_DELTA */
+    unsigned flags; /**< PHOTON_FROM_DELTA, PHOTON_BEHIND */
     uint32_t tag;   /**< kept by tagged stores only: the light's group */
 } photon;
 
@@ -69,4 +73,3 @@ bool photon_store_permute(photon_store *store, const size_t *order, unsigned thr
 /** @brief Direction and flags in 32 bits; error below 1e-4 rad. */
 uint32_t direction_pack(vec3 w, unsigned flags);
 vec3 direction_unpack(uint32_t packed);
-unsigned direction_flags(uint32_t packed);

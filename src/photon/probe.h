@@ -4,6 +4,9 @@
  *
  *   distance2   (dx² + dy²) + dz², or (d·n / flatten)² where that is larger
  *   accepted    one-sided: the photon's direction lies on the side of n
+ *               of one face: its direction and its flag say that its own surface lies
+ *               alike, or it lies in the plane, |d·n|² < 1e-5 |d|² (so that triangles of
+ *               a sheet may be wound as they like)
  *
  * Rounding is monotone at each step, so |dx| < r holds in floats for every photon within
  * r: a structure that looks at all x in [p - r, p + r] misses none.
@@ -20,6 +23,7 @@ typedef struct photon_probe {
     vec3 p;
     vec3 n;
     bool one_sided, flat;
+    int face;
     float inv_flatten;
 } photon_probe;
 
@@ -34,6 +38,7 @@ static inline photon_probe photon_probe_make(const photon_store *store, vec3 p,
     if (filter) {
         probe.n = filter->n;
         probe.one_sided = filter->one_sided;
+        probe.face = filter->face;
         probe.flat = filter->flatten < 1.0f;
         probe.inv_flatten = 1.0f / fmaxf(filter->flatten, 1e-3f);
     }
@@ -54,8 +59,27 @@ static inline float probe_distance2(const photon_probe *probe, size_t i)
     return height2 > d2 ? height2 : d2;
 }
 
+/** @brief Squared sine of the elevation over the plane within which any face is the same.
+ */
+#define SAME_PLANE 1e-5f
+
+/** @brief True if photon i lies on the probe's face, or in its plane. */
+static inline bool probe_is_face(const photon_probe *probe, size_t i)
+{
+    const photon_store *s = probe->store;
+    bool above = direction_dot(probe->wi[i], probe->n) > 0.0f;
+    bool behind = direction_flags(probe->wi[i]) & PHOTON_BEHIND;
+    if (above == (behind == (probe->face < 0)))
+        return true;
+    float x = s->x[i] - probe->p[0], y = s->y[i] - probe->p[1], z = s->z[i] - probe->p[2];
+    float dot = fused(z, probe->n[2], fused(y, probe->n[1], x * probe->n[0]));
+    return dot * dot <= SAME_PLANE * fused(z, z, fused(y, y, x * x));
+}
+
 static inline bool probe_accepts(const photon_probe *probe, size_t i)
 {
+    if (probe->face && !probe_is_face(probe, i))
+        return false;
     return !probe->one_sided || direction_dot(probe->wi[i], probe->n) > 0.0f;
 }
 
@@ -84,6 +108,11 @@ static inline unsigned probe_block(const photon_probe *probe, size_t i, size_t e
     if (bits && probe->one_sided) {
         directions8 wi = directions8_load(probe->wi + i);
         bits &= bits8(directions8_dot(wi, probe->n) > 0.0f);
+    }
+    for (unsigned left = probe->face ? bits : 0u; left; left &= left - 1u) {
+        size_t lane = (size_t)__builtin_ctz(left);
+        if (!probe_is_face(probe, i + lane))
+            bits &= ~(1u << lane);
     }
     return bits;
 }

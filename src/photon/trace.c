@@ -179,6 +179,8 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
     if (out->error ||
         (out->photons.n == out->photons.capacity && !grow(out, path->want_normals)))
         return;
+    if (dot3(path->ray.direction, hit->n_geom) > 0.0f)
+        flags |= PHOTON_BEHIND;
     photon p = {.p = hit->p,
                 .wi = -path->ray.direction,
                 .flux = path->flux,

@@ -70,7 +70,11 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
         return false;
     for (size_t i = 0; i < paths->n_vertices; i++) {
         const light_vertex *v = &paths->vertices[i];
-        photon p = {.p = v->hit.p, .wi = v->wi, .flux = vcm_payload(i)};
+        bool behind = dot3(v->wi, v->hit.n_geom) < 0.0f;
+        photon p = {.p = v->hit.p,
+                    .wi = v->wi,
+                    .flux = vcm_payload(i),
+                    .flags = behind ? PHOTON_BEHIND : 0};
         if (scene_hit_moves(pass->scene, &v->hit)) {
             transform by = vcm_motion_to_map(pass, &v->hit);
             p.p = transform_point(&by, p.p);

@@ -232,14 +232,6 @@ static float merge_weight(const camera_walk *c, const vcm_vertex *v,
     return 1.0f / (lamp_side + 1.0f + eye_side);
 }
 
-/* What transmits gathers from both sides, but the other face of a thin pane is another
- * surface: its normal points away. */
-static bool is_other_face(const vcm_vertex *v, const light_vertex *l)
-{
-    return (v->bsdf.lobes & LOBE_TRANSMISSION) &&
-           dot3(l->hit.n_geom, v->hit->n_geom) < 0.0f;
-}
-
 /* Light vertices are a density over the true surface; light sees the shading normal by
    the cosine that is in f. */
 static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *l,
@@ -252,7 +244,7 @@ static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *
         wi = normalize3(transform_vector(&by, wi));
     }
     float cosine = fabsf(dot3(wi, v->hit->n_geom));
-    if (!(cosine > 0.0f) || is_other_face(v, l) ||
+    if (!(cosine > 0.0f) ||
         time_slice(l->hit.time, n_slices) != time_slice(v->hit->time, n_slices) ||
         !vcm_length_allowed(c->pass, c->walk.counts.n + l->before.n + 1))
         return;
@@ -328,9 +320,12 @@ static void merge(camera_walk *c, const vcm_vertex *v)
                           (float)how->class_cone_k[PHOTON_INDIRECT]};
     vec3 wo = v->wo;
     const surface_hit at = place_in_map(pass, v->hit, &wo);
+    bool transmits = v->bsdf.lobes & LOBE_TRANSMISSION;
+    int face = dot3(at.n_geom, wo) < 0.0f ? -1 : 1;
     photon_filter filter = {
-        .n = face_forward(at.n_geom, wo),
-        .one_sided = !(v->bsdf.lobes & LOBE_TRANSMISSION),
+        .n = face < 0 ? -at.n_geom : at.n_geom,
+        .one_sided = !transmits,
+        .face = transmits ? face : 0,
         .flatten = (float)how->flatten,
     };
     float r2 = square(pass->radius);
