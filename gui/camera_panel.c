@@ -46,10 +46,10 @@ void camera_panel_show(camera_panel *p, const NephCamera *camera)
 }
 
 static GtkWidget *add_spin(camera_panel *p, GtkWidget *list, const char *title,
-                           double low, double step, const char *tooltip)
+                           const char *caption, double low, double step)
 {
     GtkWidget *spin = spin_make(low, 1e9, step, false);
-    gtk_widget_set_tooltip_text(row_add(list, title, spin), tooltip);
+    row_add_captioned(list, title, caption, spin);
     g_signal_connect_swapped(spin, "value-changed", G_CALLBACK(on_input), p);
     return spin;
 }
@@ -59,13 +59,11 @@ static void add_lens(camera_panel *p, GtkWidget *content)
     GtkWidget *list, *group = group_make("Lens", &list);
     p->fov = slider_make(1.0, 170.0, 0.5, 1);
     gtk_widget_set_name(p->fov, "field-of-view");
-    gtk_widget_set_tooltip_text(row_add(list, "Field of view (°)", p->fov),
-                                "Across the shorter side of the picture");
+    row_add_captioned(list, "Field of view (°)", "across the shorter side", p->fov);
     g_signal_connect_swapped(p->fov, "value-changed", G_CALLBACK(on_input), p);
-    p->lens = add_spin(p, list, "Lens radius (m)", 0.0, 0.005,
-                       "0: a pinhole, everything is sharp");
-    p->focus = add_spin(p, list, "Sharp at (m)", 0.0, 0.05,
-                        "Distance along the view at which things are sharp");
+    p->lens =
+        add_spin(p, list, "Lens radius (m)", "0: a pinhole, all is sharp", 0.0, 0.005);
+    p->focus = add_spin(p, list, "Sharp at (m)", "distance along the view", 0.0, 0.05);
     GtkWidget *tool = gtk_toggle_button_new_with_label("Click what is to be sharp");
     gtk_actionable_set_action_name(GTK_ACTIONABLE(tool), "win.focus-tool");
     gtk_widget_set_tooltip_text(tool, "Then click in the picture (Ctrl+D)");
@@ -76,9 +74,9 @@ static void add_lens(camera_panel *p, GtkWidget *content)
 static void add_place(camera_panel *p, GtkWidget *content)
 {
     static const char *const names[] = {"x (m)", "y (m)", "z (m)"};
-    GtkWidget *list, *group = group_make("Place", &list);
+    GtkWidget *list, *group = group_make("Camera at", &list);
     for (int i = 0; i < 3; i++)
-        p->place[i] = add_spin(p, list, names[i], -1e9, 0.05, "Where the camera stands");
+        p->place[i] = add_spin(p, list, names[i], NULL, -1e9, 0.05);
     p->direction = value_row_add(list, "Looks toward");
     gtk_box_append(GTK_BOX(content), group);
 }
@@ -89,8 +87,12 @@ static void add_buttons(GtkWidget *content)
     static const char *const buttons[][3] = {
         {"As in the scene", "Back to the view of the file (Home)", "win.reset-view"},
         {"Whole scene", "Goes so far back that all is seen (End)", "win.frame-view"},
-        {"Copy", "The view as pbrt LookAt and Camera (Ctrl+Shift+C)", "win.copy-view"},
-        {"Save in the scene", "Writes the view into the scene file", "win.save-view"}};
+        {"Copy LookAt", "The view as pbrt LookAt and Camera (Ctrl+Shift+C)",
+         "win.copy-view"},
+        {"Save in the scene",
+         "Writes the view into the scene file; another format is kept as a pbrt scene "
+         "beside it (Ctrl+Shift+S)",
+         "win.save-view"}};
     gtk_grid_set_row_spacing(GTK_GRID(grid), 6);
     gtk_grid_set_column_spacing(GTK_GRID(grid), 6);
     gtk_grid_set_column_homogeneous(GTK_GRID(grid), TRUE);
@@ -101,8 +103,9 @@ static void add_buttons(GtkWidget *content)
     gtk_box_append(GTK_BOX(content), grid);
     GtkWidget *help = text_make(
         "Drag to go around, with shift to move across, with the right button to look "
-        "around; the wheel goes nearer. W A S D fly, E and Q rise and sink, shift is "
-        "faster. A double click chooses what to go around.",
+        "around; the wheel goes nearer. Arrow keys go around too, with shift across; "
+        "Page Up and Down go nearer and further. W A S D fly, E and Q rise and sink, "
+        "shift is faster. A double click chooses what to go around.",
         "dim-label");
     gtk_box_append(GTK_BOX(content), help);
 }
@@ -112,12 +115,8 @@ camera_panel *camera_panel_new(camera_listener changed, void *data)
     camera_panel *p = g_new0(camera_panel, 1);
     *p = (camera_panel){.changed = changed, .data = data, .camera.fov = 90.0};
     p->showing = true;
-    p->root = gtk_scrolled_window_new();
-    gtk_scrolled_window_set_policy(GTK_SCROLLED_WINDOW(p->root), GTK_POLICY_NEVER,
-                                   GTK_POLICY_AUTOMATIC);
-    gtk_widget_set_vexpand(p->root, TRUE);
-    GtkWidget *content = box_make(GTK_ORIENTATION_VERTICAL, 18, 12);
-    gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(p->root), content);
+    GtkWidget *content;
+    p->root = page_make(&content);
     add_lens(p, content);
     add_place(p, content);
     add_buttons(content);

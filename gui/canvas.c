@@ -7,6 +7,8 @@
 /* Beyond this zoom pixels are seen as squares. */
 #define SQUARES 2.0
 #define MOST_ZOOM 64.0
+/* So near to the divider it is meant, pixels. */
+#define GRIP 6.0
 
 /* One side of the divider. */
 typedef struct side {
@@ -26,8 +28,11 @@ struct canvas {
     double zoom;                    /* 0: fitted */
     double offset[2], drag_from[2]; /* of the picture's middle from the window's */
     double pointer[2];
-    bool inside; /* the pointer is over the widget */
+    bool inside;   /* the pointer is over the widget */
+    bool gripping; /* the pointer is over the divider */
+    bool dividing; /* the drag under way holds the divider */
     canvas_hover hover;
+    canvas_divided divided;
     void *data;
 };
 
@@ -233,6 +238,22 @@ static void draw(GtkDrawingArea *area, cairo_t *cr, int width, int height, void 
 
 /* ---- Hands ---- */
 
+static bool on_divider(const canvas *c, double wx)
+{
+    double at[2], size[2], zoom = canvas_zoom(c);
+    corner(c, zoom, at);
+    whole_size(c, size);
+    return c->split && fabs(at[0] + c->divider * size[0] * zoom - wx) <= GRIP;
+}
+
+static void show_grip(canvas *c, double wx)
+{
+    bool grips = on_divider(c, wx);
+    if (grips != c->gripping)
+        gtk_widget_set_cursor_from_name(c->area, grips ? "col-resize" : NULL);
+    c->gripping = grips;
+}
+
 static void tell_hover(canvas *c)
 {
     double x, y;
@@ -253,6 +274,7 @@ static void pointer_moved(GtkEventController *motion, double x, double y, canvas
     c->pointer[0] = x;
     c->pointer[1] = y;
     c->inside = true;
+    show_grip(c, x);
     tell_hover(c);
 }
 
@@ -278,13 +300,23 @@ static gboolean scrolled(GtkEventController *wheel, double dx, double dy, canvas
 
 static void drag_begin(GtkGestureDrag *drag, double x, double y, canvas *c)
 {
-    (void)drag, (void)x, (void)y;
+    (void)y;
+    c->dividing = on_divider(c, x);
+    if (c->dividing)
+        gtk_gesture_set_state(GTK_GESTURE(drag), GTK_EVENT_SEQUENCE_CLAIMED);
     c->drag_from[0] = c->offset[0];
     c->drag_from[1] = c->offset[1];
 }
 
 static void drag_update(GtkGestureDrag *drag, double x, double y, canvas *c)
 {
+    if (c->dividing) {
+        double start_x, start_y, at[2];
+        gtk_gesture_drag_get_start_point(drag, &start_x, &start_y);
+        canvas_to_picture(c, start_x + x, start_y + y, &at[0], &at[1]);
+        c->divided(fmin(fmax(at[0], 0.0), 1.0), c->data);
+        return;
+    }
     if (!has_control(GTK_EVENT_CONTROLLER(drag)))
         return;
     c->zoom = canvas_zoom(c);
@@ -304,6 +336,8 @@ static void listen(canvas *c)
     g_signal_connect(wheel, "scroll", G_CALLBACK(scrolled), c);
     gtk_widget_add_controller(c->area, wheel);
     GtkGesture *drag = gtk_gesture_drag_new();
+    gtk_event_controller_set_propagation_phase(GTK_EVENT_CONTROLLER(drag),
+                                               GTK_PHASE_CAPTURE);
     g_signal_connect(drag, "drag-begin", G_CALLBACK(drag_begin), c);
     g_signal_connect(drag, "drag-update", G_CALLBACK(drag_update), c);
     gtk_widget_add_controller(c->area, GTK_EVENT_CONTROLLER(drag));
@@ -311,19 +345,16 @@ static void listen(canvas *c)
 
 /* ---- The canvas ---- */
 
-canvas *canvas_new(canvas_hover hover, void *data)
+canvas *canvas_new(canvas_hover hover, canvas_divided divided, void *data)
 {
     canvas *c = g_new0(canvas, 1);
-    *c = (canvas){.hover = hover, .data = data, .divider = 0.5};
+    *c = (canvas){.hover = hover, .divided = divided, .data = data, .divider = 0.5};
     c->main = (side){.owner = c, .options = display_defaults()};
     c->other = c->main;
-    c->area = gtk_drawing_area_new();
+    c->area = drawing_make("Rendered picture", draw, c);
     gtk_widget_set_hexpand(c->area, TRUE);
     gtk_widget_set_vexpand(c->area, TRUE);
     gtk_widget_add_css_class(c->area, "canvas");
-    gtk_drawing_area_set_draw_func(GTK_DRAWING_AREA(c->area), draw, c, NULL);
-    widget_name(c->area, "Rendered picture");
-    gtk_widget_set_has_tooltip(c->area, FALSE);
     listen(c);
     return c;
 }

@@ -14,8 +14,10 @@ typedef struct canvas canvas;
 /** @brief A place of the picture under the pointer, pixels of the image; inside false: it
  * has left. */
 typedef void (*canvas_hover)(bool inside, int x, int y, void *data);
+/** @brief The divider is being dragged to a place of the picture, 0..1. */
+typedef void (*canvas_divided)(double at, void *data);
 
-canvas *canvas_new(canvas_hover hover, void *data);
+canvas *canvas_new(canvas_hover hover, canvas_divided divided, void *data);
 /** @brief When the widget has gone. */
 void canvas_free(canvas *c);
 GtkWidget *canvas_widget(canvas *c);

@@ -137,7 +137,7 @@ void error_page_show(error_page *p, const char *file, const char *message,
     g_autofree char *shown = g_utf8_make_valid(name, -1);
     g_autofree char *title =
         places->len == 1 ? g_strdup_printf("%s cannot be read", shown)
-                         : g_strdup_printf("%s: %u things to mend", shown, places->len);
+                         : g_strdup_printf("%s has %u errors", shown, places->len);
     gtk_label_set_text(GTK_LABEL(p->title), title);
     clear_list(p);
     for (guint i = 0; i < places->len; i++)
@@ -181,6 +181,7 @@ error_page *error_page_new(void)
     gtk_box_append(GTK_BOX(box), p->list);
     gtk_box_append(GTK_BOX(box), buttons_make(p));
     gtk_widget_set_valign(box, GTK_ALIGN_CENTER);
+    gtk_widget_add_css_class(p->list, "group");
     gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(p->root), box);
     return p;
 }

@@ -2,15 +2,18 @@
 
 #include <epoxy/gl.h>
 #include <gio/gio.h>
+#include <math.h>
 #include <stddef.h>
 
 static const char vertex_text[] = "in vec3 position;\n"
                                   "in vec4 color;\n"
                                   "uniform mat4 to_clip;\n"
                                   "uniform float point_size;\n"
+                                  "uniform vec2 shift;\n"
                                   "out vec4 shade;\n"
                                   "void main() {\n"
                                   "    gl_Position = to_clip * vec4(position, 1.0);\n"
+                                  "    gl_Position.xy += shift * gl_Position.w;\n"
                                   "    gl_PointSize = point_size;\n"
                                   "    shade = color;\n"
                                   "}\n";
@@ -63,6 +66,7 @@ bool gl_painter_init(gl_painter *p, bool es, GError **error)
     p->matrix = glGetUniformLocation(p->program, "to_clip");
     p->point_size = glGetUniformLocation(p->program, "point_size");
     p->fade = glGetUniformLocation(p->program, "fade");
+    p->shift = glGetUniformLocation(p->program, "shift");
     return true;
 }
 
@@ -72,9 +76,11 @@ void gl_painter_clear(gl_painter *p)
     p->program = 0;
 }
 
-void gl_painter_begin(const gl_painter *p, const float matrix[16],
+void gl_painter_begin(gl_painter *p, const float matrix[16], const float pixels[2],
                       const float background[3])
 {
+    for (int i = 0; i < 2; i++)
+        p->pixel[i] = 2.0f / fmaxf(pixels[i], 1.0f);
     glClearColor(background[0], background[1], background[2], 1.0f);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glEnable(GL_DEPTH_TEST);
@@ -83,6 +89,7 @@ void gl_painter_begin(const gl_painter *p, const float matrix[16],
         glEnable(GL_PROGRAM_POINT_SIZE);
     glUseProgram(p->program);
     glUniformMatrix4fv(p->matrix, 1, GL_FALSE, matrix);
+    glUniform2f(p->shift, 0.0f, 0.0f);
 }
 
 void gl_layer_set(gl_layer *layer, const cloud_vertex *vertices, size_t n)
@@ -123,14 +130,22 @@ static void draw(const gl_layer *layer, GLenum mode, size_t first, size_t n)
     glBindVertexArray(0);
 }
 
-void gl_layer_lines(const gl_painter *p, const gl_layer *layer, float fade)
+/* OpenGL's core profile draws lines of one pixel only: wider ones are drawn again beside
+   themselves, across and down. */
+void gl_layer_lines(const gl_painter *p, const gl_layer *layer, float fade, int width)
 {
     if (fade < 1.0f) {
         glEnable(GL_BLEND);
         glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     }
     glUniform1f(p->fade, fade);
-    draw(layer, GL_LINES, 0, layer->n);
+    for (int i = 0; i < width; i++)
+        for (int across = 0; across < (i > 0 ? 2 : 1); across++) {
+            glUniform2f(p->shift, across ? (float)i * p->pixel[0] : 0.0f,
+                        across ? 0.0f : -(float)i * p->pixel[1]);
+            draw(layer, GL_LINES, 0, layer->n);
+        }
+    glUniform2f(p->shift, 0.0f, 0.0f);
     glDisable(GL_BLEND);
 }
 

@@ -14,22 +14,24 @@ typedef struct gl_layer {
 
 typedef struct gl_painter {
     unsigned program;
-    int matrix, point_size, fade;
+    int matrix, point_size, fade, shift;
+    float pixel[2]; /**< one of the window's, in clip space */
 } gl_painter;
 
 /** @brief Compiles. false with a message in *error. es: for OpenGL ES. */
 bool gl_painter_init(gl_painter *p, bool es, GError **error);
 void gl_painter_clear(gl_painter *p);
-/** @brief Clears the window and begins a picture. column-major matrix to clip space. */
-void gl_painter_begin(const gl_painter *p, const float matrix[16],
+/** @brief Clears the window of so many pixels and begins a picture. column-major matrix
+ * to clip space. */
+void gl_painter_begin(gl_painter *p, const float matrix[16], const float pixels[2],
                       const float background[3]);
 
 /** @brief Replaces the vertices. */
 void gl_layer_set(gl_layer *layer, const cloud_vertex *vertices, size_t n);
 void gl_layer_clear(gl_layer *layer);
-/** @brief Vertices first .. first + n as lines, colours multiplied by fade (with alpha).
- */
-void gl_layer_lines(const gl_painter *p, const gl_layer *layer, float fade);
+/** @brief The vertices as lines of a width in pixels, colours multiplied by fade (with
+ * alpha). */
+void gl_layer_lines(const gl_painter *p, const gl_layer *layer, float fade, int width);
 /** @brief The same as points of a size in pixels. */
 void gl_layer_points(const gl_painter *p, const gl_layer *layer, size_t first, size_t n,
                      float size);

@@ -14,8 +14,11 @@ static const hint hints[] = {
     {"Rendering", "Stop", "<Control>period"},
     {"Rendering", "Render anew", "F5"},
     {"Rendering", "Trace photons", "<Control>t"},
+    {"Camera", "Go around (with shift: across)", "Left Right"},
+    {"Camera", "Nearer, further", "Page_Up Page_Down"},
     {"Camera", "Fly", "w a s d"},
     {"Camera", "Rise and sink", "e q"},
+    {"Camera", "Pick in the middle", "Return"},
     {"Camera", "Focus on what is clicked", "<Control>d"},
     {"Camera", "View of the scene file", "Home"},
     {"Camera", "Whole scene", "End"},
@@ -39,10 +42,12 @@ static const char *const mouse[][2] = {
     {"Go around", "Drag"},
     {"Move across", "Shift and drag, or drag with the middle button"},
     {"Look around", "Drag with the right button"},
-    {"Nearer, further", "Wheel"},
+    {"Nearer, further", "Wheel, or two fingers"},
     {"Go around what is clicked", "Double click"},
     {"Zoom the picture, move it", "Ctrl and wheel, Ctrl and drag"},
     {"Pick a photon or a surface", "Click in the photon view"},
+    {"Move the divider of a split picture", "Drag it"},
+    {"Open a scene, compare with a picture", "Drop its file on the window"},
 };
 
 static void put(GString *out, const char *title, const char *property, const char *value)
@@ -69,7 +74,7 @@ static char *definition(void)
     GString *out = g_string_new("<interface><object class=\"GtkShortcutsWindow\" "
                                 "id=\"help\"><property name=\"modal\">1</property>"
                                 "<child><object class=\"GtkShortcutsSection\">"
-                                "<property name=\"max-height\">12</property>");
+                                "<property name=\"max-height\">24</property>");
     const char *group = NULL;
     for (size_t i = 0; i < G_N_ELEMENTS(hints); i++) {
         if (g_strcmp0(group, hints[i].group) != 0) {

@@ -60,10 +60,8 @@ static void draw(GtkDrawingArea *area, cairo_t *cr, int width, int height, void 
 histogram *histogram_new(void)
 {
     histogram *h = g_new0(histogram, 1);
-    h->area = gtk_drawing_area_new();
+    h->area = drawing_make("Histogram of red, green and blue over stops", draw, h);
     gtk_drawing_area_set_content_height(GTK_DRAWING_AREA(h->area), HEIGHT);
-    gtk_drawing_area_set_draw_func(GTK_DRAWING_AREA(h->area), draw, h, NULL);
-    widget_name(h->area, "Histogram of red, green and blue over stops");
     return h;
 }
 

@@ -17,6 +17,7 @@ struct inspector {
     GtkWidget *layer, *exposure, *curve, *gamma, *false_colour, *mark_bad;
     GtkWidget *pixel, *bad;
     GtkWidget *compare, *other_layer, *divider, *reference_name, *errors[4];
+    GtkWidget *problem; /* why there is no error to show */
     histogram *histogram;
     char **layers;
     held_picture *reference;
@@ -57,15 +58,28 @@ char *inspector_pixel_text(const NephImage *image, const char *layer, int x, int
         return NULL;
     const float v[3] = {pixel[channel[0]], pixel[channel[1]], pixel[channel[2]]};
     if (channel[0] == channel[1])
-        return g_strdup_printf("(%d, %d)\n%.6g", x, y, (double)v[0]);
+        return g_strdup_printf("pixel      %d, %d\n%-10s %.6g", x, y, layer,
+                               (double)v[0]);
     if (strcmp(layer, "normal") == 0)
-        return g_strdup_printf("(%d, %d)\nx %.5g  y %.5g  z %.5g", x, y, (double)v[0],
-                               (double)v[1], (double)v[2]);
+        return g_strdup_printf("pixel      %d, %d\nx y z      %-8.4f %-8.4f %-8.4f", x, y,
+                               (double)v[0], (double)v[1], (double)v[2]);
     to_xyz(v, xyz);
-    return g_strdup_printf("(%d, %d)\nR %.5g  G %.5g  B %.5g\nX %.5g  Y %.5g  Z %.5g\n"
-                           "luminance %.5g",
+    return g_strdup_printf("pixel      %d, %d\nR G B      %-9.4g %-9.4g %-9.4g\n"
+                           "X Y Z      %-9.4g %-9.4g %-9.4g\nluminance  %.6g",
                            x, y, (double)v[0], (double)v[1], (double)v[2], xyz[0], xyz[1],
                            xyz[2], xyz[1]);
+}
+
+char *inspector_pixel_line(const NephImage *image, const char *layer, int x, int y)
+{
+    int channel[3];
+    const float *pixel = pixel_at(image, x, y);
+    if (!pixel || !display_channels(image, layer, channel))
+        return NULL;
+    if (channel[0] == channel[1])
+        return g_strdup_printf("(%d, %d)  %.5g", x, y, (double)pixel[channel[0]]);
+    return g_strdup_printf("(%d, %d)  %.4g  %.4g  %.4g", x, y, (double)pixel[channel[0]],
+                           (double)pixel[channel[1]], (double)pixel[channel[2]]);
 }
 
 static void show_pixel(inspector *n)
@@ -213,7 +227,8 @@ static void compared(GObject *source, GAsyncResult *result, void *data)
         g_autofree char *text = ok ? g_strdup_printf("%.5g", values[i]) : g_strdup("–");
         gtk_label_set_text(GTK_LABEL(n->errors[i]), text);
     }
-    gtk_widget_set_tooltip_text(n->reference_name, ok ? NULL : error->message);
+    gtk_label_set_text(GTK_LABEL(n->problem), ok ? "" : error->message);
+    gtk_widget_set_visible(n->problem, !ok);
 }
 
 static void begin_comparison(inspector *n)
@@ -231,22 +246,22 @@ static void begin_comparison(inspector *n)
     g_task_run_in_thread(task, compare);
 }
 
-bool inspector_set_reference(inspector *n, const char *path, GError **error)
+void inspector_set_reference(inspector *n, held_picture *picture, const char *path)
 {
-    int width, height, n_channels;
-    NephImage *image = neph_image_read(path, error);
-    if (!image)
-        return false;
-    neph_image_size(image, &width, &height, &n_channels);
+    if (!picture) {
+        if (!n->reference)
+            gtk_drop_down_set_selected(GTK_DROP_DOWN(n->compare), COMPARE_NONE);
+        return;
+    }
+    held_picture *held = held_picture_ref(picture);
     held_picture_unref(n->reference);
-    n->reference = held_picture_new(image, width, height, false);
+    n->reference = held;
     g_autofree char *base = g_path_get_basename(path);
     g_autofree char *name = g_utf8_make_valid(base, -1);
     gtk_label_set_text(GTK_LABEL(n->reference_name), name);
     gtk_drop_down_set_selected(GTK_DROP_DOWN(n->compare), COMPARE_REFERENCE);
     show_other(n);
     begin_comparison(n);
-    return true;
 }
 
 static void on_compare(inspector *n)
@@ -262,6 +277,11 @@ static void on_reference_button(inspector *n)
     n->wants(n->data);
 }
 
+void inspector_set_divider(inspector *n, double at)
+{
+    gtk_range_set_value(GTK_RANGE(n->divider), at);
+}
+
 static void on_divider(inspector *n)
 {
     canvas_set_divider(n->canvas, gtk_range_get_value(GTK_RANGE(n->divider)));
@@ -272,8 +292,11 @@ static void on_divider(inspector *n)
 static void fill_layers(GtkWidget *choice, char **layers)
 {
     GtkStringList *words = gtk_string_list_new(NULL);
-    for (size_t i = 0; layers[i]; i++)
-        gtk_string_list_append(words, *layers[i] ? layers[i] : "picture");
+    for (size_t i = 0; layers[i]; i++) {
+        g_autofree char *title = g_strdup(*layers[i] ? layers[i] : "picture");
+        title[0] = g_ascii_toupper(title[0]);
+        gtk_string_list_append(words, title);
+    }
     guint chosen = gtk_drop_down_get_selected(GTK_DROP_DOWN(choice));
     gtk_drop_down_set_model(GTK_DROP_DOWN(choice), G_LIST_MODEL(words));
     if (chosen < g_strv_length(layers))
@@ -323,7 +346,7 @@ static void listen(inspector *n, GtkWidget *widget, const char *signal,
 static void add_display(inspector *n)
 {
     GtkWidget *list, *group = group_make("Show", &list);
-    static const char *const first[] = {"picture", NULL};
+    static const char *const first[] = {"Picture", NULL};
     n->layer = choice_make(first);
     n->exposure = slider_make(-10.0, 10.0, 0.25, 2);
     n->curve = choice_make(tone_curve_names);
@@ -332,15 +355,14 @@ static void add_display(inspector *n)
     n->mark_bad = gtk_switch_new();
     gtk_range_set_value(GTK_RANGE(n->exposure), 0.0);
     gtk_range_set_value(GTK_RANGE(n->gamma), 2.2);
-    gtk_scale_add_mark(GTK_SCALE(n->exposure), 0.0, GTK_POS_BOTTOM, NULL);
+    gtk_scale_set_has_origin(GTK_SCALE(n->exposure), FALSE);
     gtk_switch_set_active(GTK_SWITCH(n->mark_bad), TRUE);
     row_add(list, "Layer", n->layer);
     row_add(list, "Exposure (stops)", n->exposure);
     row_add(list, "Tone curve", n->curve);
     row_add(list, "Gamma", n->gamma);
     row_add(list, "False colour", n->false_colour);
-    gtk_widget_set_tooltip_text(row_add(list, "Mark NaN and infinite", n->mark_bad),
-                                "NaN magenta, infinite yellow");
+    row_add_captioned(list, "Mark NaN and infinite", "magenta, and yellow", n->mark_bad);
     gtk_widget_set_sensitive(gtk_widget_get_parent(n->gamma), FALSE);
     listen(n, n->layer, "notify::selected", G_CALLBACK(on_options));
     listen(n, n->exposure, "value-changed", G_CALLBACK(on_options));
@@ -368,7 +390,7 @@ static void add_values(inspector *n)
 static void add_compare(inspector *n)
 {
     static const char *const names[] = {"RMSE", "Relative MSE", "PSNR (dB)", "FLIP"};
-    static const char *const first[] = {"picture", NULL};
+    static const char *const first[] = {"Picture", NULL};
     GtkWidget *list, *group = group_make("Compare with", &list);
     n->compare = choice_make(compare_words);
     n->other_layer = choice_make(first);
@@ -380,6 +402,9 @@ static void add_compare(inspector *n)
     n->reference_name = value_row_add(list, "Reference");
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++)
         n->errors[i] = value_row_add(list, names[i]);
+    n->problem = text_make("", "error");
+    gtk_widget_set_visible(n->problem, FALSE);
+    gtk_box_append(GTK_BOX(group), n->problem);
     GtkWidget *button =
         text_button_make("Choose a reference…", "A picture of the same size", NULL);
     listen(n, button, "clicked", G_CALLBACK(on_reference_button));
@@ -394,12 +419,7 @@ inspector *inspector_new(canvas *shown, inspector_wants_reference wants, void *d
 {
     inspector *n = g_new0(inspector, 1);
     *n = (inspector){.canvas = shown, .wants = wants, .data = data};
-    n->root = gtk_scrolled_window_new();
-    gtk_scrolled_window_set_policy(GTK_SCROLLED_WINDOW(n->root), GTK_POLICY_NEVER,
-                                   GTK_POLICY_AUTOMATIC);
-    gtk_widget_set_vexpand(n->root, TRUE);
-    n->content = box_make(GTK_ORIENTATION_VERTICAL, 18, 12);
-    gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(n->root), n->content);
+    n->root = page_make(&n->content);
     add_display(n);
     add_values(n);
     add_compare(n);

@@ -20,14 +20,19 @@ GtkWidget *inspector_widget(inspector *n);
 void inspector_picture_changed(inspector *n);
 /** @brief The pointer is over a pixel of it. */
 void inspector_hover(inspector *n, bool inside, int x, int y);
-/** @brief Compares with a picture read from a file; its name is for people. */
-bool inspector_set_reference(inspector *n, const char *path, GError **error);
+/** @brief Compares with a picture (held) that was read from a file; NULL: none could be,
+ * and where one is compared with already it stays. */
+void inspector_set_reference(inspector *n, held_picture *picture, const char *path);
 /** @brief Exposure in stops, as if the slider had been moved. */
 void inspector_set_exposure(inspector *n, double stops);
 double inspector_exposure(const inspector *n);
+/** @brief Where the picture is split, 0..1, as if the slider had been moved. */
+void inspector_set_divider(inspector *n, double at);
 /** @brief Shows a layer: "" for the picture. false: there is no such layer. */
 bool inspector_show_layer(inspector *n, const char *layer);
 
 /** @brief The values of a pixel for people, one a line: layer's numbers, and for colours
  * XYZ and luminance. Owned by the caller. */
 char *inspector_pixel_text(const NephImage *image, const char *layer, int x, int y);
+/** @brief The same in one short line. */
+char *inspector_pixel_line(const NephImage *image, const char *layer, int x, int y);

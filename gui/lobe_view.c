@@ -82,6 +82,37 @@ static void draw_curve(cairo_t *cr, const dial *d, const NephBsdfPlot *plot, int
     cairo_stroke(cr);
 }
 
+static void draw_word(cairo_t *cr, double x, double y, double align, const char *word)
+{
+    cairo_text_extents_t size;
+    cairo_text_extents(cr, word, &size);
+    cairo_move_to(cr, x - align * size.width, y);
+    cairo_show_text(cr, word);
+}
+
+/* Which curve is which, and where the light and the normal are. */
+static void draw_words(cairo_t *cr, const dial *d, const NephBsdfPlot *plot, GdkRGBA ink)
+{
+    static const char *const names[3] = {"red", "green", "blue"};
+    double light[2];
+    cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                           CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cr, 13.0);
+    for (int k = 0; k < 3; k++) {
+        double y = d->y + 0.8 * d->radius + 18.0 * k;
+        cairo_set_source_rgb(cr, colors[k][0], colors[k][1], colors[k][2]);
+        cairo_rectangle(cr, d->x - 1.1 * d->radius, y - 6.0, 18.0, 4.0);
+        cairo_fill(cr);
+        gdk_cairo_set_source_rgba(cr, &ink);
+        draw_word(cr, d->x - 1.1 * d->radius + 26.0, y, 0.0, names[k]);
+    }
+    draw_word(cr, d->x, d->y - 1.08 * d->radius, 0.5, "normal");
+    if (!plot)
+        return;
+    place(d, -plot->incidence, 1.14, light);
+    draw_word(cr, light[0], light[1], plot->incidence > 10.0 ? 1.0 : 1.6, "light");
+}
+
 static void draw_ray(cairo_t *cr, const dial *d, const NephBsdfRay *one)
 {
     cairo_set_line_width(cr, 3.0);
@@ -98,6 +129,7 @@ static void draw(GtkDrawingArea *area, cairo_t *cr, int width, int height, void 
     GdkRGBA ink;
     gtk_style_context_get_color(gtk_widget_get_style_context(GTK_WIDGET(area)), &ink);
     draw_frame(cr, &d, ink);
+    draw_words(cr, &d, v->plot, ink);
     if (!v->plot)
         return;
     double most = largest(v->plot);
@@ -197,34 +229,37 @@ char *lobe_view_svg(const lobe_view *v)
 static GtkWidget *tools_make(lobe_view *v)
 {
     static const char *const none[] = {NULL};
-    GtkWidget *box = box_make(GTK_ORIENTATION_HORIZONTAL, 12, 12);
+    GtkWidget *tools = box_make(GTK_ORIENTATION_VERTICAL, 6, 12);
+    GtkWidget *first = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 12);
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 12);
     v->material = choice_make(none);
     v->incidence = slider_make(0.0, 89.0, 1.0, 0);
     gtk_range_set_value(GTK_RANGE(v->incidence), 45.0);
     gtk_widget_set_hexpand(v->incidence, TRUE);
     widget_name(v->material, "Material");
-    widget_name(v->incidence, "Angle of the light from the normal, degrees");
-    gtk_box_append(GTK_BOX(box), v->material);
-    gtk_box_append(GTK_BOX(box), gtk_label_new("Light from"));
-    gtk_box_append(GTK_BOX(box), v->incidence);
-    gtk_box_append(GTK_BOX(box), gtk_label_new("degrees"));
-    gtk_box_append(GTK_BOX(box),
+    widget_name(v->incidence, "Angle of incidence, degrees from the normal");
+    gtk_widget_set_hexpand(v->material, TRUE);
+    gtk_box_append(GTK_BOX(first), gtk_label_new("Material"));
+    gtk_box_append(GTK_BOX(first), v->material);
+    gtk_box_append(GTK_BOX(first),
                    text_button_make("Save…", "The diagram as SVG", "win.save-diagram"));
+    gtk_box_append(GTK_BOX(box), gtk_label_new("Angle of incidence (°)"));
+    gtk_box_append(GTK_BOX(box), v->incidence);
+    gtk_box_append(GTK_BOX(tools), first);
+    gtk_box_append(GTK_BOX(tools), box);
     g_signal_connect_swapped(v->material, "notify::selected", G_CALLBACK(update), v);
     g_signal_connect_swapped(v->incidence, "value-changed", G_CALLBACK(update), v);
-    return box;
+    return tools;
 }
 
 lobe_view *lobe_view_new(void)
 {
     lobe_view *v = g_new0(lobe_view, 1);
     v->root = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
-    v->area = gtk_drawing_area_new();
+    v->area =
+        drawing_make("How the material scatters light, for red, green and blue", draw, v);
     gtk_widget_set_hexpand(v->area, TRUE);
     gtk_widget_set_vexpand(v->area, TRUE);
-    gtk_drawing_area_set_draw_func(GTK_DRAWING_AREA(v->area), draw, v, NULL);
-    widget_name(v->area, "How the material scatters light, for red, green and blue");
-    gtk_widget_set_has_tooltip(v->area, FALSE);
     v->facts = gtk_label_new("");
     gtk_label_set_wrap(GTK_LABEL(v->facts), TRUE);
     gtk_widget_add_css_class(v->facts, "dim-label");

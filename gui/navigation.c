@@ -9,10 +9,32 @@
 /* Share of the scene's extent that is flown in a second; with shift, faster. */
 #define FLIGHT 0.25
 #define FAST 4.0
+/* What an arrow key does in a second: turn, rad, or with shift move, picture heights; and
+   steps of the wheel for Page Up and Down. */
+#define ARROW_TURN 1.0
+#define ARROW_PAN 0.5
+#define PAGE_STEPS 8.0
+/* A frame that came later than this does not leap, s. */
+#define LONGEST_STEP 0.2
 /* A view that has not moved for so long stands still, ms. */
 enum { STILL_MS = 150 };
 
-enum { N_FLY_KEYS = 6 };
+/* Keys that act as long as they are held. */
+enum {
+    KEY_FORWARD,
+    KEY_BACK,
+    KEY_LEFT,
+    KEY_RIGHT,
+    KEY_RISE,
+    KEY_SINK,
+    KEY_TURN_LEFT,
+    KEY_TURN_RIGHT,
+    KEY_TURN_UP,
+    KEY_TURN_DOWN,
+    KEY_NEARER,
+    KEY_FURTHER,
+    N_HELD_KEYS
+};
 
 struct navigation {
     GtkWidget *widget;
@@ -20,10 +42,11 @@ struct navigation {
     navigation_events events;
     GtkGesture *drag;
     GtkEventController *wheel, *keys;
-    GtkGesture *click;
+    GtkGesture *click, *pinch;
     double last_x, last_y; /* of the drag under way */
-    bool down[N_FLY_KEYS];
-    bool fast;
+    double last_scale;     /* of the pinch under way */
+    bool down[N_HELD_KEYS];
+    bool shift;
     guint tick, still;
     gint64 last_tick; /* µs */
 };
@@ -96,51 +119,105 @@ static gboolean scrolled(GtkEventControllerScroll *wheel, double dx, double dy,
     return TRUE;
 }
 
-/* ---- Flying ---- */
-
-static int fly_key(guint key)
+/* Two fingers apart: nearer. */
+static void pinch_begin(navigation *n)
 {
-    static const guint keys[N_FLY_KEYS] = {GDK_KEY_w, GDK_KEY_s, GDK_KEY_a,
-                                           GDK_KEY_d, GDK_KEY_e, GDK_KEY_q};
-    for (int i = 0; i < N_FLY_KEYS; i++)
+    n->last_scale = 1.0;
+}
+
+static void pinched(GtkGestureZoom *pinch, double scale, navigation *n)
+{
+    (void)pinch;
+    if (!(scale > 0.0))
+        return;
+    viewpoint_dolly(n->view, n->last_scale / scale);
+    n->last_scale = scale;
+    moved(n);
+}
+
+/* ---- Keys ---- */
+
+static int held_key(guint key)
+{
+    static const guint keys[N_HELD_KEYS] = {
+        [KEY_FORWARD] = GDK_KEY_w,      [KEY_BACK] = GDK_KEY_s,
+        [KEY_LEFT] = GDK_KEY_a,         [KEY_RIGHT] = GDK_KEY_d,
+        [KEY_RISE] = GDK_KEY_e,         [KEY_SINK] = GDK_KEY_q,
+        [KEY_TURN_LEFT] = GDK_KEY_Left, [KEY_TURN_RIGHT] = GDK_KEY_Right,
+        [KEY_TURN_UP] = GDK_KEY_Up,     [KEY_TURN_DOWN] = GDK_KEY_Down,
+        [KEY_NEARER] = GDK_KEY_Page_Up, [KEY_FURTHER] = GDK_KEY_Page_Down};
+    for (int i = 0; i < N_HELD_KEYS; i++)
         if (gdk_keyval_to_lower(key) == keys[i])
             return i;
     return -1;
 }
 
-static gboolean fly(GtkWidget *widget, GdkFrameClock *clock, void *data)
+/* 1, -1 or 0: which of two opposite keys is held. */
+static double pull(const navigation *n, int more, int less)
+{
+    return (double)n->down[more] - (double)n->down[less];
+}
+
+static void act(navigation *n, double seconds)
+{
+    double fly = seconds * FLIGHT * n->view->extent * (n->shift ? FAST : 1.0);
+    double right = seconds * pull(n, KEY_TURN_RIGHT, KEY_TURN_LEFT);
+    double up = seconds * pull(n, KEY_TURN_UP, KEY_TURN_DOWN);
+    viewpoint_fly(n->view, fly * pull(n, KEY_RIGHT, KEY_LEFT),
+                  fly * pull(n, KEY_RISE, KEY_SINK),
+                  fly * pull(n, KEY_FORWARD, KEY_BACK));
+    if (n->shift)
+        viewpoint_pan(n->view, ARROW_PAN * right, ARROW_PAN * up);
+    else
+        viewpoint_orbit(n->view, ARROW_TURN * right, ARROW_TURN * up);
+    viewpoint_dolly(n->view,
+                    pow(WHEEL, PAGE_STEPS * seconds * pull(n, KEY_NEARER, KEY_FURTHER)));
+}
+
+static gboolean tick(GtkWidget *widget, GdkFrameClock *clock, void *data)
 {
     (void)widget;
     navigation *n = data;
     gint64 now = gdk_frame_clock_get_frame_time(clock);
     double seconds = n->last_tick ? 1e-6 * (double)(now - n->last_tick) : 0.0;
-    double step = fmin(seconds, 0.2) * FLIGHT * n->view->extent * (n->fast ? FAST : 1.0);
     bool any = false;
     n->last_tick = now;
-    for (int i = 0; i < N_FLY_KEYS; i++)
+    for (int i = 0; i < N_HELD_KEYS; i++)
         any |= n->down[i];
     if (!any) {
         n->tick = 0;
         return G_SOURCE_REMOVE;
     }
-    viewpoint_fly(n->view, step * (n->down[3] - n->down[2]),
-                  step * (n->down[4] - n->down[5]), step * (n->down[0] - n->down[1]));
+    act(n, fmin(seconds, LONGEST_STEP));
     moved(n);
     return G_SOURCE_CONTINUE;
+}
+
+/* Enter is a click in the middle. */
+static void click_middle(navigation *n)
+{
+    n->events.clicked(0.5 * gtk_widget_get_width(n->widget),
+                      0.5 * gtk_widget_get_height(n->widget), 1, n->events.data);
 }
 
 static gboolean key_pressed(GtkEventControllerKey *keys, guint key, guint code,
                             GdkModifierType state, navigation *n)
 {
     (void)keys, (void)code;
-    int i = fly_key(key);
-    if (i < 0 || (state & (GDK_CONTROL_MASK | GDK_ALT_MASK)))
+    int i = held_key(key);
+    if (state & (GDK_CONTROL_MASK | GDK_ALT_MASK))
+        return FALSE;
+    if (key == GDK_KEY_Return || key == GDK_KEY_KP_Enter) {
+        click_middle(n);
+        return TRUE;
+    }
+    if (i < 0)
         return FALSE;
     n->down[i] = true;
-    n->fast = (state & GDK_SHIFT_MASK) != 0;
+    n->shift = (state & GDK_SHIFT_MASK) != 0;
     if (!n->tick) {
         n->last_tick = 0;
-        n->tick = gtk_widget_add_tick_callback(n->widget, fly, n, NULL);
+        n->tick = gtk_widget_add_tick_callback(n->widget, tick, n, NULL);
     }
     return TRUE;
 }
@@ -149,14 +226,14 @@ static void key_released(GtkEventControllerKey *keys, guint key, guint code,
                          GdkModifierType state, navigation *n)
 {
     (void)keys, (void)code, (void)state;
-    int i = fly_key(key);
+    int i = held_key(key);
     if (i >= 0)
         n->down[i] = false;
 }
 
 static void focus_left(navigation *n)
 {
-    for (int i = 0; i < N_FLY_KEYS; i++)
+    for (int i = 0; i < N_HELD_KEYS; i++)
         n->down[i] = false;
 }
 
@@ -172,6 +249,10 @@ static void listen(navigation *n)
     n->click = gtk_gesture_click_new();
     g_signal_connect(n->click, "released", G_CALLBACK(clicked), n);
     gtk_widget_add_controller(n->widget, GTK_EVENT_CONTROLLER(n->click));
+    n->pinch = gtk_gesture_zoom_new();
+    g_signal_connect_swapped(n->pinch, "begin", G_CALLBACK(pinch_begin), n);
+    g_signal_connect(n->pinch, "scale-changed", G_CALLBACK(pinched), n);
+    gtk_widget_add_controller(n->widget, GTK_EVENT_CONTROLLER(n->pinch));
     n->wheel = gtk_event_controller_scroll_new(GTK_EVENT_CONTROLLER_SCROLL_VERTICAL);
     g_signal_connect(n->wheel, "scroll", G_CALLBACK(scrolled), n);
     gtk_widget_add_controller(n->widget, n->wheel);

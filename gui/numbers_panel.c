@@ -1,5 +1,6 @@
 #include "numbers_panel.h"
 
+#include "photon_panel.h"
 #include "status.h"
 #include "widgets.h"
 
@@ -7,7 +8,7 @@
 
 enum { MOST_NUMBERS = 32 };
 
-typedef char *(*number_text)(const NephStatistics *s, double frame_time);
+typedef char *(*number_text)(const NephStatistics *s, const photon_frame *frame);
 
 /* One line: under which heading, its name, how it is said. */
 typedef struct number {
@@ -27,16 +28,18 @@ static char *seconds(double t)
 
 static char *count(guint64 n, double time)
 {
+    char *text = count_text(n);
     if (n < 1000 || !(time > 0.0))
-        return g_strdup_printf("%" G_GUINT64_FORMAT, n);
-    return g_strdup_printf("%" G_GUINT64_FORMAT " · %.2f M/s", n,
-                           1e-6 * (double)n / time);
+        return text;
+    char *with_rate = g_strdup_printf("%s · %.2f M/s", text, 1e-6 * (double)n / time);
+    g_free(text);
+    return with_rate;
 }
 
 #define TIME(name, field)                                                                \
-    static char *name(const NephStatistics *s, double frame_time)                        \
+    static char *name(const NephStatistics *s, const photon_frame *frame)                \
     {                                                                                    \
-        (void)frame_time;                                                                \
+        (void)frame;                                                                     \
         return seconds(s->field);                                                        \
     }
 TIME(total, time_total)
@@ -48,97 +51,94 @@ TIME(look, time_camera)
 #undef TIME
 
 #define CLASS(name, c)                                                                   \
-    static char *name(const NephStatistics *s, double frame_time)                        \
+    static char *name(const NephStatistics *s, const photon_frame *frame)                \
     {                                                                                    \
-        (void)frame_time;                                                                \
-        return g_strdup_printf("%" G_GUINT64_FORMAT " of %" G_GUINT64_FORMAT             \
-                               " · r %.3g m",                                            \
-                               s->stored[c], s->emitted[c], s->radius[c]);               \
+        (void)frame;                                                                     \
+        return photon_share_text(s, c);                                                  \
     }
 CLASS(direct, NEPH_PHOTON_DIRECT)
 CLASS(indirect, NEPH_PHOTON_INDIRECT)
 CLASS(caustic, NEPH_PHOTON_CAUSTIC)
 #undef CLASS
 
-static char *passes(const NephStatistics *s, double frame_time)
+static char *passes(const NephStatistics *s, const photon_frame *frame)
 {
-    (void)frame_time;
+    (void)frame;
     return g_strdup_printf("%" G_GINT64_FORMAT, s->passes);
 }
 
-static char *noise(const NephStatistics *s, double frame_time)
+static char *noise(const NephStatistics *s, const photon_frame *frame)
 {
-    (void)frame_time;
+    (void)frame;
     return isfinite(s->noise) ? g_strdup_printf("%.3g %%", 100.0 * s->noise)
                               : g_strdup("–");
 }
 
-static char *photon_rays(const NephStatistics *s, double frame_time)
+static char *photon_rays(const NephStatistics *s, const photon_frame *frame)
 {
-    (void)frame_time;
+    (void)frame;
     return count(s->photon_rays, s->time_trace);
 }
 
-static char *camera_rays(const NephStatistics *s, double frame_time)
+static char *camera_rays(const NephStatistics *s, const photon_frame *frame)
 {
-    (void)frame_time;
+    (void)frame;
     return count(s->camera_rays, s->time_camera);
 }
 
-static char *shadow_rays(const NephStatistics *s, double frame_time)
+static char *shadow_rays(const NephStatistics *s, const photon_frame *frame)
 {
-    (void)frame_time;
+    (void)frame;
     return count(s->shadow_rays, s->time_camera);
 }
 
-static char *stored(const NephStatistics *s, double frame_time)
+static char *stored(const NephStatistics *s, const photon_frame *frame)
 {
-    (void)frame_time;
+    (void)frame;
     return count(s->stored[0] + s->stored[1] + s->stored[2], 0.0);
 }
 
-static char *emitted(const NephStatistics *s, double frame_time)
+static char *emitted(const NephStatistics *s, const photon_frame *frame)
 {
-    (void)frame_time;
+    (void)frame;
     return count(s->emitted[0] + s->emitted[1] + s->emitted[2], 0.0);
 }
 
-static char *peak(const NephStatistics *s, double frame_time)
+static char *peak(const NephStatistics *s, const photon_frame *frame)
 {
-    (void)frame_time;
+    (void)frame;
     return g_format_size_full(s->memory_peak, G_FORMAT_SIZE_IEC_UNITS);
 }
 
-static char *photon_memory(const NephStatistics *s, double frame_time)
+static char *photon_memory(const NephStatistics *s, const photon_frame *frame)
 {
-    (void)frame_time;
+    (void)frame;
     return g_format_size_full(s->memory_photons, G_FORMAT_SIZE_IEC_UNITS);
 }
 
-static char *dropped(const NephStatistics *s, double frame_time)
+static char *dropped(const NephStatistics *s, const photon_frame *frame)
 {
-    (void)frame_time;
+    (void)frame;
     return count(s->n_not_finite, 0.0);
 }
 
-static char *frame(const NephStatistics *s, double frame_time)
+static char *frame_text(const NephStatistics *s, const photon_frame *frame)
 {
     (void)s;
-    return frame_time > 0.0 ? g_strdup_printf("%.1f ms", 1e3 * frame_time)
-                            : g_strdup("–");
+    return photon_frame_text(frame);
 }
 
 static const number numbers[] = {
     {"Render", "Passes", passes},
     {"Render", "Noise", noise},
-    {"Render", "Samples dropped (not finite)", dropped},
-    {"Time", "All", total},
-    {"Time", "Preparing", prepare},
+    {"Render", "Samples dropped, not finite", dropped},
+    {"Time", "Render time", total},
+    {"Time", "Preparation", prepare},
     {"Time", "Photon trace time", photon_trace},
-    {"Time", "Building the maps", build},
-    {"Time", "Looking from the camera", look},
-    {"Time", "of that, gathering", gather},
-    {"Time", "Frame of the photon view", frame},
+    {"Time", "Map build time", build},
+    {"Time", "Camera trace time", look},
+    {"Time", "of that, gather time", gather},
+    {"Time", "Photon view, one frame", frame_text},
     {"Rays", "Photon rays traced", photon_rays},
     {"Rays", "Camera rays", camera_rays},
     {"Rays", "Shadow rays", shadow_rays},
@@ -148,7 +148,7 @@ static const number numbers[] = {
     {"Photons", "Indirect map", indirect},
     {"Photons", "Caustic map", caustic},
     {"Memory", "Photons", photon_memory},
-    {"Memory", "Most of the program", peak},
+    {"Memory", "Whole program, at most", peak},
 };
 
 G_STATIC_ASSERT(G_N_ELEMENTS(numbers) <= MOST_NUMBERS);
@@ -156,13 +156,9 @@ G_STATIC_ASSERT(G_N_ELEMENTS(numbers) <= MOST_NUMBERS);
 numbers_panel *numbers_panel_new(void)
 {
     numbers_panel *p = g_new0(numbers_panel, 1);
-    GtkWidget *content = box_make(GTK_ORIENTATION_VERTICAL, 18, 12), *list = NULL;
+    GtkWidget *content, *list = NULL;
     const char *group = NULL;
-    p->root = gtk_scrolled_window_new();
-    gtk_scrolled_window_set_policy(GTK_SCROLLED_WINDOW(p->root), GTK_POLICY_NEVER,
-                                   GTK_POLICY_AUTOMATIC);
-    gtk_widget_set_vexpand(p->root, TRUE);
-    gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(p->root), content);
+    p->root = page_make(&content);
     for (size_t i = 0; i < G_N_ELEMENTS(numbers); i++) {
         if (g_strcmp0(group, numbers[i].group) != 0)
             gtk_box_append(GTK_BOX(content), group_make(numbers[i].group, &list));
@@ -182,10 +178,11 @@ GtkWidget *numbers_panel_widget(numbers_panel *p)
     return p->root;
 }
 
-void numbers_panel_show(numbers_panel *p, const NephStatistics *s, double frame_time)
+void numbers_panel_show(numbers_panel *p, const NephStatistics *s,
+                        const photon_frame *frame)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(numbers); i++) {
-        g_autofree char *text = numbers[i].text(s, frame_time);
+        g_autofree char *text = numbers[i].text(s, frame);
         gtk_label_set_text(GTK_LABEL(p->values[i]), text);
     }
 }

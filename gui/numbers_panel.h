@@ -3,8 +3,7 @@
  */
 #pragma once
 
-#include <gtk/gtk.h>
-#include <nephroid/nephroid.h>
+#include "photon_view.h"
 
 typedef struct numbers_panel numbers_panel;
 
@@ -12,5 +11,6 @@ numbers_panel *numbers_panel_new(void);
 /** @brief When the widget has gone. */
 void numbers_panel_free(numbers_panel *p);
 GtkWidget *numbers_panel_widget(numbers_panel *p);
-/** @brief frame_time: s of the photon view's last frame, 0: none. */
-void numbers_panel_show(numbers_panel *p, const NephStatistics *s, double frame_time);
+/** @brief frame: of the photon view. */
+void numbers_panel_show(numbers_panel *p, const NephStatistics *s,
+                        const photon_frame *frame);

@@ -8,13 +8,18 @@ const char *const cloud_coloring_names[] = {"Flux", "Map", "Bounces", NULL};
 static const uint8_t map_colors[NEPH_N_PHOTON_CLASSES][4] = {
     {255, 210, 90, 255}, {95, 170, 255, 255}, {255, 95, 160, 255}};
 
-static const uint8_t bounce_colors[][4] = {
+static const uint8_t bounce_colors[N_BOUNCE_COLORS][4] = {
     {255, 240, 180, 255}, {255, 190, 80, 255}, {245, 120, 60, 255}, {210, 70, 110, 255},
     {140, 80, 190, 255},  {85, 110, 220, 255}, {60, 170, 200, 255}};
 
 void photon_cloud_map_color(int c, uint8_t color[4])
 {
     memcpy(color, map_colors[c], 4);
+}
+
+void photon_cloud_bounce_color(size_t bounces, uint8_t color[4])
+{
+    memcpy(color, bounce_colors[MIN(bounces, N_BOUNCE_COLORS - 1)], 4);
 }
 
 /* Linear to the screen's. */
@@ -37,12 +42,12 @@ void photon_cloud_color(photon_cloud *cloud, cloud_coloring coloring)
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
         for (size_t i = cloud->first[c]; i < cloud->first[c + 1]; i++) {
             uint8_t *color = cloud->vertices[i].color;
-            size_t bounce = MIN(cloud->bounces[i], G_N_ELEMENTS(bounce_colors) - 1);
             if (coloring == COLOR_FLUX)
                 flux_color(cloud->rgb[i], color);
+            else if (coloring == COLOR_MAP)
+                photon_cloud_map_color(c, color);
             else
-                memcpy(color,
-                       coloring == COLOR_MAP ? map_colors[c] : bounce_colors[bounce], 4);
+                photon_cloud_bounce_color(cloud->bounces[i], color);
         }
 }
 
@@ -85,6 +90,42 @@ size_t photon_cloud_count(const photon_cloud *cloud, unsigned mask)
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
         n += mask & (1u << c) ? cloud->first[c + 1] - cloud->first[c] : 0;
     return n;
+}
+
+/* ---- Order ---- */
+
+static size_t common_divisor(size_t a, size_t b)
+{
+    while (b > 0) {
+        size_t rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
+/* Steps of the golden section through the photons, which lie as they were stored: no two
+   beginnings leave a gap much larger than another (the three-distance theorem). */
+static void put_mixed(cloud_vertex *out, const cloud_vertex *in, size_t n)
+{
+    size_t step = MAX((size_t)(0.6180339887498949 * (double)n), 1), at = 0;
+    while (common_divisor(step, n) > 1)
+        step++;
+    for (size_t i = 0; i < n; i++) {
+        out[i] = in[at];
+        at = (at + step) % n;
+    }
+}
+
+cloud_vertex *photon_cloud_mixed(const photon_cloud *cloud)
+{
+    cloud_vertex *mixed = g_new(cloud_vertex, cloud->n);
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
+        size_t first = cloud->first[c], n = cloud->first[c + 1] - first;
+        if (n > 0)
+            put_mixed(mixed + first, cloud->vertices + first, n);
+    }
+    return mixed;
 }
 
 /* ---- Arrows ---- */

@@ -37,8 +37,15 @@ typedef struct photon_cloud {
 photon_cloud *photon_cloud_new(const NephPhotons *photons);
 void photon_cloud_free(photon_cloud *cloud);
 void photon_cloud_color(photon_cloud *cloud, cloud_coloring coloring);
-/** @brief The colour of a map or a number of bounces. */
+/** @brief The colour of a map. */
 void photon_cloud_map_color(int c, uint8_t color[4]);
+/** @brief So many bounces have colours; the last is that of more, too. */
+enum { N_BOUNCE_COLORS = 7 };
+void photon_cloud_bounce_color(size_t bounces, uint8_t color[4]);
+
+/** @brief The vertices, those of a map in an order in which any first part of them is
+ * spread over the whole; owned by the caller. */
+cloud_vertex *photon_cloud_mixed(const photon_cloud *cloud);
 
 /** @brief Arrows for the photons of the maps in mask (bit c), pointing where the photon
  * went, as a list of line ends; owned by the caller. *n: number of vertices. */

@@ -29,8 +29,13 @@ photon_panel *photon_panel_new(GtkAdjustment *number, const photon_panel_events 
 void photon_panel_free(photon_panel *p);
 GtkWidget *photon_panel_widget(photon_panel *p);
 void photon_panel_show_tracing(photon_panel *p, bool tracing);
+void photon_panel_show_frame(photon_panel *p, const photon_frame *frame);
 void photon_panel_show_numbers(photon_panel *p, const NephStatistics *statistics);
 /** @brief NULL: nothing. */
 void photon_panel_show_pick(photon_panel *p, const photon_pick *pick);
+/** @brief "12 of 34 · r 0.1 m": stored, emitted and the radius of a map; and a frame's
+ * time. Owned by the caller. */
+char *photon_share_text(const NephStatistics *statistics, int c);
+char *photon_frame_text(const photon_frame *frame);
 /** @brief Whether photons are to be traced anew when a setting changes. */
 bool photon_panel_follows(const photon_panel *p);

@@ -1,14 +1,22 @@
 #include "photon_view.h"
 
 #include "gl_layer.h"
+#include "projection.h"
 #include "widgets.h"
 
 #include <epoxy/gl.h>
 #include <math.h>
 #include <string.h>
 
-/* Line segments of a wireframe, at most. */
-enum { MOST_EDGES = 200000 };
+/* Line segments of a wireframe, at most; points that are drawn even where that is slow.
+ */
+enum { MOST_EDGES = 200000, LEAST_POINTS = 20000 };
+
+/* What a frame may take while the view moves, s: software draws fewer points for it. */
+#define FRAME_GOAL 0.02
+
+/* Width of a path, and of a wireframe's line, pixels. */
+enum { PATH_WIDTH = 2, WIRE_WIDTH = 1 };
 
 /* Length of an arrow, as share of the scene's extent. */
 #define ARROW_SHARE 0.05f
@@ -17,106 +25,103 @@ struct photon_view {
     GtkWidget *area;
     const viewpoint *view;
     photon_style style;
+    held_scene *scene;
     photon_cloud *cloud;
     cloud_vertex *wire, *mark_lines, *mark_points;
     size_t n_wire, n_mark_lines, n_mark_points;
     gl_painter painter;
     gl_layer wire_layer, photon_layer, arrow_layer, line_layer, point_layer;
     bool wire_changed, photons_changed, arrows_changed, marks_changed;
-    double frame_time;
+    bool moving; /* more frames will come at once */
+    photon_frame frame;
+    guint telling; /* idle source, 0: nothing to tell */
+    void (*drawn)(const photon_frame *frame, void *data);
+    void *data;
+    GCancellable *wiring; /* NULL: no wireframe is being made */
 };
 
-/* ---- Matrices ---- */
-
-/* What the widget shows at distance 1: the picture's screen, widened to its shape. */
-static void shown_screen(const photon_view *v, double screen[4])
+static projection projection_of(const photon_view *v)
 {
-    const double *s = v->view->camera.screen;
-    double width = s[1] - s[0], height = s[3] - s[2];
-    double shape = fmax(gtk_widget_get_width(v->area), 1.0) /
-                   fmax(gtk_widget_get_height(v->area), 1.0);
-    double wide = fmax(1.0, shape * height / width);
-    double tall = fmax(1.0, width / (shape * height));
-    double x = 0.5 * (s[0] + s[1]), y = 0.5 * (s[2] + s[3]);
-    screen[0] = x - 0.5 * wide * width;
-    screen[1] = x + 0.5 * wide * width;
-    screen[2] = y - 0.5 * tall * height;
-    screen[3] = y + 0.5 * tall * height;
+    return (projection){v->view, gtk_widget_get_width(v->area),
+                        gtk_widget_get_height(v->area)};
 }
 
 void photon_view_place(const photon_view *v, double wx, double wy, double place[2])
 {
-    const double *s = v->view->camera.screen;
-    double shown[4];
-    shown_screen(v, shown);
-    double x =
-        shown[0] + wx / fmax(gtk_widget_get_width(v->area), 1.0) * (shown[1] - shown[0]);
-    double y =
-        shown[3] + wy / fmax(gtk_widget_get_height(v->area), 1.0) * (shown[2] - shown[3]);
-    place[0] = (x - s[0]) / (s[1] - s[0]);
-    place[1] = (y - s[3]) / (s[2] - s[3]);
+    const projection p = projection_of(v);
+    projection_place(&p, wx, wy, place);
 }
 
 double photon_view_scale(const photon_view *v)
 {
-    const double *s = v->view->camera.screen;
-    double shown[4];
-    shown_screen(v, shown);
-    return gtk_widget_get_height(v->area) * (s[3] - s[2]) / (shown[3] - shown[2]);
+    const projection p = projection_of(v);
+    return projection_scale(&p);
 }
 
-/* Rows of the camera: right, up, direction. */
-static void camera_rows(const NephCamera *c, double rows[3][3])
+/* ---- The wireframe ---- */
+
+typedef struct wire {
+    held_scene *scene;
+    cloud_vertex *ends;
+    size_t n;
+} wire;
+
+static void free_wire(void *data)
 {
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        double right = c->up[j] * c->direction[k] - c->up[k] * c->direction[j];
-        rows[0][i] = c->mirrored ? -right : right;
-        rows[1][i] = c->up[i];
-        rows[2][i] = c->direction[i];
-    }
+    wire *w = data;
+    held_scene_unref(w->scene);
+    g_free(w->ends);
+    g_free(w);
 }
 
-/* From rays through a point to parallel ones. */
-static void flatten(double m[4][4], double near, double far, const double shift[2])
+static void make_wire(GTask *task, void *source, void *data, GCancellable *cancellable)
 {
-    for (int i = 0; i < 4; i++) {
-        double z = m[3][i], one = i == 3 ? 1.0 : 0.0;
-        m[0][i] += shift[0] * (one - z);
-        m[1][i] += shift[1] * (one - z);
-        m[2][i] = 2.0 / (far - near) * z - one * (far + near) / (far - near);
-        m[3][i] = one;
+    (void)source, (void)cancellable;
+    wire *w = data;
+    g_autofree float *ends = neph_scene_wireframe(w->scene->scene, MOST_EDGES, &w->n);
+    w->n *= 2;
+    w->ends = g_new(cloud_vertex, w->n);
+    for (size_t i = 0; i < w->n; i++) {
+        memcpy(w->ends[i].position, ends + 3 * i, sizeof w->ends[i].position);
+        memset(w->ends[i].color, 200, sizeof w->ends[i].color);
     }
+    g_task_return_boolean(task, TRUE);
 }
 
-/* World to clip space, column by column. */
-static void clip_matrix(const photon_view *v, float out[16])
+static void wire_made(GObject *source, GAsyncResult *result, void *data)
 {
-    const NephCamera *c = &v->view->camera;
-    double rows[3][3], s[4], near = 1e-3 * v->view->extent, far = 30.0 * v->view->extent;
-    camera_rows(c, rows);
-    shown_screen(v, s);
-    const double scale[2] = {2.0 / (s[1] - s[0]), 2.0 / (s[3] - s[2])};
-    const double shift[2] = {-(s[1] + s[0]) / (s[1] - s[0]),
-                             -(s[3] + s[2]) / (s[3] - s[2])};
-    double m[4][4], at[3] = {0};
-    for (int r = 0; r < 3; r++)
-        for (int i = 0; i < 3; i++)
-            at[r] -= rows[r][i] * c->position[i];
-    for (int i = 0; i < 4; i++) {
-        double x = i < 3 ? rows[0][i] : at[0], y = i < 3 ? rows[1][i] : at[1],
-               z = i < 3 ? rows[2][i] : at[2];
-        m[0][i] = scale[0] * x + shift[0] * z;
-        m[1][i] = scale[1] * y + shift[1] * z;
-        m[2][i] = (far + near) / (far - near) * z -
-                  (i == 3 ? 2.0 * far * near / (far - near) : 0.0);
-        m[3][i] = z;
-    }
-    if (g_strcmp0(c->kind, "orthographic") == 0)
-        flatten(m, near, far, shift);
-    for (int r = 0; r < 4; r++)
-        for (int i = 0; i < 4; i++)
-            out[4 * i + r] = (float)m[r][i];
+    (void)source;
+    if (g_cancellable_is_cancelled(g_task_get_cancellable(G_TASK(result))))
+        return;
+    photon_view *v = data;
+    wire *w = g_task_get_task_data(G_TASK(result));
+    g_clear_object(&v->wiring);
+    g_free(v->wire);
+    v->wire = g_steal_pointer(&w->ends);
+    v->n_wire = w->n;
+    v->wire_changed = true;
+    gtk_gl_area_queue_render(GTK_GL_AREA(v->area));
+}
+
+static void stop_wiring(photon_view *v)
+{
+    if (v->wiring)
+        g_cancellable_cancel(v->wiring);
+    g_clear_object(&v->wiring);
+}
+
+/* A large scene has many edges to look for: once they are wanted, and on a thread. */
+static void want_wire(photon_view *v)
+{
+    if (!v->scene || v->wire || v->wiring)
+        return;
+    wire *w = g_new0(wire, 1);
+    w->scene = held_scene_ref(v->scene);
+    v->wiring = g_cancellable_new();
+    g_autoptr(GTask) task = g_task_new(NULL, v->wiring, wire_made, v);
+    g_task_set_task_data(task, w, free_wire);
+    g_task_set_check_cancellable(task, FALSE);
+    g_task_run_in_thread(task, make_wire);
 }
 
 /* ---- Drawing ---- */
@@ -136,13 +141,18 @@ static void upload_arrows(photon_view *v)
     gl_layer_set(&v->arrow_layer, arrows, n);
 }
 
+static void upload_photons(photon_view *v)
+{
+    g_autofree cloud_vertex *mixed = v->cloud ? photon_cloud_mixed(v->cloud) : NULL;
+    gl_layer_set(&v->photon_layer, mixed, v->cloud ? v->cloud->n : 0);
+}
+
 static void upload(photon_view *v)
 {
     if (v->wire_changed)
         gl_layer_set(&v->wire_layer, v->wire, v->n_wire);
     if (v->photons_changed)
-        gl_layer_set(&v->photon_layer, v->cloud ? v->cloud->vertices : NULL,
-                     v->cloud ? v->cloud->n : 0);
+        upload_photons(v);
     if (v->arrows_changed || v->photons_changed)
         upload_arrows(v);
     if (v->marks_changed) {
@@ -152,40 +162,78 @@ static void upload(photon_view *v)
     v->wire_changed = v->photons_changed = v->arrows_changed = v->marks_changed = false;
 }
 
-static void draw_photons(photon_view *v)
+/* The share of the points that a frame is given: all, but while the view moves so many as
+   the last frame was fast enough for. */
+static double share_of_points(const photon_view *v, size_t n)
+{
+    if (!v->moving || v->frame.points == 0 || !(v->frame.seconds > 0.0))
+        return 1.0;
+    double points = FRAME_GOAL * (double)v->frame.points / v->frame.seconds;
+    return fmin(fmax(points, LEAST_POINTS) / (double)MAX(n, 1), 1.0);
+}
+
+/* Any first part of a map's points stands for the whole: they were mixed. */
+static size_t draw_photons(photon_view *v, int scale)
 {
     bool arrows = shows_arrows(v);
-    float size = v->style.point_size * (float)gtk_widget_get_scale_factor(v->area);
+    float size = v->style.point_size * (float)scale;
+    size_t drawn = 0;
     if (!v->cloud)
-        return;
-    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
-        if (v->style.maps & (1u << c))
-            gl_layer_points(&v->painter, &v->photon_layer, v->cloud->first[c],
-                            v->cloud->first[c + 1] - v->cloud->first[c],
-                            arrows ? fmaxf(size, 4.0f) : size);
+        return 0;
+    double share = share_of_points(v, photon_cloud_count(v->cloud, v->style.maps));
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
+        size_t all = v->cloud->first[c + 1] - v->cloud->first[c];
+        size_t n = (size_t)ceil(share * (double)all);
+        if (!(v->style.maps & (1u << c)))
+            continue;
+        gl_layer_points(&v->painter, &v->photon_layer, v->cloud->first[c], n,
+                        arrows ? fmaxf(size, 4.0f) : size);
+        drawn += n;
+    }
     if (arrows)
-        gl_layer_lines(&v->painter, &v->arrow_layer, 1.0f);
+        gl_layer_lines(&v->painter, &v->arrow_layer, 1.0f, scale);
+    return drawn;
+}
+
+static gboolean tell_drawn(void *data)
+{
+    photon_view *v = data;
+    v->telling = 0;
+    v->drawn(&v->frame, v->data);
+    return G_SOURCE_REMOVE;
 }
 
 static gboolean render(GtkGLArea *area, GdkGLContext *context, photon_view *v)
 {
     (void)context;
     static const float background[3] = {0.10f, 0.10f, 0.11f};
+    const projection p = projection_of(v);
+    int scale = gtk_widget_get_scale_factor(v->area);
+    const float pixels[2] = {(float)(p.width * scale), (float)(p.height * scale)};
     float matrix[16];
     if (gtk_gl_area_get_error(area) || !v->painter.program)
         return FALSE;
     gint64 start = g_get_monotonic_time();
+    want_wire(v);
     upload(v);
-    clip_matrix(v, matrix);
-    gl_painter_begin(&v->painter, matrix, background);
+    projection_matrix(&p, matrix);
+    gl_painter_begin(&v->painter, matrix, pixels, background);
     if (v->style.wireframe)
-        gl_layer_lines(&v->painter, &v->wire_layer, 0.55f);
-    draw_photons(v);
+        gl_layer_lines(&v->painter, &v->wire_layer, 0.55f, WIRE_WIDTH * scale);
+    size_t points = draw_photons(v, scale);
     glDisable(GL_DEPTH_TEST);
-    gl_layer_lines(&v->painter, &v->line_layer, 1.0f);
-    gl_layer_points(&v->painter, &v->point_layer, 0, v->point_layer.n, 5.0f);
+    gl_layer_lines(&v->painter, &v->line_layer, 1.0f, PATH_WIDTH * scale);
+    gl_layer_points(&v->painter, &v->point_layer, 0, v->point_layer.n,
+                    5.0f * (float)scale);
+    double asked = 1e-6 * (double)(g_get_monotonic_time() - start);
     glFinish();
-    v->frame_time = 1e-6 * (double)(g_get_monotonic_time() - start);
+    v->frame =
+        (photon_frame){.seconds = 1e-6 * (double)(g_get_monotonic_time() - start),
+                       .seconds_asking = asked,
+                       .points = points,
+                       .all = v->cloud ? photon_cloud_count(v->cloud, v->style.maps) : 0};
+    if (!v->telling)
+        v->telling = g_idle_add(tell_drawn, v);
     return TRUE;
 }
 
@@ -215,12 +263,17 @@ static void unrealize(GtkGLArea *area, photon_view *v)
 
 /* ---- The view ---- */
 
-photon_view *photon_view_new(const viewpoint *view)
+photon_view *photon_view_new(const viewpoint *view,
+                             void (*drawn)(const photon_frame *frame, void *data),
+                             void *data)
 {
     photon_view *v = g_new0(photon_view, 1);
     v->view = view;
+    v->drawn = drawn;
+    v->data = data;
     v->style = (photon_style){.maps = 7, .point_size = 2.0f, .wireframe = true};
-    v->area = gtk_gl_area_new();
+    v->area =
+        g_object_new(GTK_TYPE_GL_AREA, "accessible-role", GTK_ACCESSIBLE_ROLE_IMG, NULL);
     gtk_gl_area_set_has_depth_buffer(GTK_GL_AREA(v->area), TRUE);
     gtk_gl_area_set_auto_render(GTK_GL_AREA(v->area), FALSE);
     gtk_widget_set_hexpand(v->area, TRUE);
@@ -238,6 +291,9 @@ void photon_view_free(photon_view *v)
 {
     if (!v)
         return;
+    stop_wiring(v);
+    g_clear_handle_id(&v->telling, g_source_remove);
+    held_scene_unref(v->scene);
     photon_cloud_free(v->cloud);
     g_free(v->wire);
     g_free(v->mark_lines);
@@ -250,22 +306,20 @@ GtkWidget *photon_view_widget(photon_view *v)
     return v->area;
 }
 
-void photon_view_redraw(photon_view *v)
+void photon_view_redraw(photon_view *v, bool moving)
 {
+    v->moving = moving;
     gtk_gl_area_queue_render(GTK_GL_AREA(v->area));
 }
 
 void photon_view_set_scene(photon_view *v, held_scene *scene)
 {
-    size_t n;
-    g_autofree float *ends = neph_scene_wireframe(scene->scene, MOST_EDGES, &n);
-    g_free(v->wire);
-    v->n_wire = 2 * n;
-    v->wire = g_new(cloud_vertex, v->n_wire);
-    for (size_t i = 0; i < v->n_wire; i++) {
-        memcpy(v->wire[i].position, ends + 3 * i, sizeof v->wire[i].position);
-        memset(v->wire[i].color, 200, sizeof v->wire[i].color);
-    }
+    held_scene *held = held_scene_ref(scene);
+    held_scene_unref(v->scene);
+    v->scene = held;
+    stop_wiring(v);
+    g_clear_pointer(&v->wire, g_free);
+    v->n_wire = 0;
     v->wire_changed = true;
     photon_view_set_cloud(v, NULL);
 }
@@ -294,7 +348,7 @@ void photon_view_set_style(photon_view *v, const photon_style *style)
         v->photons_changed = true;
     }
     v->arrows_changed = true;
-    photon_view_redraw(v);
+    photon_view_redraw(v, false);
 }
 
 const photon_style *photon_view_style(const photon_view *v)
@@ -312,10 +366,10 @@ void photon_view_set_marks(photon_view *v, const cloud_vertex *lines, size_t n_l
     v->n_mark_lines = n_lines;
     v->n_mark_points = n_points;
     v->marks_changed = true;
-    photon_view_redraw(v);
+    photon_view_redraw(v, false);
 }
 
-double photon_view_frame_time(const photon_view *v)
+const photon_frame *photon_view_frame(const photon_view *v)
 {
-    return v->frame_time;
+    return &v->frame;
 }

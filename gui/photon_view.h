@@ -22,21 +22,32 @@ typedef struct photon_style {
 /** @brief Fewer photons than this are arrows. */
 enum { MOST_ARROWS = 1000 };
 
-/** @brief viewpoint: borrowed, must outlive it. */
-photon_view *photon_view_new(const viewpoint *view);
+/** @brief What the last frame was. */
+typedef struct photon_frame {
+    double seconds;        /**< until it was drawn; 0: none yet */
+    double seconds_asking; /**< of that, until the graphics had been told what to draw */
+    size_t points;         /**< photons drawn, */
+    size_t all; /**< of so many: while the view moves slow graphics draw fewer */
+} photon_frame;
+
+/** @brief viewpoint: borrowed, must outlive it. drawn is told a moment after a frame. */
+photon_view *photon_view_new(const viewpoint *view,
+                             void (*drawn)(const photon_frame *frame, void *data),
+                             void *data);
 /** @brief When the widget has gone. */
 void photon_view_free(photon_view *v);
 /** @brief The area, focusable. */
 GtkWidget *photon_view_widget(photon_view *v);
-/** @brief Another scene: its wireframe, no photons. */
+/** @brief Another scene (held): its wireframe, which is made when it is first to be seen,
+ * and no photons. */
 void photon_view_set_scene(photon_view *v, held_scene *scene);
 /** @brief Takes the cloud; NULL: none. */
 void photon_view_set_cloud(photon_view *v, photon_cloud *cloud);
 const photon_cloud *photon_view_cloud(const photon_view *v);
 void photon_view_set_style(photon_view *v, const photon_style *style);
 const photon_style *photon_view_style(const photon_view *v);
-/** @brief The viewpoint has moved. */
-void photon_view_redraw(photon_view *v);
+/** @brief The viewpoint has moved; moving: and will again at once. */
+void photon_view_redraw(photon_view *v, bool moving);
 /** @brief Drawn over everything: line ends, and points. Copied. */
 void photon_view_set_marks(photon_view *v, const cloud_vertex *lines, size_t n_lines,
                            const cloud_vertex *points, size_t n_points);
@@ -45,5 +56,4 @@ void photon_view_set_marks(photon_view *v, const cloud_vertex *lines, size_t n_l
 void photon_view_place(const photon_view *v, double wx, double wy, double place[2]);
 /** @brief Pixels of the widget for the picture's height. */
 double photon_view_scale(const photon_view *v);
-/** @brief Seconds that the last frame took to draw; 0: none yet. */
-double photon_view_frame_time(const photon_view *v);
+const photon_frame *photon_view_frame(const photon_view *v);

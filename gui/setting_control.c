@@ -39,6 +39,33 @@ static char *default_text(const NephSettingInfo *info)
     return number_text(info->initial);
 }
 
+char *setting_special(const NephSettingInfo *info)
+{
+    bool number = info->type == NEPH_SETTING_COUNT || info->type == NEPH_SETTING_REAL;
+    g_autofree char *low = number_text(info->low);
+    g_autofree char *pattern = g_strdup_printf("(?:^|[ (])%s(?:: | is )([^;.,(:]+)", low);
+    g_autoptr(GRegex) regex = g_regex_new(pattern, 0, 0, NULL);
+    g_autoptr(GMatchInfo) match = NULL;
+    if (!number || !g_regex_match(regex, info->doc, 0, &match))
+        return NULL;
+    g_autofree char *meaning = g_match_info_fetch(match, 1);
+    return g_strdup_printf("%s: %s", low, g_strstrip(meaning));
+}
+
+/* "Radius (m)", "Photons (per pass)". */
+static char *title_with_unit(const NephSettingInfo *info)
+{
+    g_autofree char *title = setting_title(info);
+    const char *slash = strchr(info->unit, '/');
+    g_autofree char *counted =
+        slash ? g_strndup(info->unit, (gsize)(slash - info->unit)) : g_strdup(info->unit);
+    if (!*info->unit)
+        return g_steal_pointer(&title);
+    if (slash && strstr(info->name, counted))
+        return g_strdup_printf("%s (per %s)", title, slash + 1);
+    return g_strdup_printf("%s (%s)", title, info->unit);
+}
+
 /* ---- The value ---- */
 
 static char *value_text(const setting_control *c)
@@ -179,11 +206,6 @@ static char *tooltip_text(const NephSettingInfo *info)
 static GtkWidget *content_make(setting_control *c, const char *title)
 {
     GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 4);
-    if (*c->info->unit) {
-        GtkWidget *unit = gtk_label_new(c->info->unit);
-        gtk_widget_add_css_class(unit, "dim-label");
-        gtk_box_append(GTK_BOX(box), unit);
-    }
     c->input = input_make(c);
     gtk_widget_set_valign(c->input, GTK_ALIGN_CENTER);
     gtk_widget_set_name(c->input, c->info->name);
@@ -204,9 +226,10 @@ setting_control *setting_control_new(GtkWidget *list, const NephSettingInfo *inf
                                      setting_changed changed, void *data)
 {
     setting_control *c = g_new0(setting_control, 1);
-    g_autofree char *title = setting_title(info), *tooltip = tooltip_text(info);
+    g_autofree char *title = title_with_unit(info), *tooltip = tooltip_text(info);
+    g_autofree char *special = setting_special(info);
     *c = (setting_control){.info = info, .changed = changed, .data = data};
-    c->row = row_add(list, title, content_make(c, title));
+    c->row = row_add_captioned(list, title, special, content_make(c, title));
     gtk_widget_set_tooltip_text(c->row, tooltip);
     show_reset(c);
     return c;

@@ -30,3 +30,6 @@ void setting_control_set_used(setting_control *c, bool used);
 /** @brief The title for people: "max_backward_bounces" as "Max backward bounces". Owned
  * by the caller. */
 char *setting_title(const NephSettingInfo *info);
+/** @brief What the lowest value stands for where the setting's doc says so, as "-1:
+ * unlimited"; NULL: nothing. Owned by the caller. */
+char *setting_special(const NephSettingInfo *info);

@@ -5,7 +5,7 @@
 #include <math.h>
 
 struct status {
-    GtkWidget *root, *bar, *text, *pointer;
+    GtkWidget *root, *bar, *name, *text, *pointer;
 };
 
 char *status_duration(double seconds)
@@ -61,6 +61,10 @@ status *status_new(void)
     widget_name(s->bar, "Progress of the render");
     GtkWidget *line = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 12);
     gtk_widget_add_css_class(line, "statusbar-line");
+    s->name = label_make("", "heading");
+    gtk_label_set_ellipsize(GTK_LABEL(s->name), PANGO_ELLIPSIZE_MIDDLE);
+    gtk_label_set_max_width_chars(GTK_LABEL(s->name), 28);
+    gtk_box_append(GTK_BOX(line), s->name);
     s->text = label_make("", "numeric");
     gtk_label_set_ellipsize(GTK_LABEL(s->text), PANGO_ELLIPSIZE_END);
     gtk_widget_set_hexpand(s->text, TRUE);
@@ -94,6 +98,12 @@ void status_show(status *s, const session_news *news)
     else
         gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(s->bar),
                                       CLAMP(news->fraction, 0.0, 1.0));
+}
+
+void status_show_name(status *s, const char *name, const char *path)
+{
+    gtk_label_set_text(GTK_LABEL(s->name), name);
+    gtk_widget_set_tooltip_text(s->name, path);
 }
 
 void status_show_pointer(status *s, const char *text)

@@ -13,6 +13,8 @@ status *status_new(void);
 void status_free(status *s);
 GtkWidget *status_widget(status *s);
 void status_show(status *s, const session_news *news);
+/** @brief What is being rendered, and where it lies. */
+void status_show_name(status *s, const char *name, const char *path);
 /** @brief What the pointer is over; NULL: nothing. */
 void status_show_pointer(status *s, const char *text);
 

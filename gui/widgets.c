@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 void widget_name(GtkWidget *widget, const char *name)
 {
@@ -82,18 +83,69 @@ static GtkWidget *append_row(GtkWidget *list, GtkWidget *content)
     return row;
 }
 
-GtkWidget *row_add(GtkWidget *list, const char *title, GtkWidget *control)
+static GtkWidget *title_make(const char *title, const char *css_class)
+{
+    GtkWidget *label = label_make(title, css_class);
+    gtk_label_set_ellipsize(GTK_LABEL(label), PANGO_ELLIPSIZE_END);
+    return label;
+}
+
+GtkWidget *row_add_captioned(GtkWidget *list, const char *title, const char *caption,
+                             GtkWidget *control)
 {
     GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 8);
-    GtkWidget *label = label_make(title, NULL);
-    gtk_widget_set_hexpand(label, TRUE);
-    gtk_label_set_ellipsize(GTK_LABEL(label), PANGO_ELLIPSIZE_END);
+    GtkWidget *words = title_make(title, NULL);
+    if (caption) {
+        GtkWidget *both = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
+        GtkWidget *small = title_make(caption, "caption");
+        gtk_label_set_wrap(GTK_LABEL(small), TRUE);
+        gtk_label_set_lines(GTK_LABEL(small), 2);
+        gtk_widget_add_css_class(small, "dim-label");
+        gtk_box_append(GTK_BOX(both), words);
+        gtk_box_append(GTK_BOX(both), small);
+        words = both;
+    }
+    gtk_widget_set_hexpand(words, TRUE);
+    gtk_widget_set_valign(words, GTK_ALIGN_CENTER);
     gtk_widget_set_valign(control, GTK_ALIGN_CENTER);
     gtk_accessible_update_property(GTK_ACCESSIBLE(control), GTK_ACCESSIBLE_PROPERTY_LABEL,
                                    title, -1);
-    gtk_box_append(GTK_BOX(box), label);
+    gtk_box_append(GTK_BOX(box), words);
     gtk_box_append(GTK_BOX(box), control);
     return append_row(list, box);
+}
+
+GtkWidget *row_add(GtkWidget *list, const char *title, GtkWidget *control)
+{
+    return row_add_captioned(list, title, NULL, control);
+}
+
+/* ---- Pages ---- */
+
+GtkWidget *page_make(GtkWidget **content)
+{
+    GtkWidget *page = gtk_scrolled_window_new();
+    gtk_scrolled_window_set_policy(GTK_SCROLLED_WINDOW(page), GTK_POLICY_NEVER,
+                                   GTK_POLICY_AUTOMATIC);
+    gtk_widget_set_vexpand(page, TRUE);
+    *content = box_make(GTK_ORIENTATION_VERTICAL, 18, 12);
+    gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(page), *content);
+    return page;
+}
+
+static gboolean scroll(GtkWidget *page, GdkFrameClock *clock, void *data)
+{
+    (void)clock;
+    double x, y;
+    GtkAdjustment *at = gtk_scrolled_window_get_vadjustment(GTK_SCROLLED_WINDOW(page));
+    if (gtk_widget_translate_coordinates(data, page, 0.0, 0.0, &x, &y))
+        gtk_adjustment_set_value(at, gtk_adjustment_get_value(at) + y);
+    return G_SOURCE_REMOVE;
+}
+
+void page_scroll_to(GtkWidget *page, GtkWidget *group)
+{
+    gtk_widget_add_tick_callback(page, scroll, g_object_ref(group), g_object_unref);
 }
 
 GtkWidget *value_row_add(GtkWidget *list, const char *title)
@@ -104,7 +156,7 @@ GtkWidget *value_row_add(GtkWidget *list, const char *title)
     gtk_widget_add_css_class(value, "numeric");
     gtk_widget_set_can_focus(value, FALSE);
     gtk_label_set_ellipsize(GTK_LABEL(value), PANGO_ELLIPSIZE_MIDDLE);
-    row_add(list, title, value);
+    gtk_widget_add_css_class(row_add(list, title, value), "value");
     return value;
 }
 
@@ -155,6 +207,29 @@ GtkWidget *slider_make(double low, double high, double step, int digits)
     gtk_scale_set_value_pos(GTK_SCALE(scale), GTK_POS_LEFT);
     gtk_widget_set_size_request(scale, 170, -1);
     return scale;
+}
+
+char *count_text(guint64 n)
+{
+    g_autofree char *digits = g_strdup_printf("%" G_GUINT64_FORMAT, n);
+    GString *out = g_string_new(NULL);
+    size_t length = strlen(digits);
+    for (size_t i = 0; i < length; i++) {
+        if (i > 0 && (length - i) % 3 == 0)
+            g_string_append(out, "\u202f"); /* a narrow space where no line breaks */
+        g_string_append_c(out, digits[i]);
+    }
+    return g_string_free(out, FALSE);
+}
+
+GtkWidget *drawing_make(const char *name, GtkDrawingAreaDrawFunc draw, void *data)
+{
+    GtkWidget *area = g_object_new(GTK_TYPE_DRAWING_AREA, "accessible-role",
+                                   GTK_ACCESSIBLE_ROLE_IMG, NULL);
+    gtk_drawing_area_set_draw_func(GTK_DRAWING_AREA(area), draw, data, NULL);
+    widget_name(area, name);
+    gtk_widget_set_has_tooltip(area, FALSE);
+    return area;
 }
 
 GtkWidget *choice_make(const char *const *words)

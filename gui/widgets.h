@@ -20,8 +20,16 @@ GtkWidget *text_button_make(const char *text, const char *tooltip, const char *a
 GtkWidget *box_make(GtkOrientation orientation, int spacing, int margin);
 /** @brief A title over a list with a frame; rows go to *list. */
 GtkWidget *group_make(const char *title, GtkWidget **list);
+/** @brief A page of groups that scrolls: the widget for the stack; groups go to
+ * *content. */
+GtkWidget *page_make(GtkWidget **content);
+/** @brief Scrolls a page so that a group of it is seen, once it has its place. */
+void page_scroll_to(GtkWidget *page, GtkWidget *group);
 /** @brief A row of a group: title left, control right, which is named by the title. */
 GtkWidget *row_add(GtkWidget *list, const char *title, GtkWidget *control);
+/** @brief The same with a smaller line below the title; NULL: none. */
+GtkWidget *row_add_captioned(GtkWidget *list, const char *title, const char *caption,
+                             GtkWidget *control);
 /** @brief A row whose right side is a text to be set. */
 GtkWidget *value_row_add(GtkWidget *list, const char *title);
 /** @brief A spin button whose numbers are written with a point and without trailing
@@ -29,5 +37,9 @@ GtkWidget *value_row_add(GtkWidget *list, const char *title);
 GtkWidget *spin_make(double low, double high, double step, bool whole);
 /** @brief A horizontal slider that shows its value with so many digits. */
 GtkWidget *slider_make(double low, double high, double step, int digits);
+/** @brief A whole number with its thousands apart; owned by the caller. */
+char *count_text(guint64 n);
+/** @brief A picture drawn by the program, as assistive technology has to know. */
+GtkWidget *drawing_make(const char *name, GtkDrawingAreaDrawFunc draw, void *data);
 /** @brief A drop-down of NULL-terminated words. */
 GtkWidget *choice_make(const char *const *words);

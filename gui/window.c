@@ -4,8 +4,9 @@
 #include "widgets.h"
 
 #include <stdarg.h>
+#include <string.h>
 
-enum { TOAST_MS = 4000, SIDEBAR_LEAST = 360 };
+enum { TOAST_MS = 4000, SIDEBAR_LEAST = 340 };
 
 GtkWindow *window_gtk(window *w)
 {
@@ -36,7 +37,10 @@ void window_toast(window *w, const char *format, ...)
 
 void window_show_content(window *w, const char *page)
 {
+    bool has_views = strcmp(page, "main") == 0;
     gtk_stack_set_visible_child_name(GTK_STACK(w->content), page);
+    gtk_widget_set_visible(w->switcher, has_views);
+    gtk_widget_set_visible(w->side_button, has_views);
 }
 
 /* ---- Opening ---- */
@@ -56,14 +60,50 @@ static void file_changed(void *data)
     window_open(w, document_path(w->document));
 }
 
+void window_take_file(window *w, const char *path)
+{
+    static const char *const pictures[] = {".exr",  ".png", ".jpg",
+                                           ".jpeg", ".hdr", ".pfm"};
+    g_autofree char *lower = g_ascii_strdown(path, -1);
+    bool is_picture = false;
+    for (size_t i = 0; i < G_N_ELEMENTS(pictures); i++)
+        is_picture |= g_str_has_suffix(lower, pictures[i]);
+    if (is_picture && w->scene)
+        window_set_reference(w, path);
+    else if (is_picture)
+        window_toast(w, "Open a scene first: a picture is what it is compared with");
+    else
+        window_open(w, path);
+}
+
+/* File managers give one file or a list of them; the first counts. */
 static gboolean dropped(GtkDropTarget *target, const GValue *value, double x, double y,
                         window *w)
 {
     (void)target, (void)x, (void)y;
-    g_autofree char *path = g_file_get_path(g_value_get_object(value));
+    GFile *file = NULL;
+    if (G_VALUE_HOLDS(value, G_TYPE_FILE)) {
+        file = g_object_ref(g_value_get_object(value));
+    } else if (G_VALUE_HOLDS(value, GDK_TYPE_FILE_LIST)) {
+        GSList *files = gdk_file_list_get_files(g_value_get_boxed(value));
+        file = files ? g_object_ref(files->data) : NULL;
+        g_slist_free(files);
+    }
+    g_autofree char *path = file ? g_file_get_path(file) : NULL;
+    g_clear_object(&file);
     if (path)
-        window_open(w, path);
+        window_take_file(w, path);
     return path != NULL;
+}
+
+static void accept_drops(window *w)
+{
+    GType types[] = {GDK_TYPE_FILE_LIST, G_TYPE_FILE};
+    GtkDropTarget *drop = gtk_drop_target_new(G_TYPE_INVALID, GDK_ACTION_COPY);
+    gtk_drop_target_set_gtypes(drop, types, G_N_ELEMENTS(types));
+    g_signal_connect(drop, "drop", G_CALLBACK(dropped), w);
+    gtk_widget_add_css_class(w->content, "drop-area");
+    gtk_widget_add_controller(w->content, GTK_EVENT_CONTROLLER(drop));
 }
 
 /* ---- Settings ---- */
@@ -110,9 +150,10 @@ static GtkWidget *header_make(window *w)
                                                     "Stop (Ctrl+.)", "win.stop"));
     gtk_header_bar_pack_start(bar, icon_button_make("view-refresh-symbolic",
                                                     "Render anew (F5)", "win.restart"));
-    GtkWidget *switcher = gtk_stack_switcher_new();
-    gtk_stack_switcher_set_stack(GTK_STACK_SWITCHER(switcher), GTK_STACK(w->views));
-    gtk_header_bar_set_title_widget(bar, switcher);
+    w->switcher = gtk_stack_switcher_new();
+    gtk_stack_switcher_set_stack(GTK_STACK_SWITCHER(w->switcher), GTK_STACK(w->views));
+    gtk_widget_add_css_class(w->switcher, "views");
+    gtk_header_bar_set_title_widget(bar, w->switcher);
     GtkWidget *menu = gtk_menu_button_new();
     g_autoptr(GMenuModel) model = window_menu();
     gtk_menu_button_set_icon_name(GTK_MENU_BUTTON(menu), "open-menu-symbolic");
@@ -125,10 +166,7 @@ static GtkWidget *header_make(window *w)
     gtk_actionable_set_action_name(GTK_ACTIONABLE(side), "win.sidebar");
     widget_name(side, "Show the panels (F9)");
     gtk_header_bar_pack_end(bar, side);
-    w->name = gtk_label_new("");
-    gtk_widget_add_css_class(w->name, "dim-label");
-    gtk_label_set_ellipsize(GTK_LABEL(w->name), PANGO_ELLIPSIZE_MIDDLE);
-    gtk_header_bar_pack_start(bar, w->name);
+    w->side_button = side;
     return header;
 }
 
@@ -207,12 +245,12 @@ static GtkWidget *views_make(window *w)
 {
     const navigation_events events = {window_view_moved, window_view_clicked, w};
     w->views = gtk_stack_new();
-    w->canvas = canvas_new(window_hover, w);
+    w->canvas = canvas_new(window_hover, window_divided, w);
     w->navigation = navigation_new(canvas_widget(w->canvas), &w->view, &events);
     gtk_stack_add_titled(GTK_STACK(w->views), canvas_widget(w->canvas), "picture",
                          "Picture");
     const navigation_events photon_events = {window_view_moved, window_photon_clicked, w};
-    w->photon_view = photon_view_new(&w->view);
+    w->photon_view = photon_view_new(&w->view, window_photons_drawn, w);
     w->photon_navigation =
         navigation_new(photon_view_widget(w->photon_view), &w->view, &photon_events);
     gtk_stack_add_titled(GTK_STACK(w->views), photon_view_widget(w->photon_view),
@@ -222,6 +260,12 @@ static GtkWidget *views_make(window *w)
                          "Materials");
     g_signal_connect_swapped(w->views, "notify::visible-child",
                              G_CALLBACK(window_view_switched), w);
+    return w->views;
+}
+
+/* What is said in passing stands over whatever is shown. */
+static GtkWidget *with_toast(window *w, GtkWidget *below)
+{
     GtkWidget *overlay = gtk_overlay_new();
     w->toast = gtk_revealer_new();
     GtkWidget *label = gtk_label_new("");
@@ -233,7 +277,7 @@ static GtkWidget *views_make(window *w)
     gtk_widget_set_halign(w->toast, GTK_ALIGN_CENTER);
     gtk_widget_set_valign(w->toast, GTK_ALIGN_END);
     gtk_widget_set_can_target(w->toast, FALSE);
-    gtk_overlay_set_child(GTK_OVERLAY(overlay), w->views);
+    gtk_overlay_set_child(GTK_OVERLAY(overlay), below);
     gtk_overlay_add_overlay(GTK_OVERLAY(overlay), w->toast);
     return overlay;
 }
@@ -286,10 +330,9 @@ static void build(window *w)
     gtk_stack_add_named(content, error_page_widget(w->errors), "error");
     gtk_stack_add_named(content, main_view, "main");
     gtk_window_set_titlebar(w->gtk, header_make(w));
-    gtk_window_set_child(w->gtk, w->content);
-    GtkDropTarget *drop = gtk_drop_target_new(G_TYPE_FILE, GDK_ACTION_COPY);
-    g_signal_connect(drop, "drop", G_CALLBACK(dropped), w);
-    gtk_widget_add_controller(GTK_WIDGET(w->gtk), GTK_EVENT_CONTROLLER(drop));
+    gtk_window_set_child(w->gtk, with_toast(w, w->content));
+    accept_drops(w);
+    window_show_content(w, "welcome");
 }
 
 /* ---- Closing ---- */
@@ -315,6 +358,9 @@ static gboolean close_request(window *w)
 static void destroyed(window *w)
 {
     session_close(w->session);
+    appearance_free(w->appearance);
+    g_cancellable_cancel(w->files);
+    g_object_unref(w->files);
     document_free(w->document);
     g_clear_handle_id(&w->toast_timer, g_source_remove);
     navigation_free(w->navigation);
@@ -369,11 +415,13 @@ window *window_new(GtkApplication *app)
         gtk_window_maximize(w->gtk);
     w->document = document_new(file_changed, w);
     w->session = session_new(window_on_news, w);
+    w->files = g_cancellable_new();
     window_add_actions(w);
     set_help(w);
     add_plain_keys(w);
     window_add_view_actions(w);
     build(w);
+    w->appearance = appearance_new(window_scheme_changed, w);
     window_apply_theme(w);
     window_update_actions(w);
     g_signal_connect_swapped(w->gtk, "close-request", G_CALLBACK(close_request), w);

@@ -1,6 +1,7 @@
 #include "window_parts.h"
 
 #include "file_dialog.h"
+#include "file_job.h"
 
 #include <string.h>
 
@@ -42,18 +43,35 @@ static void dismiss_error(GSimpleAction *action, GVariant *parameter, void *data
     window_show_content(w, w->scene ? "main" : "welcome");
 }
 
+static void saved(GObject *source, GAsyncResult *result, void *data)
+{
+    (void)source;
+    window *w = data;
+    g_autoptr(GError) error = NULL;
+    bool ok = file_job_write_finish(result, &error);
+    g_application_release(g_application_get_default());
+    if (file_job_is_orphan(result))
+        return;
+    if (ok)
+        window_toast(w, "Saved %s", file_job_path(result));
+    else
+        window_toast(w, "%s", error->message);
+}
+
+/* The program stays until the file is whole, also without a window. */
+static void save(window *w, const char *path, const file_content *content)
+{
+    g_application_hold(g_application_get_default());
+    file_job_write(path, content, w->files, saved, w);
+}
+
 static void save_to(const char *path, void *data)
 {
     window *w = data;
-    g_autoptr(GError) error = NULL;
-    const held_picture *picture = canvas_picture(w->canvas);
-    float exposure = canvas_options(w->canvas)->exposure;
-    if (!picture)
-        return;
-    if (neph_image_write(picture->image, path, exposure, &error))
-        window_toast(w, "Saved %s", path);
-    else
-        window_toast(w, "%s", error->message);
+    const file_content content = {.picture = canvas_picture(w->canvas),
+                                  .exposure = canvas_options(w->canvas)->exposure};
+    if (content.picture)
+        save(w, path, &content);
 }
 
 /* The scene's name with another ending; owned by the caller. */
@@ -81,14 +99,10 @@ static void save_picture(GSimpleAction *action, GVariant *parameter, void *data)
 static void save_diagram_to(const char *path, void *data)
 {
     window *w = data;
-    g_autoptr(GError) error = NULL;
     g_autofree char *svg = lobe_view_svg(w->lobes);
-    if (!svg)
-        return;
-    if (neph_file_write(path, svg, &error))
-        window_toast(w, "Saved %s", path);
-    else
-        window_toast(w, "%s", error->message);
+    const file_content content = {.text = svg};
+    if (svg)
+        save(w, path, &content);
 }
 
 static void save_diagram(GSimpleAction *action, GVariant *parameter, void *data)
@@ -152,7 +166,8 @@ static void zoom(GSimpleAction *action, GVariant *parameter, void *data)
     if (strcmp(name, "zoom-fit") == 0)
         canvas_set_zoom(w->canvas, 0.0);
     else if (strcmp(name, "zoom-one") == 0)
-        canvas_set_zoom(w->canvas, 1.0);
+        canvas_set_zoom(w->canvas,
+                        1.0 / gtk_widget_get_scale_factor(canvas_widget(w->canvas)));
     else
         canvas_zoom_by(w->canvas, strcmp(name, "zoom-in") == 0 ? 1.5 : 1.0 / 1.5);
 }
@@ -209,8 +224,9 @@ static void fullscreen(GSimpleAction *action, GVariant *parameter, void *data)
 
 /* ---- Light and dark ---- */
 
-/* The first theme decides what "system" is. */
-static bool system_is_dark(void)
+/* What GTK was set up with, which holds where the desktop says nothing: found before the
+   program sets it itself. */
+static bool gtk_is_dark(void)
 {
     static int dark = -1;
     if (dark < 0) {
@@ -224,7 +240,9 @@ static bool system_is_dark(void)
 
 void window_apply_theme(window *w)
 {
-    bool by_system = system_is_dark();
+    bool by_gtk = gtk_is_dark();
+    appearance_scheme scheme = appearance_get(w->appearance);
+    bool by_system = scheme == SCHEME_DARK || (scheme == SCHEME_UNKNOWN && by_gtk);
     window_theme theme = w->remembered.theme;
     bool dark = theme == THEME_DARK || (theme == THEME_SYSTEM && by_system);
     g_object_set(gtk_settings_get_default(), "gtk-application-prefer-dark-theme", dark,
@@ -232,6 +250,12 @@ void window_apply_theme(window *w)
     GAction *action = g_action_map_lookup_action(G_ACTION_MAP(w->gtk), "theme");
     g_simple_action_set_state(G_SIMPLE_ACTION(action),
                               g_variant_new_string(theme_words[theme]));
+}
+
+void window_scheme_changed(appearance_scheme scheme, void *data)
+{
+    (void)scheme;
+    window_apply_theme(data);
 }
 
 static void choose_theme(GSimpleAction *action, GVariant *parameter, void *data)

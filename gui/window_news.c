@@ -45,8 +45,7 @@ static void show_name(window *w)
     g_autofree char *name = g_utf8_make_valid(base, -1);
     g_autofree char *title = g_strdup_printf("%s – Nephroid", name);
     gtk_window_set_title(w->gtk, title);
-    gtk_label_set_text(GTK_LABEL(w->name), name);
-    gtk_widget_set_tooltip_text(w->name, document_path(w->document));
+    status_show_name(w->status, name, document_path(w->document));
 }
 
 static void take_view(window *w, const held_scene *scene)
@@ -132,8 +131,7 @@ void window_on_news(const session_news *news, void *data)
     if (news->picture)
         show_picture(w, news->picture);
     status_show(w->status, news);
-    numbers_panel_show(w->numbers, &news->statistics,
-                       photon_view_frame_time(w->photon_view));
+    numbers_panel_show(w->numbers, &news->statistics, photon_view_frame(w->photon_view));
     if (state_changed || news->loaded)
         window_update_actions(w);
 }

@@ -9,6 +9,7 @@
  */
 #pragma once
 
+#include "appearance.h"
 #include "camera_panel.h"
 #include "canvas.h"
 #include "document.h"
@@ -30,10 +31,14 @@ struct window {
     GtkWidget *content; /* stack: welcome, error, main */
     GtkWidget *views;   /* stack: picture, ... */
     GtkWidget *pages;   /* stack in the sidebar */
-    GtkWidget *paned, *sidebar, *toast, *play_button, *name;
-    GMenu *scenes; /* recent ones and examples */
+    GtkWidget *paned, *sidebar, *toast, *play_button;
+    GtkWidget *switcher, *side_button; /* seen while there is a scene */
+    GMenu *scenes;                     /* recent ones and examples */
     guint toast_timer;
     window_state remembered;
+
+    appearance *appearance;
+    GCancellable *files; /* cancelled when the window goes */
 
     session *session;
     document *document;
@@ -71,17 +76,22 @@ struct window {
 void window_toast(window *w, const char *format, ...) G_GNUC_PRINTF(2, 3);
 void window_show_content(window *w, const char *page);
 
+/** @brief Opens a scene; a picture becomes what the scene is compared with. */
+void window_take_file(window *w, const char *path);
+
 /* window_news.c */
 void window_on_news(const session_news *news, void *data);
 
 /* window_view.c */
 void window_view_moved(const NephCamera *camera, bool moving, void *data);
 void window_view_clicked(double x, double y, int n, void *data);
+void window_divided(double at, void *data);
 void window_hover(bool inside, int x, int y, void *data);
 void window_camera_changed(const NephCamera *camera, void *data);
 /** @brief Makes sharp what is at a place of the picture, 0..1; false: nothing is. */
 bool window_focus_at(window *w, const double place[2]);
 void window_ask_reference(void *data);
+void window_set_reference(window *w, const char *path);
 void window_add_view_actions(window *w);
 
 /* window_photons.c */
@@ -90,6 +100,7 @@ void window_stop_tracing(window *w);
 void window_photons_new_scene(window *w);
 void window_photons_settings_changed(window *w);
 void window_view_switched(window *w);
+void window_photons_drawn(const photon_frame *frame, void *data);
 void window_photon_style(const photon_style *style, void *data);
 void window_photon_clicked(double x, double y, int n, void *data);
 void window_pick_radius(double radius, void *data);
@@ -103,3 +114,4 @@ void window_update_actions(window *w);
 GMenuModel *window_menu(void);
 void window_fill_scenes_menu(GMenu *menu);
 void window_apply_theme(window *w);
+void window_scheme_changed(appearance_scheme scheme, void *data);

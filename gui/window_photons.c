@@ -94,6 +94,13 @@ void window_view_switched(window *w)
         window_trace_photons(w);
 }
 
+void window_photons_drawn(const photon_frame *frame, void *data)
+{
+    window *w = data;
+    photon_panel_show_frame(w->photon_panel, frame);
+    numbers_panel_show(w->numbers, &w->statistics, frame);
+}
+
 void window_photon_style(const photon_style *style, void *data)
 {
     photon_view_set_style(((window *)data)->photon_view, style);

@@ -4,6 +4,7 @@
 #include "window_parts.h"
 
 #include "file_dialog.h"
+#include "file_job.h"
 
 #include <string.h>
 
@@ -13,7 +14,7 @@ void window_view_moved(const NephCamera *camera, bool moving, void *data)
     if (!w->scene)
         return;
     session_set_camera(w->session, camera, moving);
-    photon_view_redraw(w->photon_view);
+    photon_view_redraw(w->photon_view, moving);
     camera_panel_show(w->camera_panel, camera);
 }
 
@@ -85,6 +86,11 @@ void window_view_clicked(double x, double y, int n, void *data)
     }
 }
 
+void window_divided(double at, void *data)
+{
+    inspector_set_divider(((window *)data)->inspector, at);
+}
+
 void window_hover(bool inside, int x, int y, void *data)
 {
     window *w = data;
@@ -92,13 +98,7 @@ void window_hover(bool inside, int x, int y, void *data)
     g_autofree char *text = NULL;
     if (inside && picture)
         text =
-            inspector_pixel_text(picture->image, canvas_options(w->canvas)->layer, x, y);
-    if (text) {
-        char *xyz = strstr(text, "\nX");
-        if (xyz)
-            *xyz = '\0';
-        g_strdelimit(text, "\n", ' ');
-    }
+            inspector_pixel_line(picture->image, canvas_options(w->canvas)->layer, x, y);
     status_show_pointer(w->status, text);
     inspector_hover(w->inspector, inside, x, y);
 }
@@ -155,12 +155,31 @@ static void focus_tool(GSimpleAction *action, GVariant *parameter, void *data)
 
 /* ---- References ---- */
 
-static void reference_chosen(const char *path, void *data)
+static void reference_read(GObject *source, GAsyncResult *result, void *data)
 {
+    (void)source;
     window *w = data;
     g_autoptr(GError) error = NULL;
-    if (!inspector_set_reference(w->inspector, path, &error))
+    g_autoptr(held_picture) picture = file_job_read_finish(result, &error);
+    if (file_job_is_orphan(result))
+        return;
+    if (!picture) {
         window_toast(w, "%s", error->message);
+        inspector_set_reference(w->inspector, NULL, NULL);
+        return;
+    }
+    inspector_set_reference(w->inspector, picture, file_job_path(result));
+    gtk_stack_set_visible_child_name(GTK_STACK(w->views), "picture");
+}
+
+void window_set_reference(window *w, const char *path)
+{
+    file_job_read(path, w->files, reference_read, w);
+}
+
+static void reference_chosen(const char *path, void *data)
+{
+    window_set_reference(data, path);
 }
 
 void window_ask_reference(void *data)

@@ -263,12 +263,32 @@ static void test_save(void)
     window *w = open_scene(path);
     view_wait(view_is_done, w);
     gtk_widget_activate_action(GTK_WIDGET(w->gtk), "win.save-picture-as", "s", picture);
+    view_wait_for_word(w, "saved.exr");
     g_autoptr(NephImage) saved = neph_image_read(picture, NULL);
     g_assert_nonnull(saved);
     int width, height, n;
     neph_image_size(saved, &width, &height, &n);
     g_assert_cmpint(width, ==, 24);
+    gtk_widget_activate_action(GTK_WIDGET(w->gtk), "win.save-picture-as", "s",
+                               "/nowhere/at/all.exr");
+    view_wait_for_word(w, "/nowhere/at/all.exr");
     view_close(w);
+}
+
+/* A window that closes while its picture is written leaves a whole file. */
+static void test_save_and_close(void)
+{
+    g_autofree char *path = view_write("last.pbrt", view_scene);
+    g_autofree char *picture = g_build_filename(view_folder(), "last.exr", NULL);
+    window *w = open_scene(path);
+    view_wait(view_is_done, w);
+    gtk_widget_activate_action(GTK_WIDGET(w->gtk), "win.save-picture-as", "s", picture);
+    view_close(w);
+    while (!g_file_test(picture, G_FILE_TEST_EXISTS))
+        g_main_context_iteration(NULL, FALSE);
+    g_autoptr(NephImage) saved = neph_image_read(picture, NULL);
+    g_assert_nonnull(saved);
+    view_settle();
 }
 
 /* Each window dies while its worker is busy, at another moment each time: twenty in the
@@ -344,6 +364,7 @@ int main(int argc, char **argv)
     view_add_test("/view/search", test_search);
     view_add_test("/view/pause-and-stop", test_pause_and_stop);
     view_add_test("/view/save", test_save);
+    view_add_test("/view/save-and-close", test_save_and_close);
     view_add_test("/view/close-while-rendering", test_close_while_rendering);
     view_add_test("/view/size", test_size);
     view_add_test("/view/accessible-names", test_accessible_names);

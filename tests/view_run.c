@@ -3,6 +3,7 @@
 #include "app.h"
 
 #include <glib/gstdio.h>
+#include <string.h>
 
 /* s */
 #define PATIENCE 30.0
@@ -155,4 +156,28 @@ bool view_is_rendering(window *w)
 void view_activate(window *w, const char *action)
 {
     g_assert_true(gtk_widget_activate_action(GTK_WIDGET(window_gtk(w)), action, NULL));
+}
+
+static GtkLabel *said(window *w)
+{
+    return GTK_LABEL(gtk_revealer_get_child(GTK_REVEALER(w->toast)));
+}
+
+const char *view_said(window *w)
+{
+    return gtk_label_get_text(said(w));
+}
+
+static const char *awaited;
+
+static bool is_said(window *w)
+{
+    return strstr(view_said(w), awaited) != NULL;
+}
+
+void view_wait_for_word(window *w, const char *word)
+{
+    awaited = word;
+    view_wait(is_said, w);
+    gtk_label_set_text(said(w), "");
 }

@@ -27,5 +27,9 @@ void view_wait(bool (*done)(window *w), window *w);
 bool view_is_done(window *w);      /**< the render is over */
 bool view_is_rendering(window *w); /**< a scene is there and being rendered */
 void view_activate(window *w, const char *action);
+/** @brief What the window says in passing, as last said. Borrowed. */
+const char *view_said(window *w);
+/** @brief Waits until it says something with this in it, and lets it be forgotten. */
+void view_wait_for_word(window *w, const char *word);
 /** @brief Runs what the main loop has to do now. */
 void view_settle(void);

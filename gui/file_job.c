@@ -1,0 +1,95 @@
+#include "file_job.h"
+
+typedef struct job {
+    char *path, *text;
+    held_picture *picture;
+    float exposure;
+} job;
+
+static void free_job(void *data)
+{
+    job *j = data;
+    held_picture_unref(j->picture);
+    g_free(j->text);
+    g_free(j->path);
+    g_free(j);
+}
+
+static void run(job *j, GTaskThreadFunc work, GCancellable *cancellable,
+                GAsyncReadyCallback done, void *data)
+{
+    g_autoptr(GTask) task = g_task_new(NULL, cancellable, done, data);
+    g_task_set_task_data(task, j, free_job);
+    g_task_set_check_cancellable(task, FALSE);
+    g_task_run_in_thread(task, work);
+}
+
+static void read_picture(GTask *task, void *source, void *data, GCancellable *cancellable)
+{
+    (void)source, (void)cancellable;
+    const job *j = data;
+    GError *error = NULL;
+    int width, height, n_channels;
+    NephImage *image = neph_image_read(j->path, &error);
+    if (!image) {
+        g_task_return_error(task, error);
+        return;
+    }
+    neph_image_size(image, &width, &height, &n_channels);
+    g_task_return_pointer(task, held_picture_new(image, width, height, false),
+                          (GDestroyNotify)held_picture_unref);
+}
+
+void file_job_read(const char *path, GCancellable *cancellable, GAsyncReadyCallback done,
+                   void *data)
+{
+    job *j = g_new0(job, 1);
+    j->path = g_strdup(path);
+    run(j, read_picture, cancellable, done, data);
+}
+
+held_picture *file_job_read_finish(GAsyncResult *result, GError **error)
+{
+    return g_task_propagate_pointer(G_TASK(result), error);
+}
+
+static void write_content(GTask *task, void *source, void *data,
+                          GCancellable *cancellable)
+{
+    (void)source, (void)cancellable;
+    const job *j = data;
+    GError *error = NULL;
+    bool written = j->picture
+                       ? neph_image_write(j->picture->image, j->path, j->exposure, &error)
+                       : neph_file_write(j->path, j->text, &error);
+    if (written)
+        g_task_return_boolean(task, TRUE);
+    else
+        g_task_return_error(task, error);
+}
+
+void file_job_write(const char *path, const file_content *content,
+                    GCancellable *cancellable, GAsyncReadyCallback done, void *data)
+{
+    job *j = g_new0(job, 1);
+    *j = (job){g_strdup(path), g_strdup(content->text),
+               held_picture_ref(content->picture), content->exposure};
+    run(j, write_content, cancellable, done, data);
+}
+
+bool file_job_write_finish(GAsyncResult *result, GError **error)
+{
+    return g_task_propagate_boolean(G_TASK(result), error);
+}
+
+const char *file_job_path(GAsyncResult *result)
+{
+    const job *j = g_task_get_task_data(G_TASK(result));
+    return j->path;
+}
+
+bool file_job_is_orphan(GAsyncResult *result)
+{
+    GCancellable *asked = g_task_get_cancellable(G_TASK(result));
+    return asked && g_cancellable_is_cancelled(asked);
+}
