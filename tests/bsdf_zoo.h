@@ -13,8 +13,6 @@ typedef struct model {
     double least_albedo; /* what it must send back at least, at 45 degrees */
 } model;
 
-static coat_table *lacquer; /* made when first used */
-
 static const spectrum RAMP = {0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.9f};
 static const spectrum FLINT = {1.76f, 1.74f, 1.73f, 1.72f, 1.71f, 1.705f, 1.7f, 1.695f};
 
@@ -33,18 +31,44 @@ static void make_diffuse(bsdf *b)
     bsdf_make_diffuse(b, RAMP);
 }
 
+static coat_layers lacquer(ggx coat, ggx metal)
+{
+    return (coat_layers){.is_metal = true,
+                         .metal_eta = gold_eta(),
+                         .metal_k = gold_k(),
+                         .eta = 1.5f,
+                         .thickness = 0.01f,
+                         .coat = coat,
+                         .base = metal,
+                         .max_depth = 10,
+                         .n_walks = 1};
+}
+
 static void make_lacquer(bsdf *b, ggx coat, ggx metal)
 {
-    if (!lacquer)
-        lacquer = coat_table_new(&(coat_range){
-            .alpha_max = 1.0f, .eta_min = 1.5f, .eta_max = 1.5f, .thickness = 0.01f});
-    bsdf_make_coated_conductor(b, &(coated_metal){.eta = gold_eta(),
-                                                  .k = gold_k(),
-                                                  .coat_eta = 1.5f,
-                                                  .thickness = 0.01f,
-                                                  .coat = coat,
-                                                  .metal = metal,
-                                                  .table = lacquer});
+    coat_layers layers = lacquer(coat, metal);
+    bsdf_make_layered(b, &layers);
+}
+
+/* Particles in the coat, over metal and over a diffuse base. */
+static void make_pearl(bsdf *b)
+{
+    coat_layers layers = lacquer((ggx){0}, ggx_make(0.2f, 0.2f));
+    layers.albedo = RAMP;
+    layers.thickness = 0.5f;
+    layers.g = 0.3f;
+    bsdf_make_layered(b, &layers);
+}
+
+static void make_milky(bsdf *b)
+{
+    coat_layers layers = lacquer(ggx_make(0.3f, 0.3f), (ggx){0});
+    layers.is_metal = false;
+    layers.rho = RAMP;
+    layers.albedo = spectrum_fill(0.9f);
+    layers.thickness = 1.0f;
+    layers.g = -0.4f;
+    bsdf_make_layered(b, &layers);
 }
 
 static void make_lacquered_mirror(bsdf *b)
@@ -158,7 +182,6 @@ static inline void zoo_close(void)
     coat_table_free(satin_coat);
     coat_table_free(rough_coat);
     coat_table_free(brushed_coat);
-    coat_table_free(lacquer);
 }
 
 static void make_plastic(bsdf *b)
@@ -249,6 +272,8 @@ static const model MODELS[] = {
     {"lacquered mirror", make_lacquered_mirror, 0.3},
     {"car paint", make_car_paint, 0.3},
     {"frosted gold", make_frosted_gold, 0.3},
+    {"pearl", make_pearl, 0.3},
+    {"milky", make_milky, 0.3},
     {"mirror", make_mirror, 0.3},
     {"satin gold", make_satin_gold, 0.3},
     {"brushed gold", make_brushed_gold, 0.3},

@@ -291,11 +291,13 @@ static void test_coated_diffuse(void)
     g_assert_true(b.lambertian);
     material_free(m);
     g_assert_cmpuint(class_of("coateddiffuse", 0.04f), ==, LOBE_GLOSSY | LOBE_DIFFUSE);
-    params *p = list();
-    add_rgb(p, "albedo", 0.1f, 0.1f, 0.1f);
-    refuse("coateddiffuse", p,
-           "m.pbrt:4:9: parameter 'albedo': a coat that scatters is not supported, "
-           "expected 0");
+    params *p = white("thickness", 0.5f);
+    float clear = coated_albedo(p);
+    p = white("thickness", 0.5f);
+    add_rgb(p, "albedo", 0.9f, 0.9f, 0.9f);
+    g_assert_cmpfloat(coated_albedo(p), >, clear + 0.1f);
+    refuse("coateddiffuse", white("g", 1.5f),
+           "m.pbrt:4:9: parameter 'g': expected a number in -1..1, found 1.5");
     refuse("coateddiffuse", white("maxdepth", 0.0f),
            "m.pbrt:4:9: parameter 'maxdepth': expected a number >= 1, found 0");
     refuse("coateddiffuse", white("thickness", -1.0f),
@@ -536,14 +538,13 @@ static void test_lacquer_parameters_act(void)
     g_assert_cmpfloat(fabsf(look_of(p) - plain_look), >, 1e-3f);
     p = satin();
     add_rgb(p, "albedo", 0.5f, 0.5f, 0.5f);
-    refuse("coatedconductor", p,
-           "m.pbrt:4:9: parameter 'albedo': a coat that scatters is not supported, "
-           "expected 0");
+    g_assert_cmpfloat(fabsf(look_of(p) - plain_look), >, 1e-3f);
     p = list();
     add_rgb(p, "reflectance", 1, 1, 1);
     add_rgb(p, "conductor.k", 1, 1, 1);
     refuse("coatedconductor", p,
-           "m.pbrt:4:9: a conductor has either 'reflectance' or 'eta' and 'k'");
+           "m.pbrt:4:9: a conductor has either 'reflectance' or 'conductor.eta' and "
+           "'conductor.k'");
     p = list();
     add_float(p, "roughness", 0.1f);
     refuse("coatedconductor", p,

@@ -24,3 +24,14 @@ spectrum dielectric_eta(const bsdf *b, vec3 wo);
 /** @brief The lane that decides: the one kept, else a random one where they differ; *u
  * stays uniform. */
 int dielectric_pick_lane(const bsdf *b, float *u);
+
+/**
+ * @brief f of refraction by rough facets, flux being kept: radiance is smaller by eta².
+ * Walter 2007, eq. 17 and 21.
+ *  @param wo,wi directions above and below, away from the boundary
+ *  @param eta far side over wo's
+ *  @param passes share of light that the facet lets through
+ *  @param pdf pdf_solid_angle of wi if a facet seen from wo is picked and refracts
+ */
+float dielectric_refraction(ggx g, vec3 wo, vec3 wi, float eta, float *passes,
+                            float *pdf);

@@ -50,33 +50,31 @@ static scattering reflection(const rough_pair *p)
     return out;
 }
 
-/* f of one lane's refraction and its density (Walter 2007, eq. 17 and 21, in the form
- * that conserves flux; radiance is scaled by 1/eta²). */
-static float facet_refraction(const rough_pair *p, float eta, float *pdf)
+float dielectric_refraction(ggx g, vec3 wo, vec3 wi, float eta, float *passes, float *pdf)
 {
-    *pdf = 0.0f;
-    vec3 m = normalize3(p->wi * eta + p->wo);
+    *pdf = *passes = 0.0f;
+    vec3 m = normalize3(wi * eta + wo);
     m = m[2] < 0.0f ? -m : m;
-    float om = dot3(p->wo, m), im = dot3(p->wi, m);
+    float om = dot3(wo, m), im = dot3(wi, m);
     if (!(om > 0.0f) || !(im < 0.0f))
         return 0.0f;
-    ggx g = p->d->roughness;
-    float r = fresnel_dielectric(om, eta), ci = -p->wi[2];
-    float so = ggx_stretched(g, p->wo), si = ggx_stretched(g, p->wi);
+    float so = ggx_stretched(g, wo), si = ggx_stretched(g, wi);
     float spread = 2.0f * ggx_density(g, m) * om * -im / square(im + om / eta);
-    *pdf = spread / (p->wo[2] + so) * (p->reflects ? 1.0f - r : 1.0f);
-    return (1.0f - r) * spread / (ci * so + p->wo[2] * si);
+    *passes = 1.0f - fresnel_dielectric(om, eta);
+    *pdf = spread / (wo[2] + so);
+    return *passes * spread / (-wi[2] * so + wo[2] * si);
 }
 
 static scattering transmission(const rough_pair *p)
 {
     scattering out = {0};
     for (int i = p->first_lane; i < p->end_lane; i++) {
-        float pdf;
-        out.f[i] = facet_refraction(p, p->eta[i], &pdf);
+        float pdf, passes;
+        out.f[i] = dielectric_refraction(p->d->roughness, p->wo, p->wi, p->eta[i],
+                                         &passes, &pdf);
         if (p->radiance)
             out.f[i] /= square(p->eta[i]);
-        out.pdf += pdf;
+        out.pdf += p->reflects ? pdf * passes : pdf;
     }
     out.pdf /= (float)(p->end_lane - p->first_lane);
     return out;

@@ -80,16 +80,23 @@ void bsdf_make_clear(bsdf *b);
 void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, ggx roughness,
                       const coat_table *table, int bounces);
 
-/** @brief A metal under a coat that may absorb. */
-typedef struct coated_metal {
-    spectrum eta, k; /**< of the metal, over vacuum */
-    float coat_eta;  /**< of the coat over that outside, within the table's range */
-    float thickness; /**< optical depth of the coat, straight through */
-    ggx coat, metal;
-    const coat_table *table; /**< of the coat, borrowed */
-} coated_metal;
+/** @brief A metal or a diffuse base under a rough or smooth coat, in which light may be
+ * scattered by particles. Thickness is optical: the way straight through the coat over
+ * the mean way between particles. */
+typedef struct coat_layers {
+    bool is_metal;
+    spectrum metal_eta, metal_k; /**< of the metal, over vacuum */
+    spectrum rho;                /**< of the diffuse base, 0..1 */
+    spectrum albedo;             /**< of the particles, 0..1; 0: they only absorb */
+    float eta;                   /**< of the coat over that outside */
+    float thickness, g;          /**< g: Henyey-Greenstein's mean cosine, -1..1 */
+    ggx coat, base;              /**< base: of the metal */
+    int max_depth;               /**< events of a walk within the coat, at most */
+    int n_walks;                 /**< over which a value is averaged */
+    uint32_t seed;               /**< of the walks, one of its own each pass */
+} coat_layers;
 
-void bsdf_make_coated_conductor(bsdf *b, const coated_metal *from);
+void bsdf_make_layered(bsdf *b, const coat_layers *from);
 
 /** @brief Normalised Blinn-Phong; where reflectance + specular > 1 the former is cut. */
 void bsdf_make_phong(bsdf *b, spectrum reflectance, spectrum specular, float exponent);

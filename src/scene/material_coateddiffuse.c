@@ -1,10 +1,9 @@
 /*
  * "coateddiffuse": pbrt-v4's plastic, a diffuse base under a dielectric coat.
  *
- * The coat may absorb (thickness) but not scatter: an albedo > 0 of the medium in it is
- * refused, and g, which is that medium's, means nothing without it. nsamples steers how
- * noisy pbrt's random walk is; here there is no walk, and no noise. maxdepth ends the
- * series of reflections between base and coat where pbrt's walk would end.
+ * A coat that only absorbs, and is as thick everywhere, needs no walk: its mean is known
+ * in closed form (bsdf_coated.c), so nsamples, which is over how many walks pbrt
+ * averages, makes no difference there. Coats with particles in them are walked through.
  */
 #include "scene/bsdf_models.h"
 #include "scene/material_inputs.h"
@@ -14,8 +13,8 @@ typedef struct plastic {
     spectrum_input reflectance;
     roughness_input roughness;
     curve *eta;
-    coat_table *table;
-    int bounces; /* off the base, at most */
+    coat_input coat;
+    coat_table *table; /* NULL: the coat is walked through */
 } plastic;
 
 static void plastic_free(void *self)
@@ -23,14 +22,17 @@ static void plastic_free(void *self)
     plastic *m = self;
     spectrum_input_clear(&m->reflectance);
     curve_unref(m->eta);
+    coat_input_clear(&m->coat);
     coat_table_free(m->table);
     g_free(m);
 }
 
-static coat_range range_of(const plastic *m, float thickness)
+static coat_range range_of(const plastic *m)
 {
-    coat_range range = {
-        .alpha_max = 1.0f, .eta_min = INFINITY, .eta_max = 0.0f, .thickness = thickness};
+    coat_range range = {.alpha_max = 1.0f,
+                        .eta_min = INFINITY,
+                        .eta_max = 0.0f,
+                        .thickness = m->coat.thickness.constant};
     if (roughness_input_is_constant(&m->roughness)) {
         ggx g = roughness_input_eval(&m->roughness, NULL);
         range.alpha_min = minf(g.alpha_x, g.alpha_y);
@@ -43,30 +45,20 @@ static coat_range range_of(const plastic *m, float thickness)
     return range;
 }
 
-static bool read_coat(plastic *m, const struct scene *s, const params *p, GError **error)
-{
-    int depth = 10, samples = 1;
-    float thickness;
-    m->eta = eta_input(p, "eta", error);
-    if (!m->eta || !roughness_input_init(&m->roughness, "", s, p, error) ||
-        !coat_input_thickness(p, &thickness, error) ||
-        !coat_input_count(p, "maxdepth", &depth, error) ||
-        !coat_input_count(p, "nsamples", &samples, error) || !coat_input_medium(p, error))
-        return false;
-    /* The walk meets base and coat in turn. */
-    m->bounces = depth / 2 + depth % 2;
-    coat_range range = range_of(m, thickness);
-    m->table = coat_table_new(&range);
-    return true;
-}
-
 static void *plastic_create(const struct scene *s, const params *p, GError **error)
 {
     plastic *m = g_new0(plastic, 1);
-    if (spectrum_input_init(&m->reflectance, s, p, "reflectance", CURVE_ALBEDO,
+    m->eta = eta_input(p, "eta", error);
+    if (m->eta &&
+        spectrum_input_init(&m->reflectance, s, p, "reflectance", CURVE_ALBEDO,
                             curve_constant(0.5f), error) &&
-        read_coat(m, s, p, error))
+        roughness_input_init(&m->roughness, "", s, p, error) &&
+        coat_input_init(&m->coat, s, p, error)) {
+        coat_range range = range_of(m);
+        if (coat_input_is_plain(&m->coat))
+            m->table = coat_table_new(&range);
         return m;
+    }
     plastic_free(m);
     return NULL;
 }
@@ -77,11 +69,21 @@ static void plastic_bsdf(const void *self, const surface_hit *hit, const wavelen
     const plastic *m = self;
     spectrum rho = spectrum_input_eval(&m->reflectance, hit, w);
     rho = spectrum_clamp(rho, 0.0f, 1.0f);
-    if (options->deterministic)
+    if (options->deterministic) {
         bsdf_make_diffuse(out, rho);
-    else
-        bsdf_make_coated(out, rho, curve_eval(m->eta, w),
-                         roughness_input_eval(&m->roughness, hit), m->table, m->bounces);
+        return;
+    }
+    ggx roughness = roughness_input_eval(&m->roughness, hit);
+    if (m->table) {
+        /* The walk meets base and coat in turn. */
+        int bounces = m->coat.max_depth / 2 + m->coat.max_depth % 2;
+        bsdf_make_coated(out, rho, curve_eval(m->eta, w), roughness, m->table, bounces);
+        return;
+    }
+    coat_layers from = {.rho = rho, .coat = roughness};
+    from.eta = spectrum_mean(curve_eval(m->eta, w));
+    coat_input_eval(&m->coat, hit, w, &from);
+    bsdf_make_layered(out, &from);
 }
 
 static unsigned plastic_lobes(const void *self)

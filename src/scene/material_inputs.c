@@ -2,6 +2,8 @@
 
 #include "scene/bsdf_models.h"
 
+#include <string.h>
+
 static bool check_not_negative(const params *p, const char *name, const float_input *in,
                                GError **error)
 {
@@ -84,31 +86,66 @@ curve *eta_input(const params *p, const char *name, GError **error)
     return eta;
 }
 
-/* ---- Coats ---- */
+/* ---- Metals ---- */
 
-bool coat_input_medium(const params *p, GError **error)
+bool metal_input_init(metal_input *in, const char *prefix, const struct scene *s,
+                      const params *p, GError **error)
 {
-    g_autoptr(curve) albedo = NULL;
-    float g = 0.0f, most = 0.0f;
-    if (!params_curve(p, "albedo", CURVE_ALBEDO, &albedo, error) ||
-        !params_float(p, "g", &g, error))
-        return false;
-    for (float nm = LAMBDA_MIN; albedo && nm <= LAMBDA_MAX; nm += 5.0f)
-        most = maxf(most, curve_at(albedo, nm));
-    if (most > 1e-4f) {
-        error_at(error, params_find(p, "albedo")->place,
-                 "parameter 'albedo': a coat that scatters is not supported, expected 0");
-        return false;
-    }
-    if (fabsf(g) > 1.0f) {
-        error_at(error, params_find(p, "g")->place,
-                 "parameter 'g': expected a number in -1..1, found %g", (double)g);
-        return false;
-    }
-    return true;
+    g_autofree char *eta = g_strconcat(prefix, "eta", NULL);
+    g_autofree char *k = g_strconcat(prefix, "k", NULL);
+    *in = (metal_input){0};
+    if (!params_has(p, "reflectance"))
+        return spectrum_input_init(&in->eta, s, p, eta, CURVE_UNBOUNDED,
+                                   curve_named("metal-Cu-eta"), error) &&
+               spectrum_input_init(&in->k, s, p, k, CURVE_UNBOUNDED,
+                                   curve_named("metal-Cu-k"), error);
+    if (!params_has(p, eta) && !params_has(p, k))
+        return spectrum_input_init(&in->reflectance, s, p, "reflectance", CURVE_ALBEDO,
+                                   NULL, error);
+    error_at(error, params_find(p, "reflectance")->place,
+             "a conductor has either 'reflectance' or '%s' and '%s'", eta, k);
+    return false;
 }
 
-bool coat_input_count(const params *p, const char *name, int *out, GError **error)
+void metal_input_clear(metal_input *in)
+{
+    spectrum_input_clear(&in->eta);
+    spectrum_input_clear(&in->k);
+    spectrum_input_clear(&in->reflectance);
+}
+
+void metal_input_eval(const metal_input *in, const surface_hit *hit, const wavelengths *w,
+                      spectrum *eta, spectrum *k)
+{
+    if (!spectrum_input_given(&in->reflectance)) {
+        *eta = spectrum_input_eval(&in->eta, hit, w);
+        *k = spectrum_input_eval(&in->k, hit, w);
+        return;
+    }
+    spectrum r = spectrum_input_eval(&in->reflectance, hit, w);
+    r = spectrum_clamp(r, 0.0f, 0.9999f);
+    *eta = spectrum_fill(1.0f);
+    *k = 2.0f * spectrum_sqrt(r / (1.0f - r));
+}
+
+/* ---- Coats ---- */
+
+/* |g| of 1 is a mirror's direction, which no walk could join. */
+#define MOST_FORWARD 0.999f
+
+static bool read_g(coat_input *in, const struct scene *s, const params *p, GError **error)
+{
+    if (!float_input_init(&in->g, s, p, "g", 0.0f, error))
+        return false;
+    if (in->g.texture || fabsf(in->g.constant) <= 1.0f)
+        return true;
+    error_at(error, params_find(p, "g")->place,
+             "parameter 'g': expected a number in -1..1, found %g",
+             (double)in->g.constant);
+    return false;
+}
+
+static bool read_count(const params *p, const char *name, int *out, GError **error)
 {
     if (!params_integer(p, name, out, error))
         return false;
@@ -119,14 +156,41 @@ bool coat_input_count(const params *p, const char *name, int *out, GError **erro
     return false;
 }
 
-bool coat_input_thickness(const params *p, float *out, GError **error)
+bool coat_input_init(coat_input *in, const struct scene *s, const params *p,
+                     GError **error)
 {
-    *out = 0.01f;
-    if (!params_float(p, "thickness", out, error))
+    *in = (coat_input){.max_depth = 10, .n_walks = 1};
+    return float_input_init(&in->thickness, s, p, "thickness", 0.01f, error) &&
+           check_not_negative(p, "thickness", &in->thickness, error) &&
+           spectrum_input_init(&in->albedo, s, p, "albedo", CURVE_ALBEDO,
+                               curve_constant(0.0f), error) &&
+           read_g(in, s, p, error) && read_count(p, "maxdepth", &in->max_depth, error) &&
+           read_count(p, "nsamples", &in->n_walks, error);
+}
+
+void coat_input_clear(coat_input *in)
+{
+    spectrum_input_clear(&in->albedo);
+}
+
+bool coat_input_is_plain(const coat_input *in)
+{
+    if (in->thickness.texture || in->albedo.texture)
         return false;
-    if (*out >= 0.0f)
-        return true;
-    error_at(error, params_find(p, "thickness")->place,
-             "parameter 'thickness': expected a number >= 0, found %g", (double)*out);
-    return false;
+    float most = 0.0f;
+    for (float nm = LAMBDA_MIN; nm <= LAMBDA_MAX; nm += 5.0f)
+        most = maxf(most, curve_at(in->albedo.constant, nm));
+    return !(most > 0.0f);
+}
+
+void coat_input_eval(const coat_input *in, const surface_hit *hit, const wavelengths *w,
+                     coat_layers *out)
+{
+    out->thickness = maxf(0.0f, float_input_eval(&in->thickness, hit));
+    out->g = clampf(float_input_eval(&in->g, hit), -MOST_FORWARD, MOST_FORWARD);
+    out->albedo = spectrum_clamp(spectrum_input_eval(&in->albedo, hit, w), 0.0f, 1.0f);
+    out->max_depth = in->max_depth;
+    out->n_walks = in->n_walks;
+    float first = w->lambda[0];
+    memcpy(&out->seed, &first, sizeof out->seed);
 }

@@ -6,6 +6,8 @@
 #include "scene/microfacet.h"
 #include "scene/texture.h"
 
+struct coat_layers;
+
 /** @brief pbrt's roughness, uroughness, vroughness and remaproughness. */
 typedef struct roughness_input {
     float_input u, v;
@@ -25,9 +27,36 @@ unsigned roughness_input_classes(const roughness_input *in);
  * ERROR_INPUT unless it is > 0 over the range of wavelengths. */
 curve *eta_input(const params *p, const char *name, GError **error);
 
-/** @brief Checks "albedo" and "g" of the medium in a coat: it may not scatter. */
-bool coat_input_medium(const params *p, GError **error);
-/** @brief A number >= 1. */
-bool coat_input_count(const params *p, const char *name, int *out, GError **error);
-/** @brief "thickness" >= 0, pbrt-v4's 0.01 if absent. */
-bool coat_input_thickness(const params *p, float *out, GError **error);
+/** @brief A metal: its index, copper's if nothing is given, or in place of it the
+ * reflectance at normal incidence, which is read as eta = 1 and
+ * k = 2 sqrt(r / (1 - r)) as pbrt-v4 does. */
+typedef struct metal_input {
+    spectrum_input eta, k, reflectance;
+} metal_input;
+
+/** @param prefix of "eta" and "k"; "reflectance" has none. Cleared by metal_input_clear
+ * also on failure. */
+bool metal_input_init(metal_input *in, const char *prefix, const struct scene *s,
+                      const params *p, GError **error);
+void metal_input_clear(metal_input *in);
+void metal_input_eval(const metal_input *in, const surface_hit *hit, const wavelengths *w,
+                      spectrum *eta, spectrum *k);
+
+/** @brief What pbrt's coats have beside their face and their base: "thickness" (0.01 if
+ * absent), "albedo" (0) and "g" (0) of the particles in them, "maxdepth" (10) and
+ * "nsamples" (1) of the walks. */
+typedef struct coat_input {
+    float_input thickness, g;
+    spectrum_input albedo;
+    int max_depth, n_walks;
+} coat_input;
+
+/** @brief Cleared by coat_input_clear also on failure. */
+bool coat_input_init(coat_input *in, const struct scene *s, const params *p,
+                     GError **error);
+void coat_input_clear(coat_input *in);
+/** @brief True if nothing is scattered in it and it is alike everywhere. */
+bool coat_input_is_plain(const coat_input *in);
+/** @brief Fills thickness, g, albedo, max_depth, n_walks and seed. */
+void coat_input_eval(const coat_input *in, const surface_hit *hit, const wavelengths *w,
+                     struct coat_layers *out);
