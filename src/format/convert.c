@@ -249,34 +249,11 @@ static void append_place(converter *c, const shape_place *at)
     g_string_append_c(c->world, '\n');
 }
 
-/* PLY has no place for tangents: such meshes are text. */
-static void append_mesh_text(converter *c, const mesh *m)
-{
-    g_autoptr(params) p = params_new((source_place){0}, "/", NULL);
-    params_add_numbers(p, p->place, PARAM_POINT3, "P", m->positions, 3 * m->n_vertices,
-                       &c->error);
-    if (m->normals)
-        params_add_numbers(p, p->place, PARAM_NORMAL, "N", m->normals, 3 * m->n_vertices,
-                           NULL);
-    params_add_numbers(p, p->place, PARAM_VECTOR3, "S", m->tangents, 3 * m->n_vertices,
-                       NULL);
-    if (m->uvs)
-        params_add_numbers(p, p->place, PARAM_POINT2, "uv", &m->uvs[0].x,
-                           2 * m->n_vertices, NULL);
-    params_add_integers(p, p->place, PARAM_INTEGER, "indices", (const int *)m->indices,
-                        3 * m->n_triangles, NULL);
-    g_string_append(c->world, "Shape \"trianglemesh\"");
-    for (guint i = 0; i < p->list->len; i++)
-        pbrt_text_param(c->world, p->list->pdata[i], NULL);
-}
-
 static void on_mesh(void *data, const mesh *m, const shape_place *at)
 {
     converter *c = data;
     begin_shape(c, at, NULL);
-    if (m->tangents) {
-        append_mesh_text(c, m);
-    } else if (make_folder(c)) {
+    if (make_folder(c)) {
         g_autofree char *name = g_strdup_printf("mesh-%u.ply", ++c->n_meshes);
         g_autofree char *path = g_build_filename(c->directory, name, NULL);
         g_autofree char *shown = g_strdup_printf("%s/%s", c->folder, name);

@@ -104,7 +104,22 @@ static bool matrix_of(const double columns[16], transform *out)
     return transform_from_matrix((const double(*)[4])m, out);
 }
 
-/* A node's transform; false if it flattens what is below it to nothing. */
+bool gltf_transform(const double t[3], const double q[4], const double s[3],
+                    transform *out)
+{
+    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    double unit[4] = {q[0], q[1], q[2], q[3]};
+    for (int i = 0; i < 4 && length > 0.0; i++)
+        unit[i] /= length;
+    if (!(fabs(s[0] * s[1] * s[2]) > 0.0))
+        return false;
+    transform move = transform_translate(t[0], t[1], t[2]), turn = rotation_of(unit);
+    transform scale = transform_scale(s[0], s[1], s[2]);
+    *out = transform_multiply(&move, &turn);
+    *out = transform_multiply(out, &scale);
+    return true;
+}
+
 static bool node_transform(const json_value *node, transform *out)
 {
     double columns[16], t[3] = {0}, s[3] = {1.0, 1.0, 1.0}, q[4] = {0, 0, 0, 1.0};
@@ -113,16 +128,7 @@ static bool node_transform(const json_value *node, transform *out)
     json_numbers(node, "translation", t, 3);
     json_numbers(node, "rotation", q, 4);
     json_numbers(node, "scale", s, 3);
-    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (int i = 0; i < 4 && length > 0.0; i++)
-        q[i] /= length;
-    if (!(fabs(s[0] * s[1] * s[2]) > 0.0))
-        return false;
-    transform move = transform_translate(t[0], t[1], t[2]), turn = rotation_of(q);
-    transform scale = transform_scale(s[0], s[1], s[2]);
-    *out = transform_multiply(&move, &turn);
-    *out = transform_multiply(out, &scale);
-    return true;
+    return gltf_transform(t, q, s, out);
 }
 
 static void add_node(gltf *g, const json_value *nodes, guint index,
@@ -142,16 +148,13 @@ static void add_children(gltf *g, const json_value *nodes, const json_value *lis
 static void add_node(gltf *g, const json_value *nodes, guint index,
                      const transform *parent)
 {
-    json_value node = json_element(nodes, index), extensions;
+    json_value node = json_element(nodes, index);
     transform own, to_world;
     if (g->visited[index]) {
         json_fail(&node, "the node is met twice: nodes must form a tree");
         return;
     }
     g->visited[index] = true;
-    json_value copies = gltf_extension(&node, "EXT_mesh_gpu_instancing", &extensions);
-    if (json_exists(&copies))
-        gltf_note(g, LOG_WARNING, "EXT_mesh_gpu_instancing: one of its copies is shown");
     if (!node_transform(&node, &own)) {
         if (!gltf_failed(g))
             gltf_note(g, LOG_WARNING, "a node scaled to nothing is left out");
@@ -266,12 +269,15 @@ static void make_room(gltf *g)
     json_value materials = json_member(&g->root, "materials");
     json_value buffers = json_member(&g->root, "buffers");
     g->n_materials = json_length(&materials);
+    json_value meshes = json_member(&g->root, "meshes");
     g->n_buffers = json_length(&buffers);
+    g->n_meshes = json_length(&meshes);
     g->buffers = g_new0(GBytes *, g->n_buffers + 1);
     g->materials = g_new0(gltf_material_info, g->n_materials + 1);
     for (guint i = 0; i <= g->n_materials; i++)
-        g->materials[i] = (gltf_material_info){
-            .index = NO_INDEX, .solid_index = NO_INDEX, .texcoord = -1};
+        g->materials[i] =
+            (gltf_material_info){.index = NO_INDEX, .solid_index = NO_INDEX};
+    g->meshes = g_new0(gltf_mesh_info, g->n_meshes + 1);
 }
 
 static void read_document(gltf *g)
@@ -281,6 +287,7 @@ static void read_document(gltf *g)
     if (gltf_failed(g))
         return;
     make_room(g);
+    gltf_survey(g);
     note_extensions(g);
     note_animations(g);
     if (!gltf_failed(g))
@@ -348,6 +355,7 @@ static void clear(gltf *g)
         params_free(g->materials[i].area_light), params_free(g->materials[i].alpha);
     g_free(g->buffers);
     g_free(g->materials);
+    g_free(g->meshes);
     g_free(g->visited);
     g_clear_pointer(&g->binary, g_bytes_unref);
     g_hash_table_unref(g->notes);

@@ -4,6 +4,7 @@
  *   gltf.c          .gltf and .glb, extensions, the scene graph
  *   gltf_buffer.c   buffers, views and accessors as arrays of numbers
  *   gltf_mesh.c     primitives as meshes
+ *   gltf_instance.c meshes where nodes put them, once or many times
  *   gltf_material.c materials, gltf_texture.c their textures
  *   gltf_light.c    lights and cameras
  *
@@ -25,9 +26,18 @@ typedef struct gltf_material_info {
     int solid_index;    /**< the same read as solid glass; NO_INDEX: not made yet */
     params *area_light; /**< what it shines with, owned; NULL: it does not */
     params *alpha;      /**< "alpha" of its shapes, owned; NULL: opaque */
-    int texcoord;       /**< the set of coordinates its textures use */
     bool transmits;     /**< without a volume: thin by the standard */
+    bool colored;       /**< some primitive of it has colours of vertices */
+    bool is_read;
 } gltf_material_info;
+
+/** @brief What is known of a mesh before it is read. */
+typedef struct gltf_mesh_info {
+    bool
+        repeats; /**< several nodes, or one many times, show it: instances of an object */
+    bool is_made; /**< the object, or it was found to be needless */
+    int object;   /**< in the scene: of all its primitives but shining ones; NO_INDEX */
+} gltf_mesh_info;
 
 typedef struct gltf {
     scene *scene;
@@ -40,7 +50,9 @@ typedef struct gltf {
     guint n_buffers;
     gltf_material_info *materials; /**< one per material, and the default one */
     guint n_materials;
-    bool *visited;     /**< per node */
+    bool *visited; /**< per node */
+    gltf_mesh_info *meshes;
+    guint n_meshes;
     GHashTable *notes; /**< texts given already */
     bool has_camera;
     bool solid;    /**< closed meshes that transmit are read as solid glass */
@@ -78,11 +90,26 @@ char *gltf_uri_path(gltf *g, const json_value *at, const char *uri);
  * @param count gets the number of elements */
 float *gltf_read_floats(gltf *g, gint64 accessor, unsigned n_components, size_t padding,
                         size_t *count);
-/** @brief The same of unsigned integers, one each. */
+/** @brief How many components the accessor's elements have; 0 with an error noted. */
+unsigned gltf_components(gltf *g, gint64 accessor);
+/** @brief gltf_read_floats of unsigned integers, one each. */
 uint32_t *gltf_read_indices(gltf *g, gint64 accessor, size_t *count);
 
 /* ---- the others ---- */
 
+/** @brief What a node's transform is, of "matrix" or "translation", "rotation" and
+ * "scale"; false if it flattens space. */
+bool gltf_transform(const double t[3], const double q[4], const double s[3],
+                    transform *out);
+/** @brief Which primitives of a mesh are meant: those that shine can not be part of an
+ * object. */
+typedef enum gltf_part { GLTF_ALL, GLTF_SHINING, GLTF_DARK } gltf_part;
+/** @brief Adds primitives of a mesh to the scene, or the object that is open.
+ *  @return how many there are of that part */
+guint gltf_add_primitives(gltf *g, const json_value *mesh, gltf_part part,
+                          const transform *to_world);
+/** @brief Counts how often each mesh is shown, and which materials have colours. */
+void gltf_survey(gltf *g);
 /** @brief Adds the mesh of a node to the scene. */
 void gltf_add_mesh(gltf *g, const json_value *node, const transform *to_world);
 /** @brief Index of a material in the scene, made if it is new; NO_INDEX with an error
@@ -90,15 +117,19 @@ void gltf_add_mesh(gltf *g, const json_value *node, const transform *to_world);
 int gltf_material_index(gltf *g, gint64 material, bool solid);
 /** @brief What is known of it (made at the first call). */
 const gltf_material_info *gltf_material(gltf *g, gint64 material);
-/** @brief Adds parameter `name` made of texture reference `info` times a factor of n
- * numbers (1: a number, of the channel; 3: a colour); the factor alone if there is no
- * texture. */
+/** @brief What of a texture is taken. */
+typedef struct gltf_channel {
+    const char *channel; /**< "R" to "A": a number; NULL: the colours */
+    bool vertex_color;   /**< times the colours of the vertices */
+    bool is_cut;         /**< a number: 0 below `cut`, else 1 */
+    double cut;
+} gltf_channel;
+/** @brief Adds parameter `name` made of texture reference `info` times a factor of one
+ * number or three; the factor alone if there is no texture. */
 void gltf_give_textured(gltf *g, params *p, const char *name, const json_value *info,
-                        const char *channel, const double *factor, unsigned n);
-/** @brief Adds "alpha": the image's alpha channel times a factor; below `cut` 0, else 1,
- * unless cut < 0. */
-void gltf_give_alpha(gltf *g, params *p, const json_value *info, double factor,
-                     double cut);
+                        const gltf_channel *how, const double *factor);
+/** @brief Adds "normalmap" and its scale, if there is one. */
+void gltf_give_normals(gltf *g, params *p, const json_value *info);
 /** @brief The path of a texture's image, made known to the scene if it is embedded;
  * interned, NULL with an error noted. */
 const char *gltf_image_path(gltf *g, const json_value *info);

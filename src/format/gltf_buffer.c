@@ -337,6 +337,14 @@ float *gltf_read_floats(gltf *g, gint64 index, unsigned n_components, size_t pad
     return NULL;
 }
 
+unsigned gltf_components(gltf *g, gint64 index)
+{
+    json_value accessors = json_member(&g->root, "accessors");
+    json_value accessor = json_element(&accessors, (guint)index);
+    unsigned n = gltf_failed(g) ? 0 : components_of(&accessor);
+    return gltf_failed(g) ? 0 : n;
+}
+
 uint32_t *gltf_read_indices(gltf *g, gint64 index, size_t *count)
 {
     json_value accessors = json_member(&g->root, "accessors"), accessor;

@@ -1,6 +1,6 @@
 /*
  * glTF materials: our material of the same name, and what else a glTF material says that
- * belongs to the surface: light that it sends out, and which coordinates it uses.
+ * belongs to the surface: light that it sends out, and cut-outs.
  */
 #include "format/gltf.h"
 
@@ -16,8 +16,9 @@
 
 /* ---- Parts ---- */
 
-static void give_base(gltf *g, params *p, const json_value *m)
+static void give_base(gltf *g, params *p, const json_value *m, bool colored)
 {
+    const gltf_channel base = {.vertex_color = colored};
     double color[4] = {1.0, 1.0, 1.0, 1.0}, x;
     json_value pbr = json_member(m, "pbrMetallicRoughness");
     json_value color_map = json_member(&pbr, "baseColorTexture");
@@ -25,11 +26,12 @@ static void give_base(gltf *g, params *p, const json_value *m)
     json_numbers(&pbr, "baseColorFactor", color, 4);
     for (int i = 0; i < 3; i++)
         color[i] = CLAMP(color[i], 0.0, 1.0);
-    gltf_give_textured(g, p, "basecolor", &color_map, NULL, color, 3);
+    gltf_give_textured(g, p, "basecolor", &color_map, &base, color);
     x = CLAMP(json_real(&pbr, "metallicFactor", 1.0), 0.0, 1.0);
-    gltf_give_textured(g, p, "metallic", &rough_map, "B", &x, 1);
+    gltf_give_textured(g, p, "metallic", &rough_map, &(gltf_channel){.channel = "B"}, &x);
     x = CLAMP(json_real(&pbr, "roughnessFactor", 1.0), 0.0, 1.0);
-    gltf_give_textured(g, p, "roughness", &rough_map, "G", &x, 1);
+    gltf_give_textured(g, p, "roughness", &rough_map, &(gltf_channel){.channel = "G"},
+                       &x);
 }
 
 /* A factor in 0..1 with its map, if there is something to say. */
@@ -40,7 +42,7 @@ static void give_share(gltf *g, params *p, const char *name, const json_value *o
     g_autofree char *map_key = g_strdup_printf("%sTexture", key);
     json_value map = json_member(of, map_key);
     double x = CLAMP(json_real(of, factor_key, fallback), 0.0, 1.0);
-    gltf_give_textured(g, p, name, &map, channel, &x, 1);
+    gltf_give_textured(g, p, name, &map, &(gltf_channel){.channel = channel}, &x);
 }
 
 static void give_specular(gltf *g, params *p, const json_value *m)
@@ -53,7 +55,7 @@ static void give_specular(gltf *g, params *p, const json_value *m)
     json_value map = json_member(&e, "specularColorTexture");
     json_numbers(&e, "specularColorFactor", color, 3);
     give_share(g, p, "specular", &e, "specular", 1.0, "A");
-    gltf_give_textured(g, p, "specularcolor", &map, NULL, color, 3);
+    gltf_give_textured(g, p, "specularcolor", &map, &(gltf_channel){0}, color);
 }
 
 static void give_coat(gltf *g, params *p, const json_value *m)
@@ -138,21 +140,6 @@ static bool give_transmission(gltf *g, params *p, const json_value *m, bool soli
     return solid;
 }
 
-static void give_normals(gltf *g, params *p, const json_value *m)
-{
-    json_value map = json_member(m, "normalTexture"), extensions;
-    if (!json_exists(&map))
-        return;
-    const char *path = gltf_image_path(g, &map);
-    json_value moved = gltf_extension(&map, "KHR_texture_transform", &extensions);
-    if (json_exists(&moved))
-        gltf_note(g, LOG_WARNING, "KHR_texture_transform of a normal map is left out");
-    if (path) {
-        give_text(p, PARAM_STRING, "normalmap", path);
-        give_float(p, "normalscale", json_real(&map, "scale", 1.0));
-    }
-}
-
 /* ---- What shines ---- */
 
 static params *read_emission(gltf *g, const json_value *m)
@@ -166,7 +153,7 @@ static params *read_emission(gltf *g, const json_value *m)
     if (!(color[0] + color[1] + color[2] > 0.0) || !(strength > 0.0))
         return NULL;
     params *p = gltf_params(g);
-    gltf_give_textured(g, p, "L", &map, NULL, color, 3);
+    gltf_give_textured(g, p, "L", &map, &(gltf_channel){0}, color);
     give_float(p, "scale", strength);
     return p;
 }
@@ -174,7 +161,7 @@ static params *read_emission(gltf *g, const json_value *m)
 /* ---- Cut-outs ---- */
 
 /* The alpha channel of the base colour, which for MASK is cut at a value. */
-static params *read_alpha(gltf *g, const json_value *m)
+static params *read_alpha(gltf *g, const json_value *m, bool colored)
 {
     static const char *const modes[] = {"OPAQUE", "MASK", "BLEND", NULL};
     const char *mode = json_text(m, "alphaMode");
@@ -189,10 +176,11 @@ static params *read_alpha(gltf *g, const json_value *m)
         return NULL;
     bool masked = strcmp(mode, "MASK") == 0;
     params *p = gltf_params(g);
-    if (json_exists(&map))
-        gltf_give_alpha(g, p, &map, alpha, masked ? cut : -1.0);
-    else
-        give_float(p, "alpha", masked ? (alpha < cut ? 0.0 : 1.0) : alpha);
+    const gltf_channel how = {
+        .channel = "A", .vertex_color = colored, .is_cut = masked, .cut = cut};
+    if (masked && !json_exists(&map) && !colored)
+        alpha = alpha < cut ? 0.0 : 1.0;
+    gltf_give_textured(g, p, "alpha", &map, &how, &alpha);
     return p;
 }
 
@@ -206,15 +194,16 @@ static void note_occlusion(gltf *g, const json_value *m)
                   "occlusion maps are not needed: light itself finds what is hidden");
 }
 
-static params *material_params(gltf *g, const json_value *m, bool solid)
+static params *material_params(gltf *g, const json_value *m, bool colored, bool solid)
 {
     params *p = gltf_params(g);
-    give_base(g, p, m);
+    json_value normals = json_member(m, "normalTexture");
+    give_base(g, p, m, colored);
     give_specular(g, p, m);
     give_coat(g, p, m);
     solid = give_transmission(g, p, m, solid);
     give_index(p, m, solid);
-    give_normals(g, p, m);
+    gltf_give_normals(g, p, &normals);
     return p;
 }
 
@@ -236,12 +225,10 @@ static void read_info(gltf *g, const json_value *m, gltf_material_info *info)
 {
     json_value extensions;
     json_value e = gltf_extension(m, "KHR_materials_transmission", &extensions);
-    json_value pbr = json_member(m, "pbrMetallicRoughness");
-    json_value map = json_member(&pbr, "baseColorTexture");
-    info->texcoord = (int)MAX(0, json_whole(&map, "texCoord", 64));
+    info->is_read = true;
     info->transmits = json_exists(&e) && !has_volume(m);
     info->area_light = read_emission(g, m);
-    info->alpha = read_alpha(g, m);
+    info->alpha = read_alpha(g, m, info->colored);
     note_occlusion(g, m);
 }
 
@@ -253,7 +240,7 @@ static void make(gltf *g, const json_value *m, gltf_material_info *info, bool so
         name ? g_strdup_printf("%s%s", name, solid ? " (solid)" : "") : NULL;
     if (unique && scene_find_material(g->scene, unique) != NO_INDEX)
         g_clear_pointer(&unique, g_free);
-    g_autoptr(params) p = material_params(g, m, solid);
+    g_autoptr(params) p = material_params(g, m, info->colored, solid);
     if (gltf_failed(g))
         return;
     int made = scene_add_material(g->scene, unique, "gltf", p, &error);
@@ -268,7 +255,7 @@ const gltf_material_info *gltf_material(gltf *g, gint64 index)
     if (gltf_failed(g))
         return NULL;
     gltf_material_info *info = info_of(g, index);
-    if (info->texcoord < 0)
+    if (!info->is_read)
         read_info(g, &m, info);
     return gltf_failed(g) ? NULL : info;
 }

@@ -75,18 +75,40 @@ static bool read_tangents(gltf *g, const json_value *attributes, mesh *m)
     return true;
 }
 
-static bool read_uvs(gltf *g, const json_value *attributes, int set, mesh *m)
+static bool read_uvs(gltf *g, const json_value *attributes, const char *name,
+                     const mesh *m, vec2 **out)
 {
     size_t count;
-    g_autofree char *name = g_strdup_printf("TEXCOORD_%d", set);
     gint64 index = json_whole(attributes, name, GLTF_MOST);
     if (index < 0)
         return !gltf_failed(g);
-    m->uvs = (vec2 *)(void *)gltf_read_floats(g, index, 2, 0, &count);
-    if (!m->uvs || !check_count(attributes, name, count, m))
+    vec2 *uvs = *out = (vec2 *)(void *)gltf_read_floats(g, index, 2, 0, &count);
+    if (!uvs || !check_count(attributes, name, count, m))
         return false;
     for (size_t i = 0; i < count; i++)
-        m->uvs[i].y = 1.0f - m->uvs[i].y;
+        uvs[i].y = 1.0f - uvs[i].y;
+    return true;
+}
+
+/* Three components are opaque. */
+static bool read_colors(gltf *g, const json_value *attributes, mesh *m)
+{
+    size_t count;
+    gint64 index = json_whole(attributes, "COLOR_0", GLTF_MOST);
+    unsigned n = index < 0 ? 0 : gltf_components(g, index);
+    if (index < 0 || gltf_failed(g))
+        return !gltf_failed(g);
+    if (n != 3 && n != 4) {
+        json_fail(attributes, "expected a COLOR_0 of 3 or 4 components, found %u", n);
+        return false;
+    }
+    m->colors = gltf_read_floats(g, index, n, n == 3 ? m->n_vertices : 0, &count);
+    if (!m->colors || !check_count(attributes, "COLOR_0", count, m))
+        return false;
+    for (size_t i = count; n == 3 && i-- > 0;) {
+        memmove(m->colors + 4 * i, m->colors + 3 * i, 3 * sizeof(float));
+        m->colors[4 * i + 3] = 1.0f;
+    }
     return true;
 }
 
@@ -152,28 +174,25 @@ static bool read_triangles(gltf *g, const json_value *primitive, gint64 mode, me
 static void note_left_out(gltf *g, const json_value *primitive,
                           const json_value *attributes)
 {
-    static const char *const names[][2] = {
-        {"COLOR_0", "colours of vertices are left out"},
-        {"JOINTS_0", "skins are left out: the mesh stands as it was modelled"},
-    };
-    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
-        json_value v = json_member(attributes, names[i][0]);
-        if (json_exists(&v))
-            gltf_note(g, LOG_WARNING, "%s", names[i][1]);
-    }
+    json_value joints = json_member(attributes, "JOINTS_0");
+    if (json_exists(&joints))
+        gltf_note(g, LOG_WARNING,
+                  "skins are left out: the mesh stands as it was modelled");
     json_value targets = json_member(primitive, "targets");
     if (json_exists(&targets))
         gltf_note(g, LOG_WARNING, "morph targets are left out");
 }
 
-static bool read_primitive(gltf *g, const json_value *primitive, int uv_set, mesh *m)
+static bool read_primitive(gltf *g, const json_value *primitive, mesh *m)
 {
     json_value attributes = json_member(primitive, "attributes");
     gint64 mode = json_whole(primitive, "mode", 6);
     note_left_out(g, primitive, &attributes);
     return !gltf_failed(g) && read_positions(g, &attributes, m) &&
            read_normals(g, &attributes, m) && read_tangents(g, &attributes, m) &&
-           read_uvs(g, &attributes, uv_set, m) &&
+           read_uvs(g, &attributes, "TEXCOORD_0", m, &m->uvs) &&
+           read_uvs(g, &attributes, "TEXCOORD_1", m, &m->uvs2) &&
+           read_colors(g, &attributes, m) &&
            read_triangles(g, primitive, mode < 0 ? MODE_TRIANGLES : mode, m);
 }
 
@@ -218,12 +237,11 @@ static void add_shape(gltf *g, const json_value *primitive, mesh *m,
         gltf_take_error(g, primitive, error);
 }
 
-static void add_primitive(gltf *g, const json_value *primitive, const transform *to_world)
+static void add_primitive(gltf *g, const json_value *primitive, gint64 number,
+                          const gltf_material_info *info, const transform *to_world)
 {
     mesh m = {0};
-    gint64 number = json_whole(primitive, "material", GLTF_MOST);
-    const gltf_material_info *info = gltf_material(g, number);
-    if (info && read_primitive(g, primitive, info->texcoord, &m)) {
+    if (read_primitive(g, primitive, &m)) {
         bool solid = is_solid(g, primitive, &m, info);
         shape_place at = {.to_world = *to_world,
                           .material = gltf_material_index(g, number, solid),
@@ -248,18 +266,21 @@ static bool has_surface(gltf *g, const json_value *primitive)
     return false;
 }
 
-void gltf_add_mesh(gltf *g, const json_value *node, const transform *to_world)
+guint gltf_add_primitives(gltf *g, const json_value *of, gltf_part part,
+                          const transform *to_world)
 {
-    json_value array;
-    gint64 index;
-    json_value of = gltf_refer(g, node, "mesh", "meshes", &array, &index);
-    if (!json_exists(&of))
-        return;
-    json_value primitives = json_member(&of, "primitives");
-    guint n = json_length(&primitives);
+    json_value primitives = json_member(of, "primitives");
+    guint n = json_length(&primitives), n_added = 0;
     for (guint i = 0; i < n && !gltf_failed(g); i++) {
         json_value primitive = json_element(&primitives, i);
-        if (has_surface(g, &primitive) && !gltf_failed(g))
-            add_primitive(g, &primitive, to_world);
+        gint64 number = json_whole(&primitive, "material", GLTF_MOST);
+        const gltf_material_info *info = gltf_material(g, number);
+        if (!info || !has_surface(g, &primitive) || gltf_failed(g))
+            continue;
+        if (part == GLTF_ALL || (part == GLTF_SHINING) == (info->area_light != NULL)) {
+            add_primitive(g, &primitive, number, info, to_world);
+            n_added++;
+        }
     }
+    return n_added;
 }

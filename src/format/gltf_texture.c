@@ -5,6 +5,7 @@
 #include "format/gltf.h"
 
 #include "format/given.h"
+#include "format/pbrt_text.h"
 
 #include <string.h>
 
@@ -85,11 +86,26 @@ static void give_sampler(gltf *g, params *p, const json_value *info)
         give_text(p, PARAM_STRING, "filter", "point");
 }
 
-static void give_transform(params *p, const json_value *info)
+/* Meshes keep two sets of coordinates. */
+static void give_set(gltf *g, params *p, const json_value *info, const json_value *moved)
+{
+    gint64 own = json_whole(info, "texCoord", 64);
+    gint64 other = json_whole(moved, "texCoord", 64);
+    gint64 set = MAX(0, other >= 0 ? other : own);
+    if (set > 1)
+        gltf_note(g, LOG_WARNING,
+                  "texture coordinates beyond the second set are left out: such textures "
+                  "use the first");
+    if (set == 1)
+        give_integer(p, "uvset", 1);
+}
+
+static void give_coordinates(gltf *g, params *p, const json_value *info)
 {
     json_value extensions;
     json_value t = gltf_extension(info, "KHR_texture_transform", &extensions);
     double offset[2] = {0.0, 0.0}, scale[2] = {1.0, 1.0};
+    give_set(g, p, info, &t);
     if (!json_exists(&t))
         return;
     json_numbers(&t, "offset", offset, 2);
@@ -115,14 +131,8 @@ static void give_factor(params *p, param_type type, const char *name,
 static char *texture_name(const params *p)
 {
     g_autoptr(GString) text = g_string_new(NULL);
-    for (guint i = 0; i < p->list->len; i++) {
-        const param *q = p->list->pdata[i];
-        for (size_t k = 0; k < q->n; k++)
-            if (q->strings)
-                g_string_append_printf(text, "%s ", q->strings[k]);
-            else
-                g_string_append_printf(text, "%g ", (double)q->numbers[k]);
-    }
+    for (guint i = 0; i < p->list->len; i++)
+        pbrt_text_param(text, p->list->pdata[i], NULL);
     g_autofree char *sum = g_compute_checksum_for_string(G_CHECKSUM_MD5, text->str, -1);
     return g_strdup_printf("image-%.12s", sum);
 }
@@ -141,37 +151,45 @@ static void give_texture(gltf *g, params *p, const char *name, const json_value 
     give_text(p, PARAM_TEXTURE, name, unique);
 }
 
-void gltf_give_textured(gltf *g, params *p, const char *name, const json_value *info,
-                        const char *channel, const double *factor, unsigned n)
+/* What names an image and how it lies on the surface; nothing if there is none. */
+static bool give_image(gltf *g, params *p, const json_value *info)
 {
     const char *path = json_exists(info) ? gltf_image_path(g, info) : NULL;
-    if (!json_exists(info))
-        give_factor(p, PARAM_RGB, name, factor, n);
     if (!path)
-        return;
-    g_autoptr(params) img = gltf_params(g);
-    give_text(img, PARAM_STRING, "filename", path);
-    if (n == 1)
-        give_text(img, PARAM_STRING, "channel", channel);
-    give_factor(img, PARAM_RGB, "factor", factor, n);
-    give_sampler(g, img, info);
-    give_transform(img, info);
-    give_texture(g, p, name, info, img, n == 1);
+        return false;
+    give_text(p, PARAM_STRING, "filename", path);
+    give_sampler(g, p, info);
+    give_coordinates(g, p, info);
+    return true;
 }
 
-void gltf_give_alpha(gltf *g, params *p, const json_value *info, double factor,
-                     double cut)
+void gltf_give_textured(gltf *g, params *p, const char *name, const json_value *info,
+                        const gltf_channel *how, const double *factor)
 {
-    const char *path = gltf_image_path(g, info);
-    if (!path)
-        return;
     g_autoptr(params) img = gltf_params(g);
-    give_text(img, PARAM_STRING, "filename", path);
-    give_text(img, PARAM_STRING, "channel", "A");
-    give_float(img, "factor", factor);
-    if (cut >= 0.0)
-        give_float(img, "cutoff", cut);
-    give_sampler(g, img, info);
-    give_transform(img, info);
-    give_texture(g, p, "alpha", info, img, true);
+    bool has_image = give_image(g, img, info), is_number = how->channel != NULL;
+    if (gltf_failed(g))
+        return;
+    if (!has_image && !how->vertex_color) {
+        give_factor(p, PARAM_RGB, name, factor, is_number ? 1 : 3);
+        return;
+    }
+    if (is_number)
+        give_text(img, PARAM_STRING, "channel", how->channel);
+    if (how->vertex_color)
+        give_bool(img, "vertexcolor", true);
+    if (how->is_cut)
+        give_float(img, "cutoff", how->cut);
+    give_factor(img, PARAM_RGB, "factor", factor, is_number ? 1 : 3);
+    give_texture(g, p, name, info, img, is_number);
+}
+
+void gltf_give_normals(gltf *g, params *p, const json_value *info)
+{
+    g_autoptr(params) img = gltf_params(g);
+    if (!give_image(g, img, info))
+        return;
+    give_text(img, PARAM_STRING, "encoding", "linear");
+    give_texture(g, p, "normalmap", info, img, false);
+    give_float(p, "normalscale", json_real(info, "scale", 1.0));
 }

@@ -12,15 +12,17 @@
 #include "format/ply_values.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
-enum { N_COLUMNS = 8, BLOCK = 1024 };
+enum { N_COLUMNS = 17, BLOCK = 1024 };
 
 /** A vertex property that is kept. */
 typedef struct column {
     int property; /**< index, -1: the file has none */
     float *to;    /**< of the first vertex */
     size_t stride;
+    const char *name;
 } column;
 
 static bool skip_element(ply_reader *r, const ply_element *e, GError **error)
@@ -57,52 +59,71 @@ static bool alloc_rows(float **out, size_t n, size_t per_row, const char *what,
     return *out != NULL;
 }
 
-static bool has_all(const ply_element *e, const char *const *names, size_t n)
+/* What vertices may have: the names of its properties, one way or another, and where in
+ * a mesh it goes. The last three are what ply_write adds for pictures that need them. */
+typedef struct attribute {
+    const char *names[4]; /**< blank-separated */
+    int n;
+    size_t offset;
+    const char *what;
+} attribute;
+
+static const attribute attributes[] = {
+    {{"x y z"}, 3, offsetof(mesh, positions), "vertices"},
+    {{"nx ny nz"}, 3, offsetof(mesh, normals), "normals"},
+    {{"u v", "s t", "texture_u texture_v", "texture_s texture_t"},
+     2,
+     offsetof(mesh, uvs),
+     "texture coordinates"},
+    {{"u2 v2"}, 2, offsetof(mesh, uvs2), "texture coordinates"},
+    {{"tx ty tz"}, 3, offsetof(mesh, tangents), "tangents"},
+    {{"color_r color_g color_b color_a"}, 4, offsetof(mesh, colors), "colours"},
+};
+
+/* Columns of the properties of these names; false if one is missing. */
+static bool find_columns(column *columns, const ply_element *e, const char *names, int n)
 {
-    for (size_t i = 0; i < n; i++) {
-        int p = ply_find_property(e, names[i]);
+    g_auto(GStrv) words = g_strsplit(names, " ", -1);
+    for (int i = 0; i < n; i++) {
+        int p = ply_find_property(e, words[i]);
         if (p < 0 || ply_property_at(e, (guint)p)->is_list)
             return false;
+        columns[i] = (column){p, NULL, (size_t)n, g_intern_string(words[i])};
     }
     return true;
 }
 
-static void add_columns(column *columns, const ply_element *e, const char *const *names,
-                        size_t n, float *to)
+static bool plan_attribute(ply_reader *r, const ply_element *e, const attribute *a,
+                           column *columns, GError **error)
 {
-    for (size_t i = 0; i < n; i++)
-        columns[i] = (column){ply_find_property(e, names[i]), to + i, n};
+    bool found = false;
+    for (size_t i = 0; i < G_N_ELEMENTS(a->names) && a->names[i] && !found; i++)
+        found = find_columns(columns, e, a->names[i], a->n);
+    for (int i = 0; i < a->n && !found; i++)
+        columns[i].property = -1;
+    if (!found)
+        return true;
+    float *to;
+    if (!alloc_rows(&to, e->count, (size_t)a->n, a->what, error))
+        return false;
+    *(float **)(void *)((char *)&r->m + a->offset) = to;
+    for (int i = 0; i < a->n; i++)
+        columns[i].to = to + i;
+    return true;
 }
 
 /** Which properties go where; allocates their arrays. */
 static bool plan_columns(ply_reader *r, const ply_element *e, column *columns,
                          GError **error)
 {
-    static const char *const points[] = {"x", "y", "z"};
-    static const char *const normals[] = {"nx", "ny", "nz"};
-    static const char *const uvs[][2] = {
-        {"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
-    mesh *m = &r->m;
-    for (int i = 0; i < N_COLUMNS; i++)
-        columns[i].property = -1;
-    if (!has_all(e, points, 3))
-        return ply_fail(r, error, "expected vertices with x, y and z, found none");
-    if (!alloc_rows(&m->positions, e->count, 3, "vertices", error))
-        return false;
-    add_columns(columns, e, points, 3, m->positions);
-    if (has_all(e, normals, 3)) {
-        if (!alloc_rows(&m->normals, e->count, 3, "normals", error))
+    int at = 0;
+    for (size_t i = 0; i < G_N_ELEMENTS(attributes); i++) {
+        if (!plan_attribute(r, e, &attributes[i], columns + at, error))
             return false;
-        add_columns(columns + 3, e, normals, 3, m->normals);
+        at += attributes[i].n;
     }
-    for (size_t i = 0; i < G_N_ELEMENTS(uvs) && !m->uvs; i++)
-        if (has_all(e, uvs[i], 2)) {
-            m->uvs = big_alloc(e->count, sizeof *m->uvs, "texture coordinates", error);
-            if (!m->uvs)
-                return false;
-            add_columns(columns + 6, e, uvs[i], 2, &m->uvs->x);
-        }
-    return true;
+    return r->m.positions ||
+           ply_fail(r, error, "expected vertices with x, y and z, found none");
 }
 
 /** Rows of one size: block by block, so that a block's columns meet it in the cache. */
@@ -161,15 +182,13 @@ static bool read_row(ply_reader *r, const ply_element *e, const column *columns,
 static bool check_finite(const ply_reader *r, const column *columns, size_t n,
                          GError **error)
 {
-    static const char *const names[N_COLUMNS] = {"x",  "y",  "z", "nx",
-                                                 "ny", "nz", "u", "v"};
     for (int c = 0; c < N_COLUMNS; c++)
         for (size_t i = 0; columns[c].property >= 0 && i < n; i++)
             if (!isfinite(columns[c].to[i * columns[c].stride])) {
                 error_set(error, ERROR_INPUT,
                           "%s: expected finite numbers, found %s = %g of vertex %zu",
-                          r->file, names[c], (double)columns[c].to[i * columns[c].stride],
-                          i);
+                          r->file, columns[c].name,
+                          (double)columns[c].to[i * columns[c].stride], i);
                 return false;
             }
     return true;

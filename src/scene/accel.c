@@ -503,6 +503,7 @@ static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit 
     hit->primitive = query.hit.primID;
     hit->dpdv = (vec3){0};
     hit->footprint = 0.0f;
+    hit->mesh = NULL;
     if (query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
         fill_instance(a, &query, r, hit);
         return true;

@@ -19,6 +19,7 @@ typedef struct ray {
 } ray;
 
 struct medium;
+struct mesh;
 
 enum { NO_INDEX = -1 };
 
@@ -42,7 +43,10 @@ typedef struct surface_hit {
     uint32_t primitive; /**< triangle of a mesh, else 0 */
     int material; /**< index in scene->materials, or NO_INDEX: an invisible interface */
     int light;    /**< index in scene->lights of the area light here, or NO_INDEX */
-    const struct medium *medium;   /**< that the ray came through; NULL: none */
+    const struct medium *medium; /**< that the ray came through; NULL: none */
+    const struct mesh *mesh; /**< that the triangle is of (mesh_attributes.h); NULL: on
+                                another shape */
+    vec2 corners;            /**< weights of the triangle's second and third corner */
     const struct medium *interior; /**< behind the surface, against n_geom; NULL: it
                                       bounds none */
 } surface_hit;

@@ -60,7 +60,9 @@ static spectrum shines_from(const area_light *l, const shape_sample *at,
                              .n = at->n,
                              .n_geom = at->n,
                              .uv = at->uv,
-                             .primitive = at->primitive};
+                             .primitive = at->primitive,
+                             .mesh = at->mesh,
+                             .corners = at->corners};
     return shines(l, &hit, w) * shape_opacity(l->on, &hit);
 }
 

@@ -17,17 +17,33 @@
 #define STEP 0.0005f
 
 struct bump {
-    picture normals; /* no levels: it is a displacement */
-    float scale;     /* of the map's x and y */
+    picture normals;        /* no levels: it is something else */
+    const texture *texture; /* borrowed: a map that is a texture; NULL */
+    float scale;            /* of the map's x and y */
     float_input displacement;
 };
+
+static bool read_texture(bump *b, const struct scene *s, const param *q, GError **error)
+{
+    b->texture = texture_find(s, q, true, error);
+    if (!b->texture || texture_is_normal_map(b->texture))
+        return b->texture != NULL;
+    error_at(error, q->place,
+             "parameter 'normalmap': a texture of kind '%s' can not be a normal map",
+             texture_kind_name(b->texture));
+    return false;
+}
 
 static bool read_normals(bump *b, const struct scene *s, const params *p, GError **error)
 {
     const image_read_options linear = {.encoding = ENCODING_LINEAR};
+    const param *q = params_find(p, "normalmap");
     b->scale = 1.0f;
-    return picture_read(&b->normals, s, p, "normalmap", &linear, error) &&
-           params_float(p, "normalscale", &b->scale, error);
+    if (!params_float(p, "normalscale", &b->scale, error))
+        return false;
+    if (q->type == PARAM_TEXTURE)
+        return read_texture(b, s, q, error);
+    return picture_read(&b->normals, s, p, "normalmap", &linear, error);
 }
 
 bool bump_new(bump **out, const struct scene *s, const params *p, GError **error)
@@ -59,14 +75,23 @@ void bump_free(bump *b)
     g_free(b);
 }
 
-static vec3 mapped_normal(const bump *b, const surface_hit *hit)
+static void look_up(const bump *b, const surface_hit *hit, float rgb[3])
 {
-    frame f = frame_from_tangent(hit->n, hit->dpdu);
     vec2 st = {hit->uv.x, 1.0f - hit->uv.y};
     texel_mix mix = picture_bilinear(&b->normals, 0, st, WRAP_REPEAT);
-    float rgb[3];
     picture_rgb(&b->normals, &mix, rgb);
-    float mirrored = dot3(f.t, hit->dpdv) < 0.0f ? -1.0f : 1.0f;
+}
+
+static vec3 mapped_normal(const bump *b, const surface_hit *hit)
+{
+    vec3 dpdu = hit->dpdu, dpdv = hit->dpdv;
+    float rgb[3];
+    if (b->texture)
+        texture_eval_normal(b->texture, hit, rgb, &dpdu, &dpdv);
+    else
+        look_up(b, hit, rgb);
+    frame f = frame_from_tangent(hit->n, dpdu);
+    float mirrored = dot3(f.t, dpdv) < 0.0f ? -1.0f : 1.0f;
     vec3 local =
         vec3_make(b->scale * (2.0f * rgb[0] - 1.0f),
                   b->scale * mirrored * (2.0f * rgb[1] - 1.0f), 2.0f * rgb[2] - 1.0f);
@@ -100,8 +125,8 @@ static vec3 displaced_normal(const bump *b, const surface_hit *hit)
 
 frame bump_frame(const bump *b, const surface_hit *hit)
 {
-    vec3 n = normalize3(b->normals.n_levels ? mapped_normal(b, hit)
-                                            : displaced_normal(b, hit));
+    vec3 n = normalize3(b->normals.n_levels || b->texture ? mapped_normal(b, hit)
+                                                          : displaced_normal(b, hit));
     if (!(length3_2(n) > 0.5f) || !finite3(n))
         n = hit->n;
     return frame_from_tangent(n, hit->dpdu);

@@ -44,6 +44,8 @@ void mesh_clear(mesh *m)
     big_free(m->normals);
     big_free(m->tangents);
     big_free(m->uvs);
+    big_free(m->uvs2);
+    big_free(m->colors);
     big_free(m->indices);
     *m = (mesh){0};
 }
@@ -84,7 +86,10 @@ static bool check_mesh(const mesh *m, source_place place, GError **error)
     return check_numbers(m->positions, m->n_vertices, 3, "position", place, error) &&
            check_numbers(m->normals, m->n_vertices, 3, "normal", place, error) &&
            check_numbers(m->tangents, m->n_vertices, 3, "tangent", place, error) &&
-           check_numbers((const float *)m->uvs, m->n_vertices, 2, "uv", place, error);
+           check_numbers((const float *)m->uvs, m->n_vertices, 2, "uv", place, error) &&
+           check_numbers((const float *)m->uvs2, m->n_vertices, 2, "second uv", place,
+                         error) &&
+           check_numbers(m->colors, m->n_vertices, 4, "colour", place, error);
 }
 
 static void store3(float *to, vec3 v)
@@ -323,6 +328,8 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     if (!(length3_2(hit->dpdu) > 0.0f))
         hit->dpdu = frame_from_normal(hit->n).s;
     hit->error = rounding_error(&c, hit->p, plane);
+    hit->mesh = &s->m;
+    hit->corners = (vec2){u, v};
 }
 
 /* Solid angles between which Arvo's formula is used. */
@@ -349,6 +356,8 @@ static shape_sample sample_at(const mesh_shape *s, size_t primitive,
                           .n = n,
                           .uv = interpolate_uv(uv, b),
                           .primitive = (uint32_t)primitive,
+                          .mesh = &s->m,
+                          .corners = {b[1], b[2]},
                           .pdf = 1.0f / area(s),
                           .error = rounding_error(&c, p, plane)};
 }

@@ -28,6 +28,8 @@ typedef struct mesh {
     float *normals;   /**< 3 per vertex, unit; NULL: flat */
     float *tangents;  /**< 3 per vertex; NULL */
     vec2 *uvs;        /**< per vertex; NULL: pbrt's default (0,0) (1,0) (1,1) by corner */
+    vec2 *uvs2;       /**< a second set, for textures that ask for it; NULL: as uvs */
+    float *colors;    /**< 4 per vertex, linear and opacity, likewise; NULL: white */
     uint32_t *indices; /**< 3 per triangle */
 } mesh;
 
@@ -38,6 +40,8 @@ typedef struct shape_sample {
     vec3 p, n; /**< n: geometric normal, as surface_hit's n_geom */
     vec2 uv;
     uint32_t primitive;
+    const mesh *mesh; /**< mesh and corners as in surface_hit */
+    vec2 corners;
     float pdf;   /**< per area (m⁻²) or per solid angle, by the call that made it */
     float error; /**< as in surface_hit */
 } shape_sample;

@@ -76,6 +76,17 @@ spectrum texture_eval_spectrum(const texture *t, const surface_hit *hit,
     return t->kind->eval_spectrum(t->self, hit, w, role);
 }
 
+bool texture_is_normal_map(const texture *t)
+{
+    return t->kind->eval_normal != NULL;
+}
+
+void texture_eval_normal(const texture *t, const surface_hit *hit, float rgb[3],
+                         vec3 *dpdu, vec3 *dpdv)
+{
+    t->kind->eval_normal(t->self, hit, rgb, dpdu, dpdv);
+}
+
 const char *texture_kind_name(const texture *t)
 {
     return t->kind->name;

@@ -23,6 +23,10 @@ typedef struct texture_kind {
     float (*eval_float)(const void *self, const surface_hit *hit);
     spectrum (*eval_spectrum)(const void *self, const surface_hit *hit,
                               const wavelengths *w, curve_role role);
+    /** The picture's red, green and blue as they are stored, and the tangents of its
+     * coordinates where they are not the hit's own: a normal map. NULL: can be none. */
+    void (*eval_normal)(const void *self, const surface_hit *hit, float rgb[3],
+                        vec3 *dpdu, vec3 *dpdv);
 } texture_kind;
 
 texture *texture_new(const struct scene *s, const char *kind, bool is_spectrum,
@@ -38,6 +42,11 @@ const texture *texture_find(const struct scene *s, const param *q, bool is_spect
 float texture_eval_float(const texture *t, const surface_hit *hit);
 spectrum texture_eval_spectrum(const texture *t, const surface_hit *hit,
                                const wavelengths *w, curve_role role);
+/** @brief True if texture_eval_normal may be asked for. */
+bool texture_is_normal_map(const texture *t);
+/** @brief As texture_kind's eval_normal; *dpdu and *dpdv come as those of the hit. */
+void texture_eval_normal(const texture *t, const surface_hit *hit, float rgb[3],
+                         vec3 *dpdu, vec3 *dpdv);
 /** @brief Kind number i of the table; NULL behind the last. */
 const texture_kind *texture_kind_at(size_t i);
 

@@ -1,13 +1,16 @@
 /*
  * "gltf": an image as glTF 2.0 uses it: one of its channels as a number, or its colours,
- * times a factor; repeated, clamped or mirrored along each axis; turned about by
- * KHR_texture_transform.
+ * times a factor and, if asked to, the colours of the mesh's vertices; looked up by the
+ * first or the second set of coordinates; repeated, clamped or mirrored along each axis;
+ * turned about by KHR_texture_transform. There may be no image, where the vertices'
+ * colours are all. A linear one may be a normal map.
  *
  *   (u', v') = offset + R(rotation) (uscale u, vscale v)    with v downwards, as glTF has
  * it
  *
  * Coordinates arrive with v upwards, as pbrt has it.
  */
+#include "scene/mesh_attributes.h"
 #include "scene/picture.h"
 #include "scene/scene.h"
 #include "scene/texture_kinds.h"
@@ -16,7 +19,9 @@ enum { AXIS_REPEAT, AXIS_CLAMP, AXIS_MIRROR };
 enum { FILTER_BILINEAR, FILTER_POINT };
 
 typedef struct gltf_texture {
-    picture pic;
+    picture pic; /* no levels: white */
+    int uv_set;  /* 0 or 1 */
+    bool vertex_color;
     int channel; /* of a number, 0..3 */
     int wrap_u, wrap_v, filter;
     float matrix[2][3];
@@ -71,6 +76,18 @@ static bool read_factor(gltf_texture *t, bool is_spectrum, const params *p,
     return true;
 }
 
+static bool read_attributes(gltf_texture *t, const params *p, GError **error)
+{
+    if (!params_integer(p, "uvset", &t->uv_set, error) ||
+        !params_bool(p, "vertexcolor", &t->vertex_color, error))
+        return false;
+    if (t->uv_set == 0 || t->uv_set == 1)
+        return true;
+    error_at(error, params_find(p, "uvset")->place,
+             "parameter 'uvset': expected 0 or 1, found %d", t->uv_set);
+    return false;
+}
+
 static bool read_options(gltf_texture *t, bool is_spectrum, const params *p,
                          GError **error)
 {
@@ -81,18 +98,32 @@ static bool read_options(gltf_texture *t, bool is_spectrum, const params *p,
            params_choice(p, "vwrap", wraps, &t->wrap_v, error) &&
            params_choice(p, "filter", filters, &t->filter, error) &&
            (is_spectrum || params_choice(p, "channel", channels, &t->channel, error)) &&
-           read_transform(t, p, error) && read_factor(t, is_spectrum, p, error);
+           read_attributes(t, p, error) && read_transform(t, p, error) &&
+           read_factor(t, is_spectrum, p, error);
 }
 
-/* Colours are sRGB; what is not a colour is written as it is. */
+/* Colours are sRGB, unless they are no colours; numbers are written as they are. */
+static bool read_picture(gltf_texture *t, const struct scene *s, bool is_spectrum,
+                         const params *p, GError **error)
+{
+    static const char *const encodings[] = {"auto", "linear", NULL};
+    int linear = 0;
+    if (!params_choice(p, "encoding", encodings, &linear, error))
+        return false;
+    if (t->vertex_color && !params_has(p, "filename"))
+        return true;
+    const image_read_options options = {
+        .encoding = is_spectrum && !linear ? ENCODING_AUTO : ENCODING_LINEAR,
+        .gamma = 1.0f};
+    return picture_read(&t->pic, s, p, "filename", &options, error);
+}
+
 static void *gltf_create(const struct scene *s, bool is_spectrum, const params *p,
                          GError **error)
 {
-    const image_read_options options = {
-        .encoding = is_spectrum ? ENCODING_AUTO : ENCODING_LINEAR, .gamma = 1.0f};
     gltf_texture *t = g_new0(gltf_texture, 1);
     if (read_options(t, is_spectrum, p, error) &&
-        picture_read(&t->pic, s, p, "filename", &options, error))
+        read_picture(t, s, is_spectrum, p, error))
         return t;
     gltf_free(t);
     return NULL;
@@ -109,8 +140,9 @@ static float folded(float x, int wrap)
     return y > 1.0f ? 2.0f - y : y;
 }
 
-static texel_mix look_up(const gltf_texture *t, vec2 uv)
+static texel_mix look_up(const gltf_texture *t, const surface_hit *hit)
 {
+    vec2 uv = t->uv_set == 1 ? hit_second_uv(hit) : hit->uv;
     float v = 1.0f - uv.y;
     const float(*m)[3] = t->matrix;
     vec2 st = {m[0][0] * uv.x + m[0][1] * v + m[0][2],
@@ -127,35 +159,70 @@ static texel_mix look_up(const gltf_texture *t, vec2 uv)
 static float gltf_eval_float(const void *self, const surface_hit *hit)
 {
     const gltf_texture *t = self;
-    int channel = t->pic.channels[t->channel];
+    int channel = t->pic.n_levels ? t->pic.channels[t->channel] : -1;
     float value = t->factor[0];
     if (channel >= 0) {
-        texel_mix mix = look_up(t, hit->uv);
+        texel_mix mix = look_up(t, hit);
         value *= texel_mix_channel(&mix, channel);
     }
+    if (t->vertex_color)
+        value *= hit_vertex_color(hit, t->channel);
     if (t->cutoff >= 0.0f)
         return value < t->cutoff ? 0.0f : 1.0f;
     return value;
+}
+
+static void look_up_rgb(const gltf_texture *t, const surface_hit *hit, float rgb[3])
+{
+    texel_mix mix = look_up(t, hit);
+    picture_rgb(&t->pic, &mix, rgb);
 }
 
 static spectrum gltf_eval_spectrum(const void *self, const surface_hit *hit,
                                    const wavelengths *w, curve_role role)
 {
     const gltf_texture *t = self;
-    float rgb[3];
-    texel_mix mix = look_up(t, hit->uv);
-    picture_rgb(&t->pic, &mix, rgb);
-    for (int i = 0; i < 3; i++)
-        rgb[i] = maxf(0.0f, rgb[i] * t->factor[i]);
-    return rgb_eval(t->pic.space, rgb, role, w);
+    float rgb[3] = {1.0f, 1.0f, 1.0f};
+    if (t->pic.n_levels)
+        look_up_rgb(t, hit, rgb);
+    for (int i = 0; i < 3; i++) {
+        rgb[i] *= t->factor[i] * (t->vertex_color ? hit_vertex_color(hit, i) : 1.0f);
+        rgb[i] = maxf(0.0f, rgb[i]);
+    }
+    return rgb_eval(t->pic.n_levels ? t->pic.space : color_space_srgb(), rgb, role, w);
+}
+
+/* Tangents that the mesh itself has are those of the map, wherever it takes its
+ * coordinates from (glTF 2.0, 3.7.2.1). */
+static void gltf_eval_normal(const void *self, const surface_hit *hit, float rgb[3],
+                             vec3 *dpdu, vec3 *dpdv)
+{
+    const gltf_texture *t = self;
+    rgb[0] = rgb[1] = 0.5f;
+    rgb[2] = 1.0f;
+    if (t->pic.n_levels)
+        look_up_rgb(t, hit, rgb);
+    if (hit->mesh && hit->mesh->tangents)
+        return;
+    if (t->uv_set == 1)
+        hit_second_tangents(hit, dpdu, dpdv);
+    const float(*m)[3] = t->matrix;
+    float determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    vec3 along_u = (*dpdu * m[1][1] + *dpdv * m[1][0]) / determinant;
+    vec3 along_v = (*dpdu * m[0][1] + *dpdv * m[0][0]) / determinant;
+    if (!finite3(along_u) || !finite3(along_v))
+        return;
+    *dpdu = along_u;
+    *dpdv = along_v;
 }
 
 const texture_kind texture_gltf = {
     .name = "gltf",
     .parameters = "filename uwrap vwrap filter channel uscale vscale udelta vdelta "
-                  "rotation factor cutoff",
+                  "rotation factor cutoff uvset vertexcolor encoding",
     .create = gltf_create,
     .free = gltf_free,
     .eval_float = gltf_eval_float,
     .eval_spectrum = gltf_eval_spectrum,
+    .eval_normal = gltf_eval_normal,
 };
