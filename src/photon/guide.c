@@ -13,6 +13,11 @@ enum {
 /* Share of photons drawn uniformly, whatever was learned. */
 #define DEFENSIVE_SHARE 0.1
 
+/* ... and of each cell's, drawn without regard to what was learned inside it: next to
+   where much arrives it thins out step by step, and what arrives from there unforeseen is
+   not much heavier than its neighbours. */
+#define DEFENSIVE_SPLIT 0.05
+
 /* A pair of axes is uneven from this χ² on, for 15 degrees of freedom, and if it is this
    share of the arrivals. */
 #define CHI2_BY_CHANCE 45.0
@@ -287,7 +292,8 @@ static double smoothed_share(const guide_tally *parent, const guide_tally *half)
 {
     double n = (double)parent->arrivals;
     double seen = n > 0.0 ? half->importance / parent->importance : 0.5;
-    return (seen * n + 1.0) / (n + 2.0);
+    double learned = (seen * n + 1.0) / (n + 2.0);
+    return (1.0 - DEFENSIVE_SPLIT) * learned + 0.5 * DEFENSIVE_SPLIT;
 }
 
 static void set_masses(emission_guide *guide, GArray *tallies)

@@ -30,6 +30,7 @@ typedef struct trials {
     emission_record *records; /* one per trial, value 0 if it did not arrive */
     double *noise;            /* what each adds to it: see noise_of */
     size_t first;             /* index of the first trial of the round */
+    size_t n_arrived;         /* records that arrived, of all rounds so far */
     aim_result *result;       /* NULL: not asked for */
 } trials;
 
@@ -152,19 +153,20 @@ static void note_result(const trials *all, size_t n_arrived, size_t n_traced)
     double noise = 0.0;
     out->boost = g_new(float, n_lights);
     for (size_t i = 0; i < n_arrived; i++) {
-        const emission_record *r = &all->records[i];
+        const emission_record *r = &all->records[all->n_arrived + i];
         float u_light = r->u[0];
         size_t from = distribution_sample(&s->caustic_power, &u_light);
         value[from] += (double)r->value;
         dense[from] += (double)(r->value * r->density);
-        noise += all->noise[i];
+        noise += all->noise[all->n_arrived + i];
     }
     out->noise = noise_of_all(all, noise, n_traced);
     for (guint i = 0; i < n_lights; i++)
         out->boost[i] = value[i] > 0.0 ? (float)(dense[i] / value[i]) : 1.0f;
 }
 
-/* Traces trial photons of one round until enough arrived, and teaches the guide. */
+/* Traces trial photons of one round until enough arrived, and teaches the guide by those
+   of all rounds: what is rare is learned from the few that ever found it. */
 static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError **error)
 {
     size_t kept = 0, limit = round == 0 ? MAX_TRIALS : TRIALS;
@@ -173,8 +175,8 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
     all->task.pass = TRIAL_PASS + round;
     for (all->first = 0; all->first < limit && kept < ENOUGH_ARRIVALS;
          all->first += TRIALS) {
-        all->records = records + kept;
-        all->noise = noise + kept;
+        all->records = records + all->n_arrived + kept;
+        all->noise = noise + all->n_arrived + kept;
         if (!parallel_for(TRIALS, CHUNK, (unsigned)all->task.how->threads,
                           all->task.cancel, run_trials, all)) {
             error_set(error, ERROR_CANCELLED, "cancelled");
@@ -187,18 +189,18 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
     all->noise = noise;
     if (done && all->result && round == ROUNDS - 1)
         note_result(all, kept, all->first);
+    all->n_arrived += kept;
     if (done)
-        emission_guide_learn(guide, records, kept);
+        emission_guide_learn(guide, records, all->n_arrived);
     return done;
 }
 
 static bool learn(trials *all, emission_guide *guide, GError **error)
 {
-    all->records =
-        big_alloc(TRIALS + ENOUGH_ARRIVALS, sizeof *all->records, "trial photons", error);
-    all->noise = all->records ? big_alloc(TRIALS + ENOUGH_ARRIVALS, sizeof *all->noise,
-                                          "trial photons", error)
-                              : NULL;
+    const size_t room = ROUNDS * (TRIALS + ENOUGH_ARRIVALS);
+    all->records = big_alloc(room, sizeof *all->records, "trial photons", error);
+    all->noise =
+        all->records ? big_alloc(room, sizeof *all->noise, "trial photons", error) : NULL;
     bool ok = all->noise != NULL;
     for (uint32_t round = 0; round < ROUNDS && ok; round++)
         ok = run_round(all, guide, round, error);

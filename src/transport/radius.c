@@ -25,7 +25,7 @@ enum {
 /* Photons wanted within the radius, summed over all passes: what they are shared among
    decides between noise and blur. Caustics are to be sharp, the rest is smooth by nature.
  */
-static const double photons_wanted[N_PHOTON_CLASSES] = {600.0, 4000.0, 300.0};
+static const double photons_wanted[N_PHOTON_CLASSES] = {600.0, 12000.0, 300.0};
 /* ... but in each pass at least so many. */
 static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
 
