@@ -93,6 +93,102 @@ static void test_gbuffer(void)
     }
 }
 
+/* Colour, u, v and places of the tilted wall are those of its plane, by all algorithms.
+ */
+static void check_places(const image *img, bool in_camera)
+{
+    const vec3 n = vec3_make(sinf(40 * PI_F / 180), 0, cosf(40 * PI_F / 180));
+    for (int i = 0; i < 144; i++) {
+        int x = i % 12, y = i / 12;
+        if (!(value(img, "depth.Z", x, y) > 0)) { /* beyond the rim */
+            g_assert_cmpfloat(fabsf(value(img, "Albedo.G", x, y)), <, 1e-6f);
+            continue;
+        }
+        vec3 p = vec3_make(value(img, "P.X", x, y), value(img, "P.Y", x, y),
+                           value(img, "P.Z", x, y));
+        if (in_camera) /* the camera looks along -z, its right is -x */
+            p = vec3_make(-p[0], p[1], 4 - p[2]);
+        g_assert_cmpfloat(fabsf(dot3(p, n)), <, 1e-4f);
+        /* Seen through this pixel: the shorter side of the screen is 90 degrees wide. */
+        float u = -p[0] / (4 - p[2]), v = -p[1] / (4 - p[2]);
+        g_assert_cmpfloat(fabsf((u + 1) * 6 - (float)x - 0.5f), <, 0.51f);
+        g_assert_cmpfloat(fabsf((v + 1) * 6 - (float)y - 0.5f), <, 0.51f);
+        float along = p[0] * cosf(40 * PI_F / 180) - p[2] * sinf(40 * PI_F / 180);
+        float phi = atan2f(p[1], along) / (2 * PI_F);
+        g_assert_cmpfloat(fabsf(value(img, "u", x, y) - (phi < 0 ? phi + 1 : phi)), <,
+                          1e-3f);
+        g_assert_cmpfloat(fabsf(value(img, "v", x, y) - 1 + length3(p) / 9), <, 1e-3f);
+        g_assert_cmpfloat(fabsf(value(img, "N.X", x, y) - (in_camera ? -n[0] : n[0])), <,
+                          1e-4f);
+        g_assert_cmpfloat(fabsf(value(img, "Albedo.G", x, y) - 0.5f), <, 0.02f);
+    }
+}
+
+static void test_gbuffer_places(void)
+{
+    static const char *const ways[] = {"integrator=path passes=1 spp=1",
+                                       "integrator=vcm passes=1 spp=1 photons=100",
+                                       "integrator=photonmap passes=1 spp=1 photons=100"};
+    for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
+        g_autoptr(scene) s = i ? wall("\"gbuffer\"", "\"perspective\"")
+                               : wall("\"gbuffer\" \"string coordinatesystem\" \"world\"",
+                                      "\"perspective\"");
+        g_autoptr(image) img = render_with(s, ways[i]);
+        check_places(img, i > 0);
+    }
+    g_autoptr(scene) plain = wall("\"rgb\"", "\"perspective\"");
+    g_autoptr(image) img = render_with(plain, ways[0]);
+    g_assert_cmpint(image_channel(img, "P.X"), ==, -1);
+}
+
+/* dzdx and dzdy are what neighbours differ by; the variance between samples is that of
+ * their mean times their number; N and Ns differ where normals are bent. */
+static void test_gbuffer_noise(void)
+{
+    g_autoptr(scene) s = scene_of(
+        "Film \"gbuffer\" \"integer xresolution\" 12 \"integer yresolution\" 12\n"
+        "PixelFilter \"box\"\nLookAt 0 0 4 0 0 0 0 1 0\n"
+        "Camera \"perspective\" \"float fov\" 40\nWorldBegin\n"
+        "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [3 3 3]\n"
+        "Translate 0 3 4\nShape \"sphere\"\nAttributeEnd\n"
+        "Rotate 30 1 0 0\nRotate 30 0 1 0\nShape \"trianglemesh\"\n"
+        "\"point3 P\" [-5 -5 0  5 -5 0  -5 5 0  5 5 0]\n"
+        "\"normal N\" [0 0.6 0.8  0 0.6 0.8  0 0.6 0.8  0 0.6 0.8]\n"
+        "\"integer indices\" [0 1 2 2 1 3]\n");
+    g_autoptr(image) img = render_with(s, "integrator=path passes=64 spp=2");
+    double of_mean = 0, of_samples = 0;
+    for (int i = 0; i < 100; i++) {
+        int x = i % 10, y = i / 10;
+        float dx = value(img, "P.Z", x + 1, y) - value(img, "P.Z", x, y);
+        float dy = value(img, "P.Z", x, y + 1) - value(img, "P.Z", x, y);
+        g_assert_cmpfloat(fabsf(value(img, "dzdx", x, y) / fabsf(dx) - 1), <, 0.15f);
+        g_assert_cmpfloat(fabsf(value(img, "dzdy", x, y) / fabsf(dy) - 1), <, 0.15f);
+        float cosine = value(img, "N.X", x, y) * value(img, "Ns.X", x, y) +
+                       value(img, "N.Y", x, y) * value(img, "Ns.Y", x, y) +
+                       value(img, "N.Z", x, y) * value(img, "Ns.Z", x, y);
+        g_assert_cmpfloat(fabsf(cosine - 0.8f), <, 1e-3f);
+        float variance = value(img, "Variance.G", x, y);
+        float relative = value(img, "RelativeVariance.G", x, y);
+        g_assert_cmpfloat(fabsf(relative * value(img, "G", x, y) / variance - 1), <,
+                          1e-3f);
+        of_mean += (double)value(img, "variance.Y", x, y) / 100;
+        of_samples += (double)variance / 100;
+    }
+    g_assert_cmpfloat(of_samples, >, 0.0);
+    g_assert_cmpfloat(fabs(of_samples / (128 * of_mean) - 1), <, 0.3);
+}
+
+/* Only an EXR file can hold the layers. */
+static void test_gbuffer_file(void)
+{
+    scene_folder f =
+        folder_new("Film \"gbuffer\" \"string filename\" \"a.png\"\nWorldBegin\n");
+    g_autoptr(GError) error = NULL;
+    g_assert_null(format_load(f.main, 1, NULL, &error));
+    g_assert_nonnull(strstr(error->message, "1:16: film \"gbuffer\": only an .exr"));
+    folder_remove(&f);
+}
+
 /* All algorithms see the same through the other cameras. */
 static void test_cameras_agree(void)
 {
@@ -129,6 +225,9 @@ int main(int argc, char **argv)
     g_test_add_func("/film/largest", test_largest_component);
     g_test_add_func("/film/balance", test_white_balance);
     g_test_add_func("/film/gbuffer", test_gbuffer);
+    g_test_add_func("/film/gbuffer/places", test_gbuffer_places);
+    g_test_add_func("/film/gbuffer/noise", test_gbuffer_noise);
+    g_test_add_func("/film/gbuffer/file", test_gbuffer_file);
     g_test_add_func("/film/cameras", test_cameras_agree);
     return g_test_run();
 }

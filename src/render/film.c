@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "color/balance.h"
+#include "render/gbuffer.h"
 
 enum { LUMINANCE = 1 /* of X, Y, Z */ };
 
@@ -42,12 +43,9 @@ bool film_open(film *f, const scene *s, GError **error)
         .space = how->space ? how->space : color_space_srgb(),
         .most = how->most,
         .balanced = how->kelvin > 0.0f,
-        .in_camera = how->in_camera,
     };
     if (f->balanced)
         color_balance(how->kelvin, f->space, f->balance);
-    transform to_world = camera_at(&s->camera, 0.0f);
-    f->to_camera = transform_inverse(&to_world);
     f->width = x1 - f->x0;
     f->height = y1 - f->y0;
     if (f->width < 1 || f->height < 1) {
@@ -58,7 +56,7 @@ bool film_open(film *f, const scene *s, GError **error)
     f->pass = big_alloc(n_pixels(f), sizeof *f->pass, "the film", error);
     if (f->pass)
         f->pixels = big_alloc(n_pixels(f), sizeof *f->pixels, "the film", error);
-    return f->pixels && open_groups(f, s, error);
+    return f->pixels && open_groups(f, s, error) && gbuffer_open(f, how, error);
 }
 
 void film_clear(film *f)
@@ -67,6 +65,8 @@ void film_clear(film *f)
     big_free(f->pixels);
     big_free(f->pass_groups);
     big_free(f->groups);
+    big_free(f->pass_surfaces);
+    big_free(f->surfaces);
     *f = (film){0};
 }
 
@@ -220,6 +220,7 @@ static void end_pixels(size_t begin, size_t end, unsigned thread, void *data)
     const film *f = data;
     for (size_t i = group_offset(f, begin); i < group_offset(f, end); i++)
         f->groups[i] += (double)f->pass_groups[i];
+    gbuffer_end_pass(f, begin, end);
     for (size_t i = begin; i < end; i++) {
         film_pixel *pixel = &f->pixels[i];
         film_sum pass = {0};
@@ -306,10 +307,11 @@ static GPtrArray *channel_names(const film *f)
         for (const char *c = "RGB"; *c; c++)
             g_ptr_array_add(names, g_strdup_printf("light.%s.%c", f->group_names[i], *c));
     }
+    gbuffer_add_names(f, names);
     return names;
 }
 
-static void to_rgb(const film *f, const double sum[3], double weight, float out[3])
+void film_to_rgb(const film *f, const double sum[3], double weight, float out[3])
 {
     float xyz[3] = {0};
     for (int i = 0; i < 3 && fabs(weight) > 0.0; i++) {
@@ -326,7 +328,7 @@ static void write_sum(const film *f, const film_sum *sum, float *out)
     for (int i = 0; i < FILM_COLORS; i++) {
         bool is_albedo = i == N_LAYERS;
         float *rgb = layers + 3 * i;
-        to_rgb(f, sum->color[i], is_albedo ? sum->surface_weight : sum->weight, rgb);
+        film_to_rgb(f, sum->color[i], is_albedo ? sum->surface_weight : sum->weight, rgb);
         for (int c = 0; c < 3 && !is_albedo; c++) {
             rgb[c] *= f->scale;
             beauty[c] += rgb[c];
@@ -334,12 +336,8 @@ static void write_sum(const film *f, const film_sum *sum, float *out)
     }
     float *rest = layers + 3 * FILM_COLORS;
     double weight = fabs(sum->surface_weight) > 0.0 ? sum->surface_weight : 1.0;
-    vec3 n = vec3_make((float)(sum->normal[0] / weight), (float)(sum->normal[1] / weight),
-                       (float)(sum->normal[2] / weight));
-    if (f->in_camera)
-        n = length3(n) * normalize3(transform_normal(&f->to_camera, n));
     for (int i = 0; i < 3; i++)
-        rest[i] = n[i];
+        rest[i] = (float)(sum->normal[i] / weight);
     rest[3] = (float)(sum->depth / weight);
 }
 
@@ -351,7 +349,7 @@ static void write_groups(const film *f, size_t i, double weight, float *out)
         for (int c = 0; c < 3; c++)
             sum[c] = f->n_passes ? f->groups[at + (size_t)c]
                                  : (double)f->pass_groups[at + (size_t)c];
-        to_rgb(f, sum, weight, out + 3 * k);
+        film_to_rgb(f, sum, weight, out + 3 * k);
         for (int c = 0; c < 3; c++)
             out[3 * k + c] *= f->scale;
     }
@@ -385,6 +383,7 @@ static void write_pixel(const film *f, size_t i, float *out)
     if (has_variance(f))
         *out++ = (float)(scale2 * pixel_variance(&f->pixels[i], f->n_passes));
     write_groups(f, i, sum->weight, out);
+    gbuffer_write(f, i, sum, out + 3 * f->n_groups);
 }
 
 image *film_image(const film *f, GError **error)

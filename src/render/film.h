@@ -49,6 +49,12 @@ typedef struct film_pixel {
                           pass, w: its weight */
 } film_pixel;
 
+/** @brief Sums of one pixel for a gbuffer (gbuffer.h). Zero to begin. */
+typedef struct surface_sum {
+    double p[3], n[3], ns[3], uv[2], dz[2]; /**< weighed by the pixel filter */
+    double rgb[3], rgb2[3], n_samples;      /**< of the colour and its squares */
+} surface_sum;
+
 typedef struct film {
     int x0, y0, width, height; /**< the part of the picture that is rendered, pixels */
     pass_pixel *pass;          /**< of the pass under way */
@@ -62,9 +68,9 @@ typedef struct film {
     float most;                     /**< film_settings.most */
     bool balanced;                  /**< by this matrix of XYZ */
     double balance[9];
-    bool in_camera; /**< normals are turned by this */
-    transform to_camera;
     const color_space *space;
+    surface_sum *pass_surfaces; /**< of the pass; NULL: the film is no gbuffer */
+    surface_sum *surfaces;      /**< of the passes done */
 } film;
 
 /** @brief An empty film for the scene's crop window. */
@@ -104,8 +110,12 @@ void film_end_pass(film *f, unsigned threads);
  */
 double film_noise(const film *f);
 
+/** @brief Mean of sums of XYZ, white-balanced, in the film's colour space. */
+void film_to_rgb(const film *f, const double sum[3], double weight, float out[3]);
+
 /** @brief The picture: R G B, the layers' R G B, albedo, normal, depth; linear, film's
  * space. With two passes or more also variance.Y, the square of the standard error of
- * the luminance; with light groups their layers light.NAME. Before the first pass is
+ * the luminance; with light groups their layers light.NAME; then those of a gbuffer.
+ * Before the first pass is
  * done, what was put of it, pixels that are still to come looking like those beside. */
 image *film_image(const film *f, GError **error);

@@ -1,7 +1,7 @@
 #include "render/render.h"
 
 #include "base/memory.h"
-#include "render/film.h"
+#include "render/gbuffer.h"
 #include "render/stop.h"
 
 #include <string.h>
@@ -145,9 +145,15 @@ static group_sums groups_of(const camera_loop *loop, unsigned thread)
     return (group_sums){n, own, own + n};
 }
 
+/* What a pixel gets in a pass, groups apart. */
+typedef struct pixel_sums {
+    film_sum film;
+    surface_sum surface;
+} pixel_sums;
+
 /* One camera sample of a pixel, random already told which. */
 static void render_sample(camera_loop *loop, vec2 pixel, sampler *random, unsigned thread,
-                          film_sum *sum, const group_sums *groups)
+                          pixel_sums *sums, const group_sums *groups)
 {
     render *r = loop->render;
     const scene *s = r->plan.scene;
@@ -161,7 +167,10 @@ static void render_sample(camera_loop *loop, vec2 pixel, sampler *random, unsign
         groups->sample[k] = (spectrum){0};
     r->transport->radiance(loop->pass, &from_eye, random, &loop->scratch[thread],
                            &sample);
-    float dimmed = film_add(sum, &loop->film_pass, &sample, weight);
+    gbuffer_turn(s, from_eye.time, &sample);
+    float dimmed = film_add(&sums->film, &loop->film_pass, &sample, weight);
+    const gbuffer_view view = {raster, u_lens, from_eye, weight, dimmed};
+    gbuffer_add(&sums->surface, &r->film, s, &loop->film_pass, &view, &sample);
     for (size_t k = 0; k < groups->n; k++)
         groups->sum[k] += weight * dimmed * groups->sample[k];
 }
@@ -172,7 +181,7 @@ static void render_pixel(camera_loop *loop, int x, int y, unsigned thread)
     const settings *how = &r->plan.how;
     uint64_t pixel = (uint64_t)y * (uint64_t)r->plan.scene->film.width + (uint64_t)x;
     uint64_t key = hash_mix((uint64_t)how->seed, hash_mix(pixel, 0x7069786cu));
-    film_sum sum = {0};
+    pixel_sums sums = {0};
     group_sums groups = groups_of(loop, thread);
     for (int64_t i = 0; i < how->spp; i++) {
         if (cancelled(&r->cancel))
@@ -181,9 +190,10 @@ static void render_pixel(camera_loop *loop, int x, int y, unsigned thread)
             beat(r);
         sampler random =
             sampler_make(key, loop->index * (uint64_t)how->spp + (uint64_t)i);
-        render_sample(loop, (vec2){(float)x, (float)y}, &random, thread, &sum, &groups);
+        render_sample(loop, (vec2){(float)x, (float)y}, &random, thread, &sums, &groups);
     }
-    film_put(&r->film, x, y, &sum);
+    film_put(&r->film, x, y, &sums.film);
+    gbuffer_put(&r->film, x, y, &sums.surface);
     film_put_groups(&r->film, &loop->film_pass, x, y, groups.sum);
 }
 

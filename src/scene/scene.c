@@ -239,11 +239,6 @@ bool scene_set_film(scene *s, const char *kind, const params *p, GError **error)
     g_free(s->film.filename);
     s->film = film;
     LISTENER_TELL(s, film, kind, p);
-    if (strcmp(kind, "gbuffer") == 0)
-        log_message(&s->log, LOG_NOTE,
-                    "%s:%d:%d: film 'gbuffer': the picture has layers of albedo, normal "
-                    "(pbrt's Ns), depth and variance, not P, N, u, v and dz",
-                    p->place.file ? p->place.file : "", p->place.line, p->place.column);
     return true;
 }
 

@@ -33,7 +33,8 @@ typedef struct film_settings {
     float exposure; /**< stops, for 8-bit output; 0 */
     float most;     /**< the largest of X, Y, Z of a sample on the sensor; 0: any */
     float kelvin;   /**< daylight that is to look white; 0: no white balance */
-    bool in_camera; /**< normals in camera space */
+    bool gbuffer;   /**< with the layers that pbrt's film of that name has */
+    bool in_camera; /**< places and normals in camera space */
     float crop[4];  /**< x0, x1, y0, y1 in 0..1; pixels ceil(crop * size) as in pbrt */
     const color_space *space;
 } film_settings;

@@ -1,7 +1,7 @@
 /*
  * The film directive: pbrt's "rgb" and "gbuffer" films. Every picture has layers of
- * albedo, shading normal, depth and variance; a gbuffer adds to that only the choice of
- * the normals' space, which is the camera's unless it says "world".
+ * albedo, shading normal, depth and variance; a gbuffer adds pbrt's own (gbuffer.h in
+ * src/render), in the camera's space unless it says "world".
  *
  * What has no meaning here is refused with its place rather than dropped: sensors other
  * than cie1931. "diagonal" acts on realistic cameras only, in pbrt too, and those are
@@ -58,15 +58,22 @@ static bool read_sensor(const params *p, film_settings *film, GError **error)
            read_number_above_zero(p, "maxcomponentvalue", &film->most, error);
 }
 
-/* What a gbuffer has and other films have not: the space of its normals. */
+/* What a gbuffer has and other films have not: the space of its layers, and only one kind
+ * of file that can hold them. */
 static bool read_gbuffer(const params *p, film_settings *film, GError **error)
 {
     static const char *const spaces[] = {"camera", "world", NULL};
     int space = 0;
     if (!params_choice(p, "coordinatesystem", spaces, &space, error))
         return false;
+    film->gbuffer = true;
     film->in_camera = space == 0;
-    return true;
+    if (!film->filename || g_str_has_suffix(film->filename, ".exr"))
+        return true;
+    error_at(error, params_find(p, "filename")->place,
+             "film \"gbuffer\": only an .exr file can hold its layers, found '%s'",
+             film->filename);
+    return false;
 }
 
 /* Half a pixel inside, so that ceil(crop * size) gives the bounds back. */

@@ -108,15 +108,6 @@ static void see_lamp(camera_tree *tree, const camera_branch *branch,
                  radiance * met_light_weight(tree, branch, hit->light, hit), hit->light);
 }
 
-static void note_first_surface(camera_tree *tree, const camera_branch *branch,
-                               const surface_hit *hit, const bsdf *b)
-{
-    vec3 wo = -branch->ray.direction;
-    tree->out->depth = length3(hit->p - branch->from);
-    tree->out->normal = face_forward(hit->n, wo);
-    tree->out->albedo = bsdf_albedo(b, wo, LOBE_ALL);
-}
-
 /* The probability that each side of the followed lobes is followed. */
 static void plan_sides(const camera_branch *branch, const bsdf *b, vec3 wo, float p[2])
 {
@@ -281,7 +272,7 @@ static void follow(camera_tree *tree, camera_branch branch)
             continue;
         }
         if (first)
-            note_first_surface(tree, &branch, &hit, &b);
+            radiance_sample_note(tree->out, &hit, &b, -branch.ray.direction, branch.from);
         first = false;
         float p_follow[2];
         plan_sides(&branch, &b, -branch.ray.direction, p_follow);

@@ -256,15 +256,6 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     return sampler_1d(walk->random) < p;
 }
 
-static void note_first_surface(path_walk *walk, const camera_path *path,
-                               const surface_hit *hit, const bsdf *b)
-{
-    vec3 wo = -path->ray.direction;
-    walk->out->depth = length3(hit->p - path->from);
-    walk->out->normal = face_forward(hit->n, wo);
-    walk->out->albedo = bsdf_albedo(b, wo, LOBE_ALL);
-}
-
 void path_radiance(const void *data, const ray *r, sampler *random,
                    transport_scratch *scratch, radiance_sample *out)
 {
@@ -294,7 +285,7 @@ void path_radiance(const void *data, const ray *r, sampler *random,
             continue;
         }
         if (path.bounces == 0)
-            note_first_surface(&walk, &path, &hit, &b);
+            radiance_sample_note(out, &hit, &b, -path.ray.direction, path.from);
         if (limit >= 0 && path.bounces >= limit)
             return;
         sample_lights(&walk, &path, &hit, &b);

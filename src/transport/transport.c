@@ -19,6 +19,17 @@ const transport_kind *transport_find(int integrator)
     return kinds[integrator];
 }
 
+void radiance_sample_note(radiance_sample *out, const surface_hit *hit, const bsdf *b,
+                          vec3 wo, vec3 from)
+{
+    out->depth = length3(hit->p - from);
+    out->normal = face_forward(hit->n, wo);
+    out->albedo = bsdf_albedo(b, wo, LOBE_ALL);
+    out->p = hit->p;
+    out->n_geom = face_forward(hit->n_geom, wo);
+    out->uv = hit->uv;
+}
+
 bool transport_scratch_init(transport_scratch *scratch, size_t n_groups, GError **error)
 {
     if (!estimate_scratch_init(&scratch->estimate, n_groups, error))

@@ -35,7 +35,13 @@ typedef struct radiance_sample {
     spectrum albedo;           /**< of the first surface */
     vec3 normal;               /**< shading normal of the first surface, toward the eye */
     float depth;               /**< distance to it, m; 0: none */
+    vec3 p, n_geom;            /**< of it; the true normal toward the eye too */
+    vec2 uv;                   /**< of it */
 } radiance_sample;
+
+/** @brief Notes the first surface, seen from a point in direction -wo. */
+void radiance_sample_note(radiance_sample *out, const surface_hit *hit, const bsdf *b,
+                          vec3 wo, vec3 from);
 
 /** @brief Light that a pass found on its way from the lamps, at a place of the film. */
 typedef struct splat {

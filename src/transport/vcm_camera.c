@@ -352,13 +352,6 @@ static bool survives(camera_walk *c)
     return sampler_1d(c->random) < p;
 }
 
-static void note_first_surface(camera_walk *c, const vcm_vertex *v)
-{
-    c->out->depth = length3(v->hit->p - c->walk.from);
-    c->out->normal = face_forward(v->hit->n, v->wo);
-    c->out->albedo = bsdf_albedo(&v->bsdf, v->wo, LOBE_ALL);
-}
-
 /* All that ends at v. */
 static void shade(camera_walk *c, const vcm_vertex *v)
 {
@@ -406,7 +399,7 @@ static void follow(camera_walk *c)
             continue;
         }
         if (walk->counts.n == 0)
-            note_first_surface(c, &v);
+            radiance_sample_note(c->out, v.hit, &v.bsdf, v.wo, walk->from);
         if (!vcm_length_allowed(pass, walk->counts.n + 1) || !(cosine > 0.0f))
             return;
         weights_arrive(&walk->weights, length3_2(hit.p - walk->from), cosine);
