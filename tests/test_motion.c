@@ -101,6 +101,30 @@ static void test_board(void)
     }
 }
 
+/* Light from the board onto the floor by gather rays, whose look-ups of irradiance are of
+ * their time, as by standing boards with the photons of a slice each. */
+static void test_final_gather(void)
+{
+    enum { TIMES = 8 };
+#define GATHER "integrator=photonmap passes=4 spp=8 final_gather=on gather_rays=8 "
+    double still[25] = {0}, found[25] = {0}, sum = 0, sum_still = 0;
+    for (int i = 0; i < TIMES; i++) {
+        g_autoptr(scene) s = scene_with(wall, (i + 0.5) / TIMES);
+        g_autoptr(image) img = render_with(s, GATHER "photons=10000");
+        add_layer(img, "indirect.G", still, 1.0 / TIMES);
+    }
+    g_autoptr(scene) moving = scene_with(wall, -1);
+    g_autoptr(image) img = render_with(moving, GATHER "photons=80000");
+    add_layer(img, "indirect.G", found, 1);
+    for (int i = 0; i < 25; i++) {
+        sum += found[i];
+        sum_still += still[i];
+    }
+    g_test_message("indirect light %g, of standing boards %g", sum, sum_still);
+    g_assert_cmpfloat(fabs(sum / sum_still - 1), <, 0.05);
+    assert_close(found, still, 0.2);
+}
+
 /* A glass ball on its way: photons see the caustic it drags along as paths do. */
 static void test_glass_ball(void)
 {
@@ -175,6 +199,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/motion/board", test_board);
+    g_test_add_func("/motion/final-gather", test_final_gather);
     g_test_add_func("/motion/glass", test_glass_ball);
     g_test_add_func("/motion/camera", test_camera_moves);
     g_test_add_func("/motion/threads", test_threads);

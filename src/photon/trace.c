@@ -156,11 +156,14 @@ static float middle_of(const trace_task *task)
     return time_of_slice(task->slice, MAX(task->n_slices, 1));
 }
 
-/* Takes a photon on something that moves to where that will be: its direction turns with
-   it, and where the surface grows the photon counts for more of it. */
-static void keep_for_slice(const trace_task *task, const surface_hit *hit, photon *p)
+/* Takes a photon on something that moves, and the normal n there, to where that will be:
+   directions turn with it, and where the surface grows the photon counts for more of it.
+ */
+static void keep_for_slice(const trace_task *task, const surface_hit *hit, photon *p,
+                           vec3 *n)
 {
     transform by = scene_motion_to(task->scene, hit, middle_of(task));
+    *n = normalize3(transform_normal(&by, *n));
     p->p = transform_point(&by, p->p);
     p->wi = normalize3(transform_vector(&by, p->wi));
     p->flux *= (float)scene_area_change(task->scene, hit, middle_of(task));
@@ -186,10 +189,11 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
                 .flux = path->flux,
                 .flags = flags,
                 .tag = (uint32_t)scene_light_group(path->task->scene, path->light)};
+    vec3 n = face_forward(hit->n_geom, p.wi);
     if (scene_hit_moves(path->task->scene, hit))
-        keep_for_slice(path->task, hit, &p);
+        keep_for_slice(path->task, hit, &p, &n);
     if (path->want_normals)
-        out->normals[out->photons.n] = direction_pack(face_forward(hit->n_geom, p.wi), 0);
+        out->normals[out->photons.n] = direction_pack(n, 0);
     photon_store_put(&out->photons, &p);
 }
 

@@ -24,20 +24,24 @@ typedef struct irradiance_loop {
     photon_store *out;
     spectrum *groups; /* of all points, by light groups; NULL: there are none */
     size_t offset;
+    int slice;
     bool *failed;
 } irradiance_loop;
 
 /* groups, if there are any, get their parts of it. */
-static spectrum irradiance_at(const photonmap_pass *pass, vec3 p, vec3 n,
+static spectrum irradiance_at(const irradiance_loop *loop, vec3 p, vec3 n,
                               estimate_scratch *scratch, spectrum *groups)
 {
+    const photonmap_pass *pass = loop->pass;
+    photon_map *const *maps = pass->maps[loop->slice];
     spectrum sum = {0};
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         estimate_options options = pass->estimates[c];
         options.scene = pass->how->edges ? pass->scene : NULL;
-        if (!pass->maps[0][c])
+        options.time = photonmap_slice_time(pass, loop->slice);
+        if (!maps[c])
             continue;
-        sum += photon_irradiance(pass->maps[0][c], p, n, &options, scratch, NULL);
+        sum += photon_irradiance(maps[c], p, n, &options, scratch, NULL);
         for (size_t i = 0; i < scratch->n_groups; i++)
             groups[i] += scratch->groups[i];
     }
@@ -62,21 +66,26 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
         if (n_groups)
             loop->out->tag[at] = (uint32_t)at;
         spectrum *groups = n_groups > 0 ? loop->groups + at * n_groups : NULL;
-        loop->out->flux[at] = irradiance_at(loop->pass, p.p, n, &scratch, groups);
+        loop->out->flux[at] = irradiance_at(loop, p.p, n, &scratch, groups);
     }
     if (scratch.failed || !ready)
         loop->failed[begin / 256] = true;
     estimate_scratch_clear(&scratch);
 }
 
-static bool add_points(photonmap_pass *pass, const trace_result *points,
+static bool add_points(photonmap_pass *pass, int slice, const trace_result *points,
                        photon_store *out, GError **error)
 {
     size_t n = points->photons.n, n_chunks = n / 256 + 1;
     g_autofree bool *failed = g_new0(bool, n_chunks);
-    irradiance_loop loop = {pass,  &points->photons,        points->normals,
-                            out,   pass->irradiance_groups, out->n,
-                            failed};
+    irradiance_loop loop = {.pass = pass,
+                            .points = &points->photons,
+                            .normals = points->normals,
+                            .out = out,
+                            .groups = pass->irradiance_groups[slice],
+                            .offset = out->n,
+                            .slice = slice,
+                            .failed = failed};
     parallel_for(n, 256, (unsigned)pass->how->threads, NULL, irradiance_chunk, &loop);
     out->n += n;
     for (size_t i = 0; i < n_chunks; i++) {
@@ -88,38 +97,49 @@ static bool add_points(photonmap_pass *pass, const trace_result *points,
     return true;
 }
 
-photon_map *irradiance_map_build(photonmap_pass *pass, const trace_result *points,
-                                 size_t n, GError **error)
+bool irradiance_map_build(photonmap_pass *pass, int slice, const trace_result *points,
+                          size_t n, GError **error)
 {
+    spectrum **groups = &pass->irradiance_groups[slice];
+
     size_t total = 0, n_groups = (size_t)pass->scene->n_light_groups;
     for (size_t i = 0; i < n; i++)
         total += points[i].photons.n;
     photon_store store = {.tagged = n_groups > 0};
     bool ok = photon_store_reserve(&store, total, error);
     if (ok && n_groups > 0) {
-        pass->irradiance_groups = big_alloc(
-            total * n_groups, sizeof *pass->irradiance_groups, "light groups", error);
-        ok = pass->irradiance_groups != NULL;
+        *groups = big_alloc(total * n_groups, sizeof **groups, "light groups", error);
+        ok = *groups != NULL;
     }
     for (size_t i = 0; i < n && ok; i++)
-        ok = add_points(pass, &points[i], &store, error);
+        ok = add_points(pass, slice, &points[i], &store, error);
     if (!ok) {
         photon_store_clear(&store);
-        return NULL;
+        return false;
     }
-    return photon_map_build(MAP_KDTREE, &store, 0.0f, (unsigned)pass->how->threads,
-                            error);
+    pass->irradiance[slice] =
+        photon_map_build(MAP_KDTREE, &store, 0.0f, (unsigned)pass->how->threads, error);
+    return pass->irradiance[slice] != NULL;
 }
 
 /* The nearest kept irradiance of a surface that lies alike, among the few nearest of all.
- */
-static spectrum kept_irradiance(const photonmap_pass *pass, vec3 p, vec3 n,
+ * What moves is looked up where its photons are kept. */
+static spectrum kept_irradiance(const photonmap_pass *pass, const shading_point *at,
                                 estimate_scratch *scratch, const spectrum **groups)
 {
+    int slice = time_slice(at->hit->time, pass->n_slices);
+    vec3 p = at->hit->p, n = face_forward(at->hit->n_geom, at->wo);
+    if (scene_hit_moves(pass->scene, at->hit)) {
+        transform by =
+            scene_motion_to(pass->scene, at->hit, photonmap_slice_time(pass, slice));
+        p = transform_point(&by, p);
+        n = normalize3(transform_normal(&by, n));
+    }
     const photon_filter filter = {.n = n, .one_sided = true, .flatten = 1.0f};
     photon_hits *hits = &scratch->hits;
-    const photon_store *store = photon_map_store(pass->irradiance);
-    if (!photon_map_nearest(pass->irradiance, p, NEAREST_KEPT, INFINITY, &filter, hits))
+    const photon_map *kept = pass->irradiance[slice];
+    const photon_store *store = photon_map_store(kept);
+    if (!photon_map_nearest(kept, p, NEAREST_KEPT, INFINITY, &filter, hits))
         scratch->failed = true;
     float best = INFINITY;
     spectrum irradiance = {0};
@@ -130,8 +150,9 @@ static spectrum kept_irradiance(const photonmap_pass *pass, vec3 p, vec3 n,
             best = hits->distance2[i] * penalty;
             irradiance = store->flux[hits->index[i]];
             if (store->tagged)
-                *groups = pass->irradiance_groups + (size_t)pass->scene->n_light_groups *
-                                                        store->tag[hits->index[i]];
+                *groups =
+                    pass->irradiance_groups[slice] +
+                    (size_t)pass->scene->n_light_groups * store->tag[hits->index[i]];
         }
     }
     return irradiance;
@@ -159,9 +180,8 @@ static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
                          spectrum beta, sampler *random, transport_scratch *scratch)
 {
     const spectrum *parts = NULL;
-    if (pass->irradiance && at->bsdf->lambertian) {
-        vec3 n = face_forward(at->hit->n_geom, at->wo);
-        spectrum e = kept_irradiance(pass, at->hit->p, n, &scratch->estimate, &parts);
+    if (pass->irradiance[0] && at->bsdf->lambertian) {
+        spectrum e = kept_irradiance(pass, at, &scratch->estimate, &parts);
         collect(pass, scratch, beta * at->bsdf->rho * INV_PI_F, parts);
         return e * at->bsdf->rho * INV_PI_F;
     }

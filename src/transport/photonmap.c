@@ -111,11 +111,9 @@ static trace_task trace_task_for(const slice_task *s, const cancel_flag *cancel)
     };
 }
 
-/* Irradiance is kept for a scene that stands still: what moves is gathered anew. */
 static bool keeps_irradiance(const photonmap_pass *pass)
 {
-    return pass->how->final_gather && pass->how->precompute_radiance &&
-           pass->n_slices == 1;
+    return pass->how->final_gather && pass->how->precompute_radiance;
 }
 
 static bool trace_class(const slice_task *s, const cancel_flag *cancel,
@@ -153,17 +151,6 @@ static bool build_class(const slice_task *s, trace_result *result,
     return true;
 }
 
-/* The positions and normals that irradiance will be computed at: of the direct and
-   indirect photons, kept before the maps reorder them. */
-static bool build_irradiance(photonmap_pass *pass, const trace_result *points,
-                             transport_counts *counts, GError **error)
-{
-    double start = seconds();
-    pass->irradiance = irradiance_map_build(pass, points, N_PHOTON_CLASSES, error);
-    counts->time_build += seconds() - start;
-    return pass->irradiance != NULL;
-}
-
 /* Every fourth photon becomes a place to keep irradiance at; the others make the map and
    carry the light of all. Places that were photons of the map would find themselves
    there, and the estimate be too bright by one photon in so many. */
@@ -192,8 +179,8 @@ static bool set_points_apart(trace_result *from, trace_result *points, GError **
     return true;
 }
 
-static bool make_slice(const slice_task *s, const cancel_flag *cancel,
-                       trace_result *points, transport_counts *counts, GError **error)
+static bool make_map(const slice_task *s, const cancel_flag *cancel, trace_result *points,
+                     transport_counts *counts, GError **error)
 {
     trace_result result = {0};
     bool ok = trace_class(s, cancel, &result, counts, error);
@@ -204,31 +191,45 @@ static bool make_slice(const slice_task *s, const cancel_flag *cancel,
     return ok;
 }
 
-static bool make_maps(photonmap_pass *pass, uint32_t index, const cancel_flag *cancel,
-                      transport_counts *counts, GError **error)
+/* The maps of one slice, and the irradiance at places that were photons of it. */
+static bool make_slice(photonmap_pass *pass, uint32_t index, int slice,
+                       const cancel_flag *cancel, transport_counts *counts,
+                       GError **error)
 {
     trace_result points[N_PHOTON_CLASSES] = {0};
     bool ok = true;
-    for (int i = 0; i < pass->n_slices * N_PHOTON_CLASSES && ok; i++) {
-        const slice_task s = {pass, index, i / N_PHOTON_CLASSES,
-                              (photon_class)(i % N_PHOTON_CLASSES)};
-        if (pass->plan->n_photons[s.c] > 0)
-            ok = make_slice(&s, cancel, &points[s.c], counts, error);
+    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
+        const slice_task s = {pass, index, slice, (photon_class)c};
+        if (pass->plan->n_photons[c] > 0)
+            ok = make_map(&s, cancel, &points[c], counts, error);
     }
+    double start = seconds();
     if (ok && keeps_irradiance(pass))
-        ok = build_irradiance(pass, points, counts, error);
+        ok = irradiance_map_build(pass, slice, points, N_PHOTON_CLASSES, error);
+    counts->time_build += seconds() - start;
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         trace_result_clear(&points[c]);
+    return ok;
+}
+
+static bool make_maps(photonmap_pass *pass, uint32_t index, const cancel_flag *cancel,
+                      transport_counts *counts, GError **error)
+{
+    bool ok = true;
+    for (int slice = 0; slice < pass->n_slices && ok; slice++)
+        ok = make_slice(pass, index, slice, cancel, counts, error);
     return ok;
 }
 
 static void end_pass(void *data)
 {
     photonmap_pass *pass = data;
-    for (int i = 0; i < pass->n_slices * N_PHOTON_CLASSES; i++)
-        photon_map_free(pass->maps[i / N_PHOTON_CLASSES][i % N_PHOTON_CLASSES]);
-    photon_map_free(pass->irradiance);
-    big_free(pass->irradiance_groups);
+    for (int i = 0; i < pass->n_slices; i++) {
+        for (int c = 0; c < N_PHOTON_CLASSES; c++)
+            photon_map_free(pass->maps[i][c]);
+        photon_map_free(pass->irradiance[i]);
+        big_free(pass->irradiance_groups[i]);
+    }
     g_aligned_free(pass);
 }
 
@@ -319,6 +320,11 @@ static spectrum gather_at(const photonmap_pass *pass, const photon_map *map,
     return photon_estimate(map, hit.p, &turned, wo, options, &scratch->estimate, NULL);
 }
 
+float photonmap_slice_time(const photonmap_pass *pass, int slice)
+{
+    return pass->n_slices > 1 ? time_of_slice(slice, pass->n_slices) : 0.0f;
+}
+
 spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
                           const shading_point *at, unsigned delta_lobes,
                           transport_scratch *scratch)
@@ -333,7 +339,7 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
     estimate_options options = pass->estimates[c];
     options.radius = local_radius(pass, c, at->hit->p, &scratch->estimate.hits);
     options.scene = pass->how->edges && !at->blurred ? pass->scene : NULL;
-    options.time = pass->n_slices > 1 ? time_of_slice(slice, pass->n_slices) : 0.0f;
+    options.time = photonmap_slice_time(pass, slice);
     options.delta_lobes = delta_lobes ? delta_lobes | LOBE_ANY_SIDE : 0;
     bool timed = scratch->n_gathers++ % TIMED_SHARE == 0;
     double start = timed ? seconds() : 0.0;

@@ -21,11 +21,12 @@ typedef struct photonmap_pass {
     int n_slices; /**< of the shutter's time; 1 where nothing moves */
     photon_map *maps[MOST_TIME_SLICES][N_PHOTON_CLASSES]; /**< NULL: the class is not
                                                              needed */
-    photon_map
-        *irradiance; /**< for final gathering: "photons" whose wi is a surface normal and
-                          whose flux is the irradiance there; NULL if not asked for */
-    spectrum *irradiance_groups; /**< [tag * n_light_groups + group], of the photons of
-                                    that map; owned; NULL without groups */
+    /** For final gathering in each slice: "photons" whose wi is a surface normal and
+     * whose flux is the irradiance there; NULL if not asked for. */
+    photon_map *irradiance[MOST_TIME_SLICES];
+    /** [tag * n_light_groups + group], of the photons of those maps; owned; NULL without
+     * groups. */
+    spectrum *irradiance_groups[MOST_TIME_SLICES];
     estimate_options estimates[N_PHOTON_CLASSES];
     caustic_share share; /**< if plan->shares */
     bool has_delta_lights;
@@ -46,6 +47,10 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
                           const shading_point *at, unsigned delta_lobes,
                           transport_scratch *scratch);
 
+/** @brief The time at which a slice's maps are probed: its middle, 0 where nothing moves.
+ */
+float photonmap_slice_time(const photonmap_pass *pass, int slice);
+
 /** @brief Follows a camera ray (transport_kind.radiance). */
 void photonmap_radiance(const void *pass, const ray *r, sampler *random,
                         transport_scratch *scratch, radiance_sample *out);
@@ -56,12 +61,13 @@ void photonmap_radiance(const void *pass, const ray *r, sampler *random,
 spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
                       float importance, sampler *random, transport_scratch *scratch);
 
-/** @brief Irradiance at some of the photons, as a map to look the nearest up in
- * (Christensen, "Faster Photon Map Global Illumination", 1999).
- *  Also fills pass->irradiance_groups.
- *  @param points photons stored, with normals[i] the surface's; every fourth is used */
-photon_map *irradiance_map_build(photonmap_pass *pass, const trace_result *points,
-                                 size_t n, GError **error);
+/** @brief Irradiance at some of the photons of a slice of time, as a map to look the
+ * nearest up in (Christensen, "Faster Photon Map Global Illumination", 1999):
+ * pass->irradiance and its groups.
+ *  @param points photons stored, with normals[i] the surface's, of n classes; every
+ * fourth photon was set apart for them */
+bool irradiance_map_build(photonmap_pass *pass, int slice, const trace_result *points,
+                          size_t n, GError **error);
 
 /** @brief Chooses plan->radius of each class that is needed. */
 bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,

@@ -1,9 +1,8 @@
 /*
  * What went wrong in other photon mappers, each as a test of its own: photons behind a
  * surface that shrank the radius in front of it, seams where normals are interpolated,
- * one wide look-up that made all slow, and counters that ran over at 2³² photons.
- *
- * One time of the shutter for all photons of a pass is in test_motion.
+ * one time of the shutter for all photons of a pass, one wide look-up that made all slow,
+ * and counters that ran over at 2³² photons.
  */
 #include "math/sampler.h"
 #include "photon/estimate.h"
@@ -73,6 +72,44 @@ static void test_shading_normals(void)
                                   "photons=40000 max_backward_bounces=-1",
                                   32 * more);
     verify_agree("direct map", &photons, &path, 0.01, 0.05);
+}
+
+/* ---- One time a pass ---- */
+
+/* A glass ball that flies through the room, or stands on its way there: its caustic is a
+   streak, in one pass as in many. */
+#define GLASS_ON_ITS_WAY                                                                 \
+    "LookAt 0 -3 1.9  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 55\n" SIZE(      \
+        32) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS                                      \
+        "%s Translate %g 0 0 ActiveTransform All Material \"dielectric\" Translate "     \
+        "-0.8 0 0.5 Shape \"sphere\" \"float radius\" 0.35\n"
+
+/* Adds the mean caustic of blocks of 4 x 4 pixels, of one pass. */
+static void add_caustic(const char *transforms, double way, double weight,
+                        double mean[VERIFY_BLOCKS])
+{
+    g_autofree char *text = g_strdup_printf(GLASS_ON_ITS_WAY, transforms, way);
+    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(image) img =
+        render_with(s, "integrator=photonmap passes=1 spp=8 photons=80000 radius=0.08");
+    size_t caustic = channel_of(img, "caustic.G");
+    for (size_t i = 0; i < pixels_of(img); i++)
+        mean[i / 32 / 4 * 8 + i % 32 / 4] += weight * at(img, i, caustic) / 16;
+}
+
+static void test_one_time_a_pass(void)
+{
+    enum { TIMES = 16 };
+    double one[VERIFY_BLOCKS] = {0}, many[VERIFY_BLOCKS] = {0}, off2 = 0, all2 = 0;
+    add_caustic("ActiveTransform EndTime", 1.6, 1, one);
+    for (int i = 0; i < TIMES; i++)
+        add_caustic("", 1.6 * (i + 0.5) / TIMES, 1.0 / TIMES, many);
+    for (size_t i = 0; i < VERIFY_BLOCKS; i++) {
+        off2 += (one[i] - many[i]) * (one[i] - many[i]);
+        all2 += many[i] * many[i];
+    }
+    g_test_message("blocks off by %g of their caustic", sqrt(off2 / all2));
+    g_assert_cmpfloat(off2, <, 0.2 * 0.2 * all2);
 }
 
 /* ---- One wide look-up ---- */
@@ -153,6 +190,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/verify/peers/photons-behind", test_photons_behind);
     g_test_add_func("/verify/peers/shading-normals", test_shading_normals);
+    g_test_add_func("/verify/peers/one-time-a-pass", test_one_time_a_pass);
     g_test_add_func("/verify/peers/wide-radius", test_wide_radius);
     g_test_add_func("/verify/peers/counters", test_counters);
     return g_test_run();
