@@ -203,7 +203,7 @@ static void test_aimed_emission_has_the_same_flux(void)
         transport_plan plan = {.scene = s, .how = how};
         plan.how.caustic_emission = EMISSION_GUIDED;
         plan.n_photons[PHOTON_CAUSTIC] = 1;
-        g_assert_true(aim_caustics(&plan, NULL, NULL, NULL));
+        g_assert_true(aim_caustics(&plan, NULL, NULL, NULL, NULL));
         flux_mean guided = stored_flux_by(&plan, PHOTON_CAUSTIC, 1 << 17);
         transport_plan_clear(&plan);
         double guided_error =

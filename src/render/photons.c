@@ -40,7 +40,7 @@ static bool make_plan(transport_plan *plan, const scene *s, const settings *how,
     *plan = (transport_plan){.scene = s, .how = *how};
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         plan->n_photons[c] = budget(s, how, (photon_class)c);
-    return aim_caustics(plan, NULL, cancel, error);
+    return aim_caustics(plan, NULL, NULL, cancel, error);
 }
 
 static trace_task task_for(const transport_plan *plan, photon_class c)

@@ -24,13 +24,18 @@ static caustic_share trial_share(const transport_plan *plan)
 static bool plan_photons(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
     aim_result found = {.noise = (double)INFINITY};
-    if (!aim_caustics(plan, &found, cancel, error)) {
+    const path_effort paths = path_effort_measure(plan);
+    const aim_effort effort = {
+        .samples = caustic_planned_samples(plan),
+        .least_noise = caustic_least_noise(plan, &paths),
+    };
+    if (!aim_caustics(plan, &effort, &found, cancel, error)) {
         g_free(found.boost);
         return false;
     }
     plan->boost = found.boost;
     plan->share.boost = found.boost;
-    caustic_budget_decide(plan, found.noise);
+    caustic_budget_decide(plan, &found, &paths);
     return true;
 }
 
@@ -41,7 +46,9 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
         return true;
     plan->shares = true;
     plan->share = trial_share(plan);
-    return plan_photons(plan, cancel, error) &&
+    if (!plan_photons(plan, cancel, error))
+        return false;
+    return plan->n_photons[PHOTON_CAUSTIC] == 0 ||
            photonmap_choose_radii(plan, cancel, error);
 }
 

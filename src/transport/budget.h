@@ -3,20 +3,36 @@
  *
  * Photons are there to take away the noise that paths from the eye would have if they had
  * to find caustics by themselves. That noise is known from trial photons, since each
- * knows how likely a path was to find what it brings; the noise of all other light is
- * measured with paths. If the former is as large as the latter, a pass has all photons;
- * below, their number falls as its root; where it is next to nothing there are none: the
- * pass is then one of path tracing, and costs as much.
+ * knows how likely a path was to find what it brings; so is what fewer photons would
+ * leave of it. The noise of all other light, and how many rays it takes, is measured with
+ * paths. Of several numbers of photons, and none, the one is taken with which variance
+ * times work is least. Without photons a pass is one of path tracing, and costs as much.
  */
 #pragma once
 
-#include "transport/transport.h"
+#include "transport/aim.h"
+
+/** @brief Light that paths find, per camera sample. */
+typedef struct path_effort {
+    double noise; /**< variance of a sample, caustics apart: (W m⁻² sr⁻¹ nm⁻¹)² */
+    double rays;     /**< traced, shadow rays too */
+    double surfaces; /**< met */
+} path_effort;
+
+/** @brief Camera samples of all passes that are planned. */
+double caustic_planned_samples(const transport_plan *plan);
 
 /** @brief Before anything is known: `caustic_photons` if it is set, else at most
  * `photons` and not many more than the camera's samples; 0 without casters. */
 uint64_t caustic_budget(const transport_plan *plan);
 
-/** @brief Sets plan->n_photons of caustics, and p_blurred, by the noise of a camera
- * sample without photons, squared (aim_result.noise); INFINITY where that is not known.
- */
-void caustic_budget_decide(transport_plan *plan, double noise);
+/** @brief Measures with a few paths. Deterministic. */
+path_effort path_effort_measure(const transport_plan *plan);
+
+/** @brief The noise by caustics, as aim_result has it, below which no number of photons
+ * pays; 0 where photons are wanted whatever they bring. */
+double caustic_least_noise(const transport_plan *plan, const path_effort *paths);
+
+/** @brief Sets plan->n_photons of caustics, and p_blurred. */
+void caustic_budget_decide(transport_plan *plan, const aim_result *found,
+                           const path_effort *paths);

@@ -57,16 +57,23 @@ static void count_bounce(camera_path *path, unsigned lobe)
     }
 }
 
-/* True if photons too carry light that comes by followed bounces from a lamp to a diffuse
-   surface of this path. */
+/* Light that comes by followed bounces from a lamp to a diffuse surface of this path. */
+static bool is_caustic(const camera_path *path)
+{
+    return path->n_diffuse > 0 && path->n_after > 0;
+}
+
+/* True if photons too carry it. */
 static bool photons_share(const path_walk *walk, const camera_path *path)
 {
-    return walk->pass->caustics && path->n_diffuse > 0 && path->n_after > 0;
+    return walk->pass->caustics && is_caustic(path);
 }
 
 static bool add(path_walk *walk, const camera_path *path, spectrum radiance)
 {
     spectrum value = path->beta * radiance;
+    if (walk->pass->without_caustics && is_caustic(path))
+        return false;
     if (!spectrum_is_finite(value)) {
         walk->scratch->n_not_finite++;
         return false;
@@ -200,8 +207,7 @@ static void gather_caustics(path_walk *walk, const camera_path *path,
     unsigned delta = path->n_diffuse == 0 && photons->has_delta_lights ? LOBE_GLOSSY : 0;
     camera_path seen = *path;
     int64_t limit = walk->how->max_backward_bounces;
-    bool came_with_photons = path->n_diffuse > 0 && path->n_after > 0;
-    if (!(b->lobes & (LOBE_DIFFUSE | delta)) || came_with_photons ||
+    if (!(b->lobes & (LOBE_DIFFUSE | delta)) || is_caustic(path) ||
         (limit >= 0 && path->bounces + 2 > limit))
         return;
     const shading_point at = {hit, b, -path->ray.direction, path->n_diffuse > 0};

@@ -17,6 +17,8 @@ typedef struct path_pass {
     wavelengths w;
     bsdf_options options;
     struct photonmap_pass *caustics; /**< NULL: paths find all light themselves */
+    bool without_caustics; /**< to measure with: light by way of a specular or glossy
+                              bounce to a diffuse surface is left out */
 } path_pass;
 
 /** @brief Traces one camera path through a path_pass (transport_kind.radiance). */

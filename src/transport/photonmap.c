@@ -62,7 +62,7 @@ static void share_photons(transport_plan *plan)
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
     share_photons(plan);
-    return aim_caustics(plan, NULL, cancel, error) &&
+    return aim_caustics(plan, NULL, NULL, cancel, error) &&
            photonmap_choose_radii(plan, cancel, error);
 }
 
