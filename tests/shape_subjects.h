@@ -42,8 +42,7 @@ static inline shape_place place_at(int i)
         t = transform_multiply(&steps[3], &t);
     if (i == 5)
         t = transform_multiply(&steps[4], &t);
-    return (shape_place){
-        .to_world = t, .reverse_orientation = i % 2 == 1, .material = 0};
+    return (shape_place){.to_world = t, .reverse_orientation = i % 2 == 1, .material = 0};
 }
 
 static inline params *describe(const subject *s)
@@ -93,7 +92,7 @@ static inline ray random_ray(sampler *s, const transform *to_world)
     vec3 to = 1.2f * sampler_1d(s) * warp_sphere(sampler_2d(s));
     o = transform_point(to_world, o);
     to = transform_point(to_world, to);
-    return (ray){o, normalize3(to - o), INFINITY, 0, NULL};
+    return (ray){o, normalize3(to - o), INFINITY, 0, {{NULL}}};
 }
 
 enum { SOUP = 150 };

@@ -70,7 +70,7 @@ static vec3 lifted(const neighbourhood *hood, vec3 p)
 static float surface_height(const neighbourhood *hood, vec3 q)
 {
     float slab = NEIGHBOURHOOD_FLATTEN * hood->radius, height = LIFT * hood->radius;
-    ray down = {lifted(hood, q), -hood->n, height + slab, hood->time, NULL};
+    ray down = {lifted(hood, q), -hood->n, height + slab, hood->time, {{NULL}}};
     surface_hit hit;
     return scene_intersect(hood->scene, &down, &hit) ? fabsf(hit.t - height) / slab
                                                      : 1.0f;

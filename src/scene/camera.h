@@ -28,6 +28,7 @@ typedef struct camera {
     float aspect;      /**< frameaspectratio; 0 = the film's */
     bool has_window;   /**< a screenwindow is given, and the film's shape ignored */
     float window[4];   /**< x_min, x_max, y_min, y_max in half_screens */
+    media media;       /**< the solids that it is in; found by the scene */
     bool equal_area;   /**< a spherical camera's mapping; else latitude and longitude */
 } camera;
 

@@ -5,6 +5,7 @@
 
 #include "math/frame.h"
 #include "math/vec.h"
+#include "scene/media.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -14,11 +15,10 @@ typedef struct ray {
     vec3 origin;
     vec3 direction; /**< unit */
     float t_max;
-    float time;                  /**< of the shutter: 0 when it opens, 1 when it closes */
-    const struct medium *medium; /**< that it travels in; NULL: none (medium.h) */
+    float time;  /**< of the shutter: 0 when it opens, 1 when it closes */
+    media media; /**< the solids that it travels in */
 } ray;
 
-struct medium;
 struct mesh;
 
 enum { NO_INDEX = -1 };
@@ -43,12 +43,13 @@ typedef struct surface_hit {
     uint32_t primitive; /**< triangle of a mesh, else 0 */
     int material; /**< index in scene->materials, or NO_INDEX: an invisible interface */
     int light;    /**< index in scene->lights of the area light here, or NO_INDEX */
-    const struct medium *medium; /**< that the ray came through; NULL: none */
-    const struct mesh *mesh; /**< that the triangle is of (mesh_attributes.h); NULL: on
-                                another shape */
-    vec2 corners;            /**< weights of the triangle's second and third corner */
-    const struct medium *interior; /**< behind the surface, against n_geom; NULL: it
-                                      bounds none */
+    media media;  /**< the solids that the ray came through */
+    const struct mesh *mesh;  /**< that the triangle is of (mesh_attributes.h); NULL: on
+                                 another shape */
+    vec2 corners;             /**< weights of the triangle's second and third corner */
+    const interior *interior; /**< behind the surface, against n_geom; NULL: it bounds no
+                                 solid */
+    bool from_inside;         /**< the ray came from behind; only where interior is set */
 } surface_hit;
 
 /** @brief Where a ray that leaves p in the given direction must start so as not to meet
@@ -67,13 +68,21 @@ static inline vec3 hit_offset(const surface_hit *hit, vec3 direction)
     return offset_point(hit->p, hit->n_geom, hit->t, hit->error, direction);
 }
 
+/** @brief The solids that a ray which leaves the hit in a direction travels in. */
+static inline media hit_media(const surface_hit *hit, vec3 direction)
+{
+    bool inside = dot3(direction, hit->n_geom) < 0.0f;
+    if (!hit->interior || inside == hit->from_inside)
+        return hit->media;
+    return inside ? media_enter(hit->media, hit->interior)
+                  : media_leave(hit->media, hit->interior);
+}
+
 /** @brief The ray that leaves a hit. */
 static inline ray hit_ray(const surface_hit *hit, vec3 direction)
 {
-    const struct medium *in = hit->medium;
-    if (hit->interior)
-        in = dot3(direction, hit->n_geom) < 0.0f ? hit->interior : NULL;
-    return (ray){hit_offset(hit, direction), direction, INFINITY, hit->time, in};
+    return (ray){hit_offset(hit, direction), direction, INFINITY, hit->time,
+                 hit_media(hit, direction)};
 }
 
 /** @brief The ray from a hit to a point at distance in direction. It ends short of the

@@ -94,6 +94,7 @@ struct light {
     source_place place;
     char *group;     /**< light group's name, NULL: the default one */
     int group_index; /**< in scene->light_groups, if there are any */
+    media media;     /**< the solids that it shines in */
     bool is_apart;   /**< stands outside the sphere around what casts caustics: from it,
                         that sphere is a cone */
 };

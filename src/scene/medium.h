@@ -2,10 +2,9 @@
  * What fills a solid: coloured glass, which absorbs light along its way and scatters none
  * (Beer-Lambert's law).
  *
- * A ray knows the medium it travels in. It enters and leaves one where it crosses a
- * surface whose material has an interior; all other surfaces, clear glass among them,
- * leave it where it is. Media do not nest: behind the boundary of one is either it or
- * nothing.
+ * A ray knows the solids it travels in (media.h). It enters and leaves one where it
+ * crosses a surface whose material bounds a solid; all other surfaces leave it where it
+ * is.
  */
 #pragma once
 
@@ -32,25 +31,24 @@ void medium_free(medium *m);
 /** @brief Share of light left after t metres. */
 spectrum medium_transmittance(const medium *m, float t, const wavelengths *w);
 
-/** @brief The medium that a ray leaving the hit travels in; NULL: none. */
-static inline const medium *hit_medium(const surface_hit *hit, vec3 direction)
+/** @brief Share of light left after t metres in these solids. */
+static inline spectrum media_transmittance(const media *in, float t, const wavelengths *w)
 {
-    if (!hit->interior)
-        return hit->medium;
-    return dot3(direction, hit->n_geom) < 0.0f ? hit->interior : NULL;
+    const interior *first = in->of[0];
+    return first && first->medium ? medium_transmittance(first->medium, t, w)
+                                  : spectrum_fill(1.0f);
 }
 
 /** @brief Share of light left on the way from the ray's origin to the hit. */
 static inline spectrum hit_transmittance(const surface_hit *hit, const wavelengths *w)
 {
-    return hit->medium ? medium_transmittance(hit->medium, hit->t, w)
-                       : spectrum_fill(1.0f);
+    return media_transmittance(&hit->media, hit->t, w);
 }
 
 /** @brief The same on the straight way from a hit to a point that nothing hides. */
 static inline spectrum hit_transmittance_to(const surface_hit *hit, vec3 direction,
                                             float distance, const wavelengths *w)
 {
-    const medium *m = hit_medium(hit, direction);
-    return m ? medium_transmittance(m, distance, w) : spectrum_fill(1.0f);
+    const media in = hit_media(hit, direction);
+    return media_transmittance(&in, distance, w);
 }

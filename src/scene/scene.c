@@ -10,6 +10,7 @@
 #include "scene/lenient.h"
 #include "scene/scene_film.h"
 #include "scene/scene_geometry.h"
+#include "scene/scene_media.h"
 
 #include <string.h>
 
@@ -83,6 +84,7 @@ void scene_free(scene *s)
     g_free(s->environments);
     g_strfreev(s->light_groups);
     g_free(s->casters);
+    g_free(s->interiors);
     g_free(s);
 }
 
@@ -363,15 +365,6 @@ static void find_light_groups(scene *s)
     s->light_groups = (char **)g_ptr_array_steal(names, NULL);
 }
 
-static void find_interiors(scene *s)
-{
-    for (guint i = 0; i < s->shapes->len; i++) {
-        shape *on = s->shapes->pdata[i];
-        if (on->material != NO_INDEX)
-            on->interior = material_interior(s->materials->pdata[on->material]);
-    }
-}
-
 /* A commit that failed leaves the scene as it was before. */
 static void forget_commit(scene *s)
 {
@@ -415,7 +408,7 @@ bool scene_commit(scene *s, unsigned threads, GError **error)
     if (s->committed) {
         find_light_groups(s);
         find_pixel_width(s);
-        find_interiors(s);
+        scene_find_media(s);
         g_hash_table_remove_all(s->files);
     } else {
         forget_commit(s);
@@ -446,6 +439,7 @@ bool scene_see(const scene *s, const ray *r, surface_hit *hit)
             return true;
         }
         left = hit_ray(hit, r->direction);
+        left.media = r->media; /* what is not seen absorbs nothing */
     }
     return false;
 }

@@ -85,7 +85,8 @@ typedef struct scene {
     int n_light_groups;     /**< 0: no light names one */
     int *environments;      /**< indices of lights that are environments */
     int n_environments;
-    bool moves; /**< some instance does while the shutter is open */
+    interior *interiors; /**< per material; NULL: nothing in the scene absorbs */
+    bool moves;          /**< some instance does while the shutter is open */
     caustic_caster *casters;
     int n_casters;
     distribution caustic_area;  /**< over casters, by area */
@@ -155,8 +156,9 @@ static inline void scene_fill_hit(const scene *s, const ray *r, surface_hit *hit
     const shape *on = s->shapes->pdata[hit->shape];
     hit->material = on->material;
     hit->light = on->light;
-    hit->medium = r->medium;
+    hit->media = r->media;
     hit->interior = on->interior;
+    hit->from_inside = on->interior && dot3(r->direction, hit->n_geom) > 0.0f;
 }
 
 /** @brief Nearest hit of a ray, with material and light. */
@@ -186,6 +188,11 @@ static inline bool scene_occluded(const scene *s, const ray *r)
 {
     return accel_occluded(s->accel, r);
 }
+
+/** @brief The solids that a point is in: those that more surfaces of are left than
+ * entered on the way out, by most of a few ways. Bodies that are not closed may be
+ * missed. */
+media scene_media_at(const scene *s, vec3 p);
 
 /** @brief A point on the surfaces that cast caustics, uniform by area but for instances
  * that are stretched. */

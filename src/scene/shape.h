@@ -87,7 +87,7 @@ struct shape {
     int material;
     int light; /**< index in scene->lights or NO_INDEX */
     bool camera_hidden;
-    const struct medium *interior; /**< its material's, once the scene is committed */
+    const interior *interior; /**< its material's, once the scene is committed */
     bool has_alpha;
     float_input alpha;
     int object; /**< index in scene->objects it is a part of, or NO_INDEX: the world */

@@ -204,6 +204,7 @@ static bool emit(light_walk *l)
                              .n = e.n,
                              .direction = e.ray.direction};
     e.ray.time = l->time;
+    e.ray.media = scene_light(l->pass->scene, l->light)->media;
     l->walk = (vcm_walk){.ray = e.ray,
                          .from = e.ray.origin,
                          .carried = e.flux / p_light,
