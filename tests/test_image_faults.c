@@ -11,6 +11,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 enum { SEED = 20, N_FLIPS = 200, WIDTH = 45, HEIGHT = 38, TILE = 16 };
@@ -287,6 +288,24 @@ static void test_exr_subsampled_is_refused(void)
     g_error_free(error);
 }
 
+/* A chunk that says it has 1.6 GB, in a file of 73 bytes: no memory is asked for it.
+   Found by fuzzing. */
+static void test_claims(void)
+{
+    static const unsigned char bytes[] =
+        "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\2\0\0\0\2\1\3\0\0\0\x48\x78\x9f\x67"
+        "\x63\0\x63\x25tEXtdate:c";
+    struct rusage before, after;
+    GError *error = NULL;
+    getrusage(RUSAGE_SELF, &before);
+    write_bytes((const char *)bytes, sizeof bytes - 1);
+    g_assert_null(image_read(path, NULL, &error));
+    assert_message_names_file(error);
+    g_error_free(error);
+    getrusage(RUSAGE_SELF, &after);
+    g_assert_cmpint(after.ru_maxrss - before.ru_maxrss, <, 100 * 1024);
+}
+
 /* The library has no business on the terminal: standard output and error stay empty. */
 static void test_nothing_is_printed(void)
 {
@@ -321,6 +340,7 @@ int main(int argc, char **argv)
     g_test_add_func("/image/exr-kinds", test_exr_kinds);
     g_test_add_func("/image/exr-kinds-damaged", test_exr_kinds_damaged);
     g_test_add_func("/image/exr-subsampled", test_exr_subsampled_is_refused);
+    g_test_add_func("/image/claims", test_claims);
     g_test_add_func("/image/silent", test_nothing_is_printed);
     int result = g_test_run();
     g_unlink(path);

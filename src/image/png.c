@@ -56,6 +56,24 @@ static bool recognises(const image_source *source)
     return source->size >= 8 && png_sig_cmp(source->bytes, 0, 8) == 0;
 }
 
+/* libpng makes room for as much as a chunk says it has, before it reads. */
+static bool chunks_fit(const image_source *source)
+{
+    enum { SIGNATURE = 8, HEADER = 8, CHECKSUM = 4 };
+    size_t at = SIGNATURE;
+    while (source->size - at >= HEADER) {
+        const uint8_t *chunk = source->bytes + at;
+        size_t length = (size_t)png_get_uint_32(chunk), left = source->size - at - HEADER;
+        bool is_last = memcmp(chunk + 4, "IEND", 4) == 0;
+        if (left < CHECKSUM || length > left - CHECKSUM)
+            return false;
+        if (is_last)
+            return true;
+        at += HEADER + length + CHECKSUM;
+    }
+    return false;
+}
+
 static void read_bytes(png_structp png, png_bytep out, size_t n)
 {
     png_job *job = png_get_io_ptr(png);
@@ -155,6 +173,11 @@ static image *read_png(const image_source *source, const image_read_options *opt
                        GError **error)
 {
     image *img = NULL;
+    if (!chunks_fit(source)) {
+        error_set(error, ERROR_INPUT, "%s: damaged PNG file: it ends early",
+                  source->path);
+        return NULL;
+    }
     png_job *job = g_new0(png_job, 1);
     job->source = source;
     job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
