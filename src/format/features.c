@@ -6,50 +6,62 @@
 #include "format/features.h"
 
 #include "format/gltf_extensions.h"
+#include "format/pbrt_parser.h"
 #include "scene/scene.h"
+#include "scene/scene_film.h"
 
 #include <string.h>
 
-/* The name and the parameters of kind number i; NULL behind the last. */
-typedef const char *(*kind_at)(size_t i, const char **parameters);
+/* Kind number i; a name of NULL behind the last. */
+typedef directive_kind (*kind_at)(size_t i);
 
-static const char *texture_at(size_t i, const char **parameters)
+static directive_kind texture_at(size_t i)
 {
     const texture_kind *kind = texture_kind_at(i);
-    *parameters = kind ? kind->parameters : NULL;
-    return kind ? kind->name : NULL;
+    return kind ? (directive_kind){kind->name, kind->parameters, NULL, NULL, NULL}
+                : (directive_kind){0};
 }
 
-static const char *material_at(size_t i, const char **parameters)
+static directive_kind material_at(size_t i)
 {
     const material_kind *kind = material_kind_at(i);
-    *parameters = kind ? kind->parameters : NULL;
-    return kind ? kind->name : NULL;
+    return kind ? (directive_kind){kind->name, kind->parameters, NULL, NULL, NULL}
+                : (directive_kind){0};
 }
 
-static const char *light_at(size_t i, const char **parameters)
+static directive_kind light_at(size_t i)
 {
     const light_kind *kind = light_kind_at(i);
-    *parameters = kind ? kind->parameters : NULL;
-    return kind ? kind->name : NULL;
+    return kind ? (directive_kind){kind->name, kind->parameters, NULL, NULL, NULL}
+                : (directive_kind){0};
 }
 
-static const char *shape_at(size_t i, const char **parameters)
+static directive_kind shape_at(size_t i)
 {
-    *parameters = shape_kind_parameters(i);
-    return shape_kind_name(i);
+    return (directive_kind){shape_kind_name(i), shape_kind_parameters(i), NULL, NULL,
+                            NULL};
 }
 
-static const char *camera_kind_of(size_t i, const char **parameters)
+static directive_kind camera_kind_of(size_t i)
 {
-    *parameters = camera_kind_parameters(i);
-    return camera_kind_at(i);
+    return (directive_kind){camera_kind_at(i), camera_kind_parameters(i), NULL, NULL,
+                            NULL};
 }
 
-static const char *filter_at(size_t i, const char **parameters)
+static directive_kind film_at(size_t i)
 {
-    *parameters = NULL;
-    return filter_kind_name(i);
+    directive_kind kind = {0};
+    kind.name = film_kind_at(i, &kind.parameters, &kind.idle);
+    return kind;
+}
+
+static directive_kind filter_at(size_t i)
+{
+    const char *name = filter_kind_name(i);
+    if (!name)
+        return (directive_kind){0};
+    g_autofree char *parameters = filter_kind_parameters(i);
+    return (directive_kind){name, g_intern_string(parameters), NULL, NULL, NULL};
 }
 
 /* pbrt-v4's kinds of a directive, and the table that ours are in. */
@@ -60,8 +72,21 @@ typedef struct feature_list {
 } feature_list;
 
 static const feature_list lists[] = {
+    {"Option",
+     "seed displacementedgescale gpu pixelstats rendercoordsys wavefront "
+     "disablepixeljitter disabletexturefiltering disablewavelengthjitter forcediffuse "
+     "msereferenceimage msereferenceout",
+     pbrt_option_kind, NULL},
     {"Camera", "perspective orthographic spherical realistic", camera_kind_of, NULL},
+    {"Film", "rgb gbuffer spectral", film_at, NULL},
     {"PixelFilter", "box gaussian mitchell sinc triangle", filter_at, NULL},
+    {"Sampler", "halton independent paddedsobol pmj02bn sobol stratified zsobol",
+     pbrt_sampler_kind, NULL},
+    {"Integrator",
+     "ambientocclusion bdpt function lightpath mlt path randomwalk simplepath "
+     "simplevolpath sppm volpath photonmap auto vcm",
+     pbrt_integrator_kind, NULL},
+    {"Accelerator", "bvh kdtree", pbrt_accelerator_kind, NULL},
     {"Shape", "bilinearmesh curve cylinder disk loopsubdiv plymesh sphere trianglemesh",
      shape_at, "alpha camera_visible"},
     {"LightSource", "distant goniometric infinite point projection spot", light_at,
@@ -81,25 +106,45 @@ static const feature_list lists[] = {
 /* What is not quite as pbrt has it, or is made elsewhere than in the tables. */
 typedef struct feature_note {
     const char *directive, *kind, *how, *note;
+    const char *idle;       /* parameters that change nothing; NULL: none */
+    const char *parameters; /* of a kind that is in no table */
 } feature_note;
 
 static const feature_note notes[] = {
-    {"Shape", "plymesh", "rendered", "a triangle mesh from a file"},
+    {"Shape", "plymesh", "rendered", "a triangle mesh from a file", NULL,
+     "filename alpha camera_visible"},
+    {"Shape", "trianglemesh", "rendered", "`faceIndices` are for `ptex`", "faceIndices",
+     NULL},
+    {"Shape", "bilinearmesh", "rendered",
+     "`faceIndices` are for `ptex`; where the light is, is found without "
+     "`emissionfilename`",
+     "faceIndices emissionfilename", NULL},
     {"Shape", "curve", "approximated",
-     "a `cylinder` is a tube, which pbrt draws as a flat ribbon with a tube's normals"},
+     "a `cylinder` is a tube, which pbrt draws as a flat ribbon with a tube's normals",
+     "splitdepth", NULL},
     {"Shape", "loopsubdiv", "approximated",
-     "boundaries are put on their exact limit, which pbrt's are near"},
+     "boundaries are put on their exact limit, which pbrt's are near",
+     "faceIndices scheme", NULL},
     {"Camera", "orthographic", "approximated",
-     "every place on the screen has a lens of its own, where pbrt's rays leave one lens"},
-    {"Material", "interface", "rendered", "lets light pass"},
+     "every place on the screen has a lens of its own, where pbrt's rays leave one lens",
+     NULL, NULL},
+    {"Film", "rgb", "rendered", "of sensors `cie1931` only", NULL, NULL},
+    {"Film", "gbuffer", "rendered",
+     "of sensors `cie1931` only; `dzdx` and `dzdy` are for whole pixels, where pbrt's "
+     "shrink with the number of "
+     "samples; the variances are of the film's colours",
+     NULL, NULL},
+    {"Material", "interface", "rendered", "lets light pass", NULL, NULL},
     {"Material", "coateddiffuse", "rendered",
      "the mean of pbrt's random walk; in closed form, where `nsamples` changes nothing, "
-     "if `albedo` is 0 and `thickness` a number"},
+     "if `albedo` is 0 and `thickness` a number",
+     NULL, NULL},
     {"Material", "coatedconductor", "rendered",
-     "pbrt's random walk; the lanes share the mean `interface.eta`"},
-    {"Texture", "imagemap", "approximated", "`EWA` filters as `trilinear` does"},
+     "pbrt's random walk; the lanes share the mean `interface.eta`", NULL, NULL},
+    {"Texture", "imagemap", "approximated", "`EWA` filters as `trilinear` does",
+     "maxanisotropy", NULL},
     {"LightSource", "infinite", "approximated",
-     "pictures are mixed bilinearly; `portal` needs a `filename`"},
+     "pictures are mixed bilinearly; `portal` needs a `filename`", NULL, NULL},
 };
 
 static const feature_note *find_note(const char *directive, const char *kind)
@@ -111,47 +156,78 @@ static const feature_note *find_note(const char *directive, const char *kind)
     return NULL;
 }
 
-/* Adds the words of a list that are not there yet, each as code. */
-static void append_words(GString *out, GHashTable *there, const char *list)
+/* Whether the word is in a list with blanks between, which may be NULL. */
+static bool lists_word(const char *list, const char *word)
 {
     g_auto(GStrv) words = g_strsplit(list ? list : "", " ", -1);
-    for (char **word = words; *word; word++)
-        if (**word && g_hash_table_add(there, g_strdup(*word)))
-            g_string_append_printf(out, "%s`%s`", out->len ? " " : "", *word);
+    return g_strv_contains((const char *const *)words, word);
 }
 
-/* One kind may be made in several ways, with parameters of their own each. */
-static bool find_kind(const feature_list *list, const char *kind, GString *parameters)
+/* Words of a list that are not there yet are added, each as code, to those that act or
+ * to those that are idle. */
+typedef struct word_columns {
+    GString *acting, *idle;
+    GHashTable *there;
+    const char *known_idle;
+} word_columns;
+
+static void append_words(word_columns *to, const char *list, bool idle)
 {
-    g_autoptr(GHashTable) there =
-        g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
-    const char *name, *own;
-    bool found = false;
-    for (size_t i = 0; (name = list->at(i, &own)); i++)
-        if (strcmp(name, kind) == 0) {
-            found = true;
-            append_words(parameters, there, own);
+    g_auto(GStrv) words = g_strsplit(list ? list : "", " ", -1);
+    for (char **word = words; *word; word++) {
+        if (!**word || !g_hash_table_add(to->there, g_strdup(*word)))
+            continue;
+        GString *out = idle || lists_word(to->known_idle, *word) ? to->idle : to->acting;
+        g_string_append_printf(out, "%s`%s`", out->len ? " " : "", *word);
+    }
+}
+
+/* One kind may be made in several ways, with parameters of their own each.
+ * @return the last that was found, its name NULL if none was */
+static directive_kind find_feature(const feature_list *list, const char *name,
+                                   word_columns *to)
+{
+    directive_kind found = {0}, kind;
+    for (size_t i = 0; (kind = list->at(i)).name; i++)
+        if (strcmp(kind.name, name) == 0) {
+            found = kind;
+            append_words(to, kind.parameters, false);
+            append_words(to, kind.idle, true);
         }
-    if (found)
-        append_words(parameters, there, list->common);
+    if (found.name)
+        append_words(to, list->common, false);
     return found;
 }
 
-static void append_row(GString *out, const feature_list *list, const char *kind)
+static const char *status_of(const directive_kind *made, const feature_note *note)
 {
-    g_autoptr(GString) parameters = g_string_new(NULL);
-    const feature_note *note = find_note(list->directive, kind);
-    bool made =
-        find_kind(list, kind, parameters) || (note && strcmp(note->how, "rendered") == 0);
-    const char *how = !made ? "refused" : note ? note->how : "rendered";
-    g_string_append_printf(out, "| `%s` | `%s` | %s | %s | %s |\n", list->directive, kind,
-                           how, parameters->str, made && note ? note->note : "");
+    if (note)
+        return note->how;
+    if (!made->name)
+        return "refused";
+    return made->how ? made->how : "rendered";
+}
+
+static void append_row(GString *out, const feature_list *list, const char *name)
+{
+    g_autoptr(GString) acting = g_string_new(NULL), idle = g_string_new(NULL);
+    g_autoptr(GHashTable) there =
+        g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    const feature_note *note = find_note(list->directive, name);
+    word_columns words = {acting, idle, there, note ? note->idle : NULL};
+    directive_kind made = find_feature(list, name, &words);
+    append_words(&words, note ? note->parameters : NULL, false);
+    const char *text = note ? note->note : made.note;
+    g_string_append_printf(out, "| `%s` | `%s` | %s | %s | %s | %s |\n", list->directive,
+                           name, status_of(&made, note), acting->str, idle->str,
+                           text ? text : "");
 }
 
 char *features_markdown(void)
 {
-    GString *out = g_string_new("| directive | kind | | parameters | |\n"
-                                "|---|---|---|---|---|\n");
+    GString *out = g_string_new("| directive | kind | | parameters | accepted without "
+                                "effect | |\n"
+                                "|---|---|---|---|---|---|\n");
     for (size_t i = 0; i < G_N_ELEMENTS(lists); i++) {
         g_auto(GStrv) kinds = g_strsplit(lists[i].pbrt_kinds, " ", -1);
         for (char **kind = kinds; *kind; kind++)

@@ -21,29 +21,62 @@ typedef struct path_integrator {
     const char *name;
     const char *integrator, *strategies; /**< settings; strategies NULL: not vcm */
     const char *hint;                    /**< behind the note */
-    const char *accepted[8];
+    const char *idle;                    /**< blanks between; without meaning here */
 } path_integrator;
 
 #define PLAIN_PATHS "; paths alone: --integrator path"
 
 static const path_integrator path_integrators[] = {
-    {"path", "auto", NULL, PLAIN_PATHS, {"regularize", "lightsampler"}},
-    {"volpath", "auto", NULL, PLAIN_PATHS, {"regularize", "lightsampler"}},
-    {"simplepath", "auto", NULL, PLAIN_PATHS, {"samplebsdf", "samplelights"}},
-    {"simplevolpath", "auto", NULL, PLAIN_PATHS, {NULL}},
-    {"randomwalk", "auto", NULL, PLAIN_PATHS, {NULL}},
-    {"lightpath", "vcm", "light", ", light paths alone", {NULL}},
-    {"bdpt", "vcm", "bpt", ", connections alone", {"regularize"}},
-    {"mlt",
-     "vcm",
-     "all",
-     ", without mutations",
-     {"regularize", "bootstrapsamples", "chains", "mutationsperpixel",
-      "largestepprobability", "sigma"}},
+    {"path", "auto", NULL, PLAIN_PATHS, "regularize lightsampler"},
+    {"volpath", "auto", NULL, PLAIN_PATHS, "regularize lightsampler"},
+    {"simplepath", "auto", NULL, PLAIN_PATHS, "samplebsdf samplelights"},
+    {"simplevolpath", "auto", NULL, PLAIN_PATHS, ""},
+    {"randomwalk", "auto", NULL, PLAIN_PATHS, ""},
+    {"lightpath", "vcm", "light", ", light paths alone", ""},
+    {"bdpt", "vcm", "bpt", ", connections alone", "regularize"},
+    {"mlt", "vcm", "all", ", without mutations",
+     "regularize bootstrapsamples chains mutationsperpixel largestepprobability sigma"},
 };
 
 /** Our own, which take every setting as a parameter. */
 static const char *const own_integrators[] = {"photonmap", "auto", "vcm", NULL};
+
+static const directive_kind sppm = {
+    "sppm", "maxdepth photonsperiteration radius iterations seed", "", NULL,
+    "`photonmap` with `preset` `sppm`; a `radius` of 0, and none, is automatic"};
+
+directive_kind pbrt_integrator_kind(size_t i)
+{
+    enum { N_PATHS = G_N_ELEMENTS(path_integrators) };
+    if (i == N_PATHS)
+        return sppm;
+    if (i > N_PATHS)
+        return (directive_kind){i - N_PATHS - 1 < g_strv_length((char **)own_integrators)
+                                    ? own_integrators[i - N_PATHS - 1]
+                                    : NULL,
+                                "", "", NULL,
+                                "ours: every [setting](settings.md) is a parameter"};
+    const path_integrator *of = &path_integrators[i];
+    const char *becomes = of->strategies ? "becomes `vcm`" : "becomes `auto`";
+    return (directive_kind){of->name, "maxdepth", of->idle, "approximated", becomes};
+}
+
+#define OUR_POINTS "approximated", "the points are Owen-scrambled Sobol' points"
+
+static const directive_kind samplers[] = {
+    {"halton", "pixelsamples seed", "randomization", OUR_POINTS},
+    {"sobol", "pixelsamples seed", "randomization", OUR_POINTS},
+    {"zsobol", "pixelsamples seed", "randomization", OUR_POINTS},
+    {"paddedsobol", "pixelsamples seed", "randomization", OUR_POINTS},
+    {"independent", "pixelsamples seed", "", OUR_POINTS},
+    {"stratified", "xsamples ysamples seed", "jitter", OUR_POINTS},
+    {"pmj02bn", "pixelsamples seed", "", OUR_POINTS},
+};
+
+directive_kind pbrt_sampler_kind(size_t i)
+{
+    return i < G_N_ELEMENTS(samplers) ? samplers[i] : (directive_kind){0};
+}
 
 static void note(const pbrt_parser *parser, source_place place, const char *format, ...)
     G_GNUC_PRINTF(3, 4);
@@ -139,7 +172,10 @@ static void read_stratified(pbrt_parser *parser, const params *p, sampling *out)
     int x = 4, y = 4;
     const param *across = integer_of(parser, p, "xsamples", &x);
     const param *down = integer_of(parser, p, "ysamples", &y);
-    params_find(p, "jitter");
+    bool jitter;
+    GError *error = NULL;
+    if (!params_bool(p, "jitter", &jitter, &error))
+        pbrt_report(parser, error);
     if ((across && x < 1) || (down && y < 1) || (int64_t)x * y > INT_MAX) {
         pbrt_error(parser, p->place, "expected xsamples and ysamples > 0, found %d, %d",
                    x, y);
@@ -153,7 +189,6 @@ static void read_pixel_samples(pbrt_parser *parser, const params *p, sampling *o
 {
     int n = 0;
     const param *q = integer_of(parser, p, "pixelsamples", &n);
-    params_find(p, "randomization");
     if (q && n < 1) {
         pbrt_error(parser, q->place,
                    "parameter 'pixelsamples': expected a number > 0, "
@@ -165,27 +200,44 @@ static void read_pixel_samples(pbrt_parser *parser, const params *p, sampling *o
     out->where = q;
 }
 
+static const directive_kind *find_sampler(pbrt_parser *parser)
+{
+    const pending *sampler = &parser->sampler;
+    g_autoptr(GString) known = g_string_new(NULL);
+    for (size_t i = 0; i < G_N_ELEMENTS(samplers); i++) {
+        if (strcmp(samplers[i].name, sampler->kind) == 0)
+            return &samplers[i];
+        g_string_append_printf(known, "%s%s", i ? ", " : "", samplers[i].name);
+    }
+    pbrt_error(parser, sampler->place, "expected one of %s, found \"%s\"", known->str,
+               sampler->kind);
+    return NULL;
+}
+
+static void check_randomization(pbrt_parser *parser, const params *p)
+{
+    static const char *const ways[] = {"none", "permutedigits", "fastowen", "owen", NULL};
+    int way;
+    GError *error = NULL;
+    if (!params_choice(p, "randomization", ways, &way, &error))
+        pbrt_report(parser, error);
+}
+
 static sampling read_sampler(pbrt_parser *parser)
 {
-    static const char *const kinds[] = {"halton",      "sobol",       "zsobol",
-                                        "paddedsobol", "independent", "stratified",
-                                        "pmj02bn",     NULL};
     sampling out = {0};
     const pending *sampler = &parser->sampler;
-    if (!sampler->kind)
+    const directive_kind *kind = sampler->kind ? find_sampler(parser) : NULL;
+    if (!kind)
         return out;
-    if (!g_strv_contains(kinds, sampler->kind)) {
-        g_autofree char *known = g_strjoinv(", ", (char **)kinds);
-        pbrt_error(parser, sampler->place, "expected one of %s, found \"%s\"", known,
-                   sampler->kind);
-        return out;
-    }
     note(parser, sampler->place, "Sampler '%s': Owen-scrambled Sobol' points are used",
          sampler->kind);
     if (strcmp(sampler->kind, "stratified") == 0)
         read_stratified(parser, sampler->p, &out);
     else
         read_pixel_samples(parser, sampler->p, &out);
+    if (strstr(kind->idle, "randomization"))
+        check_randomization(parser, sampler->p);
     apply_seed(parser, sampler->p);
     pbrt_check_used(parser, sampler->p, "Sampler", sampler->kind);
     return out;
@@ -270,8 +322,9 @@ static void apply_path(pbrt_parser *parser, const path_integrator *kind,
     if (kind->strategies)
         set(parser, in->place, "vcm_strategies", kind->strategies);
     apply_samples(parser, samples);
-    for (int i = 0; i < (int)G_N_ELEMENTS(kind->accepted) && kind->accepted[i]; i++) {
-        const param *q = params_find(in->p, kind->accepted[i]);
+    g_auto(GStrv) idle = g_strsplit(kind->idle, " ", -1);
+    for (char **name = idle; *name; name++) {
+        const param *q = params_find(in->p, *name);
         if (q)
             note(parser, q->place, "'%s' of integrator '%s' has no meaning here", q->name,
                  kind->name);

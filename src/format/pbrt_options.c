@@ -56,53 +56,105 @@ bool pbrt_camera(pbrt_parser *parser, source_place place)
     return true;
 }
 
+static const directive_kind accelerators[] = {
+    {"bvh", "", "maxnodeprims splitmethod", "accepted", "rays are traced by Embree"},
+    {"kdtree", "", "emptybonus intersectcost maxdepth maxprims traversalcost", "accepted",
+     "rays are traced by Embree"},
+};
+
+directive_kind pbrt_accelerator_kind(size_t i)
+{
+    return i < G_N_ELEMENTS(accelerators) ? accelerators[i] : (directive_kind){0};
+}
+
+static const directive_kind *find_kind(const directive_kind *kinds, size_t n,
+                                       const char *name)
+{
+    for (size_t i = 0; i < n; i++)
+        if (strcmp(kinds[i].name, name) == 0)
+            return &kinds[i];
+    return NULL;
+}
+
 bool pbrt_accelerator(pbrt_parser *parser, source_place place)
 {
     source_place at = place;
-    g_autofree char *kind = pbrt_read_string(parser, "a kind", &at);
-    g_autoptr(params) p = kind ? pbrt_read_params(parser, place) : NULL;
+    g_autofree char *name = pbrt_read_string(parser, "a kind", &at);
+    g_autoptr(params) p = name ? pbrt_read_params(parser, place) : NULL;
+    GError *error = NULL;
     if (!p)
         return false;
-    if (strcmp(kind, "bvh") == 0 || strcmp(kind, "kdtree") == 0)
+    const directive_kind *kind =
+        find_kind(accelerators, G_N_ELEMENTS(accelerators), name);
+    g_autofree char *what = g_strdup_printf("accelerator '%s'", name);
+    if (!kind)
+        pbrt_error(parser, at, "expected Accelerator \"bvh\" or \"kdtree\", found \"%s\"",
+                   name);
+    else if (!params_known(p, what, kind->idle, NULL, &error))
+        pbrt_report(parser, error);
+    else
         log_message(&parser->scene->log, LOG_NOTE,
                     "%s:%d:%d: Accelerator '%s': rays are traced by Embree, which needs "
                     "no parameters",
-                    at.file, at.line, at.column, kind);
-    else
-        pbrt_error(parser, at, "expected Accelerator \"bvh\" or \"kdtree\", found \"%s\"",
-                   kind);
+                    at.file, at.line, at.column, name);
     return true;
 }
 
-/** Switches of pbrt's that must be off, or that do not change the image. */
-static void apply_option(pbrt_parser *parser, const params *p, const param *q)
+/* An option acts, or is accepted because the image is the same with it and without; those
+ * in neither list are refused, or must be off if they say so. */
+#define SWITCH(name)                                                                     \
+    {                                                                                    \
+        name, "", "", "refused", "`false` is accepted"                                   \
+    }
+
+static const directive_kind options[] = {
+    {"seed", "seed", "", NULL, NULL},
+    {"displacementedgescale", "", "displacementedgescale", "accepted",
+     "displacement bends normals and moves nothing"},
+    {"gpu", "", "gpu", "accepted", NULL},
+    {"pixelstats", "", "pixelstats", "accepted", NULL},
+    {"rendercoordsys", "", "rendercoordsys", "accepted", NULL},
+    {"wavefront", "", "wavefront", "accepted", NULL},
+    SWITCH("disablepixeljitter"),
+    SWITCH("disabletexturefiltering"),
+    SWITCH("disablewavelengthjitter"),
+    SWITCH("forcediffuse"),
+    {"msereferenceimage", "", "", "refused", NULL},
+    {"msereferenceout", "", "", "refused", NULL},
+};
+
+directive_kind pbrt_option_kind(size_t i)
 {
-    static const char *const harmless[] = {"rendercoordsys",
-                                           "displacementedgescale",
-                                           "pixelstats",
-                                           "wavefront",
-                                           "gpu",
-                                           NULL};
+    return i < G_N_ELEMENTS(options) ? options[i] : (directive_kind){0};
+}
+
+static void apply_seed(pbrt_parser *parser, const params *p, const param *q)
+{
     GError *error = NULL;
     int seed = 0;
-    if (strcmp(q->name, "seed") == 0) {
-        g_autofree char *text = NULL;
-        if (!params_integer(p, "seed", &seed, &error)) {
-            pbrt_report(parser, error);
+    if (params_integer(p, "seed", &seed, &error)) {
+        g_autofree char *text = g_strdup_printf("%d", seed);
+        if (settings_set(&parser->scene->settings, "seed", text, &error))
             return;
-        }
-        text = g_strdup_printf("%d", seed);
-        if (!settings_set(&parser->scene->settings, "seed", text, &error)) {
-            pbrt_error(parser, q->place, "%s", error->message);
-            g_error_free(error);
-        }
-    } else if (g_strv_contains(harmless, q->name)) {
+        pbrt_error(parser, q->place, "%s", error->message);
+        g_error_free(error);
+    } else {
+        pbrt_report(parser, error);
+    }
+}
+
+static void apply_option(pbrt_parser *parser, const params *p, const param *q)
+{
+    const directive_kind *option = find_kind(options, G_N_ELEMENTS(options), q->name);
+    bool is_off = q->type == PARAM_BOOL && q->n == 1 && !q->integers[0];
+    if (option && *option->parameters)
+        apply_seed(parser, p, q);
+    else if (option && *option->idle)
         log_message(&parser->scene->log, LOG_NOTE,
                     "%s:%d:%d: option '%s' does not change the image", q->place.file,
                     q->place.line, q->place.column, q->name);
-    } else if (q->type != PARAM_BOOL || q->n != 1 || q->integers[0]) {
+    else if (!option || !option->note || !is_off)
         pbrt_error(parser, q->place, "option '%s' is not supported", q->name);
-    }
 }
 
 bool pbrt_option(pbrt_parser *parser, source_place place)

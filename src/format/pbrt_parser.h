@@ -191,3 +191,20 @@ bool pbrt_texture(pbrt_parser *parser, source_place place);
 bool pbrt_light_source(pbrt_parser *parser, source_place place);
 bool pbrt_area_light_source(pbrt_parser *parser, source_place place);
 bool pbrt_shape(pbrt_parser *parser, source_place place);
+
+/* ---- what may stand before WorldBegin, for the features page ---- */
+
+/** A kind of a directive, or an option. Lists of names have blanks between. */
+typedef struct directive_kind {
+    const char *name;
+    const char *parameters; /**< those that act */
+    const char *idle;       /**< those that are accepted and change nothing */
+    const char *how;        /**< "rendered" ..., as the page says; NULL: rendered */
+    const char *note;       /**< NULL: none */
+} directive_kind;
+
+/* Number i; a name of NULL behind the last. */
+directive_kind pbrt_sampler_kind(size_t i);
+directive_kind pbrt_integrator_kind(size_t i);
+directive_kind pbrt_accelerator_kind(size_t i);
+directive_kind pbrt_option_kind(size_t i);

@@ -104,6 +104,13 @@ const char *filter_kind_name(size_t i)
     return i < G_N_ELEMENTS(kinds) ? kinds[i].name : NULL;
 }
 
+char *filter_kind_parameters(size_t i)
+{
+    const char *const *shape = kinds[i].shape_names;
+    return g_strjoin(" ", "xradius", "yradius", shape[0], shape[0] ? shape[1] : NULL,
+                     NULL);
+}
+
 static float eval(const profile *f, float x)
 {
     return fabsf(x) <= f->radius ? f->kind->eval(f, x) : 0.0f;

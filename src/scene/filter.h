@@ -31,3 +31,5 @@ float filter_density(const pixel_filter *f, vec2 offset);
 bool filter_reaches(const pixel_filter *f, vec2 raster, int width, int height);
 /** @brief Name of kind number i of the table; NULL behind the last. */
 const char *filter_kind_name(size_t i);
+/** @brief What it may be given, blank-separated; owned by the caller. */
+char *filter_kind_parameters(size_t i);

@@ -152,17 +152,47 @@ film_settings film_default(void)
                            .space = color_space_srgb()};
 }
 
-bool film_init(film_settings *film, const char *kind, const params *p, GError **error)
+#define ALL_FILMS                                                                        \
+    "xresolution yresolution cropwindow pixelbounds filename iso whitebalance "          \
+    "maxcomponentvalue"
+#define IDLE "sensor diagonal savefp16"
+
+static const struct film_kind {
+    const char *name, *parameters;
+    bool is_gbuffer;
+} kinds[] = {
+    {"rgb", ALL_FILMS, false},
+    {"gbuffer", ALL_FILMS " coordinatesystem", true},
+};
+
+const char *film_kind_at(size_t i, const char **parameters, const char **idle)
 {
-    bool is_gbuffer = strcmp(kind, "gbuffer") == 0;
-    if (!is_gbuffer && strcmp(kind, "rgb") != 0) {
-        error_at(error, p->place,
-                 "film \"%s\" is not supported; known are rgb and gbuffer", kind);
-        return false;
-    }
+    if (i >= G_N_ELEMENTS(kinds))
+        return NULL;
+    *parameters = kinds[i].parameters;
+    *idle = IDLE;
+    return kinds[i].name;
+}
+
+static const struct film_kind *find_kind(const char *name, const params *p,
+                                         GError **error)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
+        if (strcmp(kinds[i].name, name) == 0)
+            return &kinds[i];
+    error_at(error, p->place, "film \"%s\" is not supported; known are rgb and gbuffer",
+             name);
+    return NULL;
+}
+
+bool film_init(film_settings *film, const char *name, const params *p, GError **error)
+{
+    const struct film_kind *kind = find_kind(name, p, error);
     film_settings read = film_default();
-    g_autofree char *what = g_strdup_printf("film \"%s\"", kind);
-    if (read_film(p, &read, error) && (!is_gbuffer || read_gbuffer(p, &read, error)) &&
+    g_autofree char *what = g_strdup_printf("film \"%s\"", name);
+    if (kind && params_known(p, what, kind->parameters, IDLE, error) &&
+        read_film(p, &read, error) &&
+        (!kind->is_gbuffer || read_gbuffer(p, &read, error)) &&
         params_all_used(p, what, error)) {
         *film = read;
         return true;
