@@ -311,7 +311,7 @@ static void drag_begin(GtkGestureDrag *drag, double x, double y, canvas *c)
 static void drag_update(GtkGestureDrag *drag, double x, double y, canvas *c)
 {
     if (c->dividing) {
-        double start_x, start_y, at[2];
+        double start_x = 0.0, start_y = 0.0, at[2];
         gtk_gesture_drag_get_start_point(drag, &start_x, &start_y);
         canvas_to_picture(c, start_x + x, start_y + y, &at[0], &at[1]);
         c->divided(fmin(fmax(at[0], 0.0), 1.0), c->data);
@@ -416,4 +416,14 @@ void canvas_set_divider(canvas *c, double at)
 {
     c->divider = at;
     gtk_widget_queue_draw(c->area);
+}
+
+bool canvas_is_split(const canvas *c)
+{
+    return c->split;
+}
+
+double canvas_divider(const canvas *c)
+{
+    return c->divider;
 }

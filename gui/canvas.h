@@ -32,8 +32,10 @@ const display_options *canvas_options(const canvas *c);
 /** @brief Right of the divider another picture is shown (held): a reference, or the same
  * one with another layer. NULL ends the split. */
 void canvas_set_other(canvas *c, held_picture *other, const display_options *options);
+bool canvas_is_split(const canvas *c);
 /** @brief Where the divider stands, 0..1 of the picture's width. */
 void canvas_set_divider(canvas *c, double at);
+double canvas_divider(const canvas *c);
 
 /** @brief Screen pixels for one of the picture; 0: fitted to the window. */
 void canvas_set_zoom(canvas *c, double zoom);

@@ -149,3 +149,8 @@ char **document_examples(void)
     g_ptr_array_add(paths, NULL);
     return (char **)g_ptr_array_free(paths, FALSE);
 }
+
+char *document_folder(const document *d)
+{
+    return d->path ? g_path_get_dirname(d->path) : NULL;
+}

@@ -15,6 +15,8 @@ void document_free(document *d);
 void document_set_path(document *d, const char *path);
 /** @brief NULL: none. */
 const char *document_path(const document *d);
+/** @brief Where its file lies; NULL: there is none. Owned by the caller. */
+char *document_folder(const document *d);
 /** @brief To be called when the file could be read: it goes to the recent ones. */
 void document_remember(document *d);
 

@@ -44,6 +44,10 @@ void file_dialog_ask(GtkWindow *parent, const file_question *question,
     add_filter(chooser, question->filter, question->patterns);
     if (!question->save)
         add_filter(chooser, "All files", all);
+    if (question->folder) {
+        g_autoptr(GFile) folder = g_file_new_for_path(question->folder);
+        gtk_file_chooser_set_current_folder(chooser, folder, NULL);
+    }
     if (question->suggested)
         gtk_file_chooser_set_current_name(chooser, question->suggested);
     waiting *w = g_new(waiting, 1);

@@ -11,6 +11,7 @@ typedef struct file_question {
     const char *title;
     bool save;
     const char *suggested;       /**< a name to save under, or NULL */
+    const char *folder;          /**< where to begin, or NULL */
     const char *filter;          /**< name of the files wanted */
     const char *const *patterns; /**< theirs, NULL-terminated */
 } file_question;

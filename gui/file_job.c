@@ -1,7 +1,8 @@
 #include "file_job.h"
 
 typedef struct job {
-    char *path, *text;
+    char *path, *text, *scene;
+    NephCamera camera;
     held_picture *picture;
     float exposure;
 } job;
@@ -11,6 +12,7 @@ static void free_job(void *data)
     job *j = data;
     held_picture_unref(j->picture);
     g_free(j->text);
+    g_free(j->scene);
     g_free(j->path);
     g_free(j);
 }
@@ -53,16 +55,28 @@ held_picture *file_job_read_finish(GAsyncResult *result, GError **error)
     return g_task_propagate_pointer(G_TASK(result), error);
 }
 
+static bool write_scene(const job *j, GError **error)
+{
+    return neph_scene_convert(j->scene, j->path, NULL, NULL, error) &&
+           neph_camera_save(&j->camera, j->path, error);
+}
+
+static bool write_any(const job *j, GError **error)
+{
+    if (j->picture)
+        return neph_image_write(j->picture->image, j->path, j->exposure, error);
+    if (j->scene)
+        return write_scene(j, error);
+    return neph_file_write(j->path, j->text, error);
+}
+
 static void write_content(GTask *task, void *source, void *data,
                           GCancellable *cancellable)
 {
     (void)source, (void)cancellable;
     const job *j = data;
     GError *error = NULL;
-    bool written = j->picture
-                       ? neph_image_write(j->picture->image, j->path, j->exposure, &error)
-                       : neph_file_write(j->path, j->text, &error);
-    if (written)
+    if (write_any(j, &error))
         g_task_return_boolean(task, TRUE);
     else
         g_task_return_error(task, error);
@@ -72,8 +86,12 @@ void file_job_write(const char *path, const file_content *content,
                     GCancellable *cancellable, GAsyncReadyCallback done, void *data)
 {
     job *j = g_new0(job, 1);
-    *j = (job){g_strdup(path), g_strdup(content->text),
-               held_picture_ref(content->picture), content->exposure};
+    *j = (job){.path = g_strdup(path),
+               .text = g_strdup(content->text),
+               .scene = g_strdup(content->scene),
+               .camera = content->camera,
+               .picture = held_picture_ref(content->picture),
+               .exposure = content->exposure};
     run(j, write_content, cancellable, done, data);
 }
 

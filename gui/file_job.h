@@ -12,11 +12,14 @@
 #include <gio/gio.h>
 #include <stdbool.h>
 
-/** @brief What is to be written: a picture, or else a text. Copied or held. */
+/** @brief What is to be written: a picture, or a text, or a scene of any format as pbrt
+ * with a view. Copied or held. */
 typedef struct file_content {
     held_picture *picture;
     float exposure; /**< stops, for formats of eight bits */
     const char *text;
+    const char *scene; /**< path */
+    NephCamera camera; /**< of the scene */
 } file_content;
 
 /** @brief Reads a picture. */

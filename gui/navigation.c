@@ -4,6 +4,8 @@
 
 /* A drag over the widget's height turns by this, rad. */
 #define TURN 3.0
+/* A click may move so far, pixels. */
+#define CLICK_SLACK 4.0
 /* One step of the wheel. */
 #define WHEEL 0.9
 /* Share of the scene's extent that is flown in a second; with shift, faster. */
@@ -44,6 +46,7 @@ struct navigation {
     GtkEventController *wheel, *keys;
     GtkGesture *click, *pinch;
     double last_x, last_y; /* of the drag under way */
+    bool dragged;          /* it has gone further than a click does */
     double last_scale;     /* of the pinch under way */
     bool down[N_HELD_KEYS];
     bool shift;
@@ -71,6 +74,7 @@ static void moved(navigation *n)
 static void drag_begin(navigation *n)
 {
     n->last_x = n->last_y = 0.0;
+    n->dragged = false;
     gtk_widget_grab_focus(n->widget);
 }
 
@@ -81,7 +85,8 @@ static void drag_update(GtkGestureDrag *drag, double x, double y, navigation *n)
     guint button = gtk_gesture_single_get_current_button(GTK_GESTURE_SINGLE(drag));
     GdkModifierType state =
         gtk_event_controller_get_current_event_state(GTK_EVENT_CONTROLLER(drag));
-    if (state & GDK_CONTROL_MASK)
+    n->dragged |= hypot(x, y) > CLICK_SLACK;
+    if (!n->dragged || (state & GDK_CONTROL_MASK))
         return;
     n->last_x = x;
     n->last_y = y;
@@ -98,7 +103,8 @@ static void clicked(GtkGestureClick *click, int times, double x, double y, navig
 {
     (void)click;
     gtk_widget_grab_focus(n->widget);
-    n->events.clicked(x, y, times, n->events.data);
+    if (!n->dragged)
+        n->events.clicked(x, y, times, n->events.data);
 }
 
 void navigation_dolly(navigation *n, double steps)

@@ -12,6 +12,9 @@
  */
 enum { MOST_EDGES = 200000, LEAST_POINTS = 20000 };
 
+/* Numbers that change faster are not read, ms. */
+enum { TELL_MS = 200 };
+
 /* What a frame may take while the view moves, s: software draws fewer points for it. */
 #define FRAME_GOAL 0.02
 
@@ -34,7 +37,7 @@ struct photon_view {
     bool wire_changed, photons_changed, arrows_changed, marks_changed;
     bool moving; /* more frames will come at once */
     photon_frame frame;
-    guint telling; /* idle source, 0: nothing to tell */
+    guint telling; /* source, 0: nothing to tell */
     void (*drawn)(const photon_frame *frame, void *data);
     void *data;
     GCancellable *wiring; /* NULL: no wireframe is being made */
@@ -225,15 +228,14 @@ static gboolean render(GtkGLArea *area, GdkGLContext *context, photon_view *v)
     gl_layer_lines(&v->painter, &v->line_layer, 1.0f, PATH_WIDTH * scale);
     gl_layer_points(&v->painter, &v->point_layer, 0, v->point_layer.n,
                     5.0f * (float)scale);
-    double asked = 1e-6 * (double)(g_get_monotonic_time() - start);
     glFinish();
     v->frame =
-        (photon_frame){.seconds = 1e-6 * (double)(g_get_monotonic_time() - start),
-                       .seconds_asking = asked,
+        (photon_frame){.number = v->frame.number + 1,
+                       .seconds = 1e-6 * (double)(g_get_monotonic_time() - start),
                        .points = points,
                        .all = v->cloud ? photon_cloud_count(v->cloud, v->style.maps) : 0};
     if (!v->telling)
-        v->telling = g_idle_add(tell_drawn, v);
+        v->telling = g_timeout_add(TELL_MS, tell_drawn, v);
     return TRUE;
 }
 

@@ -24,10 +24,10 @@ enum { MOST_ARROWS = 1000 };
 
 /** @brief What the last frame was. */
 typedef struct photon_frame {
-    double seconds;        /**< until it was drawn; 0: none yet */
-    double seconds_asking; /**< of that, until the graphics had been told what to draw */
-    size_t points;         /**< photons drawn, */
-    size_t all; /**< of so many: while the view moves slow graphics draw fewer */
+    guint64 number; /**< counted from 1; 0: none yet */
+    double seconds; /**< until it was drawn; 0: none yet */
+    size_t points;  /**< photons drawn, */
+    size_t all;     /**< of so many: while the view moves slow graphics draw fewer */
 } photon_frame;
 
 /** @brief viewpoint: borrowed, must outlive it. drawn is told a moment after a frame. */

@@ -87,6 +87,8 @@ static GtkWidget *title_make(const char *title, const char *css_class)
 {
     GtkWidget *label = label_make(title, css_class);
     gtk_label_set_ellipsize(GTK_LABEL(label), PANGO_ELLIPSIZE_END);
+    gtk_label_set_wrap(GTK_LABEL(label), TRUE);
+    gtk_label_set_lines(GTK_LABEL(label), 2);
     return label;
 }
 
@@ -98,8 +100,6 @@ GtkWidget *row_add_captioned(GtkWidget *list, const char *title, const char *cap
     if (caption) {
         GtkWidget *both = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
         GtkWidget *small = title_make(caption, "caption");
-        gtk_label_set_wrap(GTK_LABEL(small), TRUE);
-        gtk_label_set_lines(GTK_LABEL(small), 2);
         gtk_widget_add_css_class(small, "dim-label");
         gtk_box_append(GTK_BOX(both), words);
         gtk_box_append(GTK_BOX(both), small);

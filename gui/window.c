@@ -313,6 +313,8 @@ static GtkWidget *main_make(window *w)
     gtk_paned_set_shrink_end_child(paned, FALSE);
     gtk_paned_set_shrink_start_child(paned, FALSE);
     gtk_widget_set_vexpand(w->paned, TRUE);
+    widget_name(w->paned, "Width of the panels");
+    gtk_widget_set_has_tooltip(w->paned, FALSE);
     gtk_widget_add_tick_callback(w->paned, place_divider, w, NULL);
     gtk_widget_set_visible(w->sidebar, w->remembered.sidebar);
     gtk_box_append(GTK_BOX(box), w->paned);

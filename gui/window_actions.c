@@ -17,8 +17,10 @@ static void open_scene(GSimpleAction *action, GVariant *parameter, void *data)
     (void)action, (void)parameter;
     static const char *const scenes[] = {"*.pbrt", "*.pbrt.gz", "*.gltf",
                                          "*.glb",  "*.obj",     NULL};
-    const file_question question = {"Open a scene", false, NULL, "Scenes", scenes};
     window *w = data;
+    g_autofree char *folder = document_folder(w->document);
+    const file_question question = {"Open a scene", false,    NULL,
+                                    folder,         "Scenes", scenes};
     file_dialog_ask(w->gtk, &question, scene_chosen, w);
 }
 
@@ -91,8 +93,13 @@ static void save_picture(GSimpleAction *action, GVariant *parameter, void *data)
                                          "*.hdr", "*.pfm", NULL};
     window *w = data;
     g_autofree char *name = name_with(w, ".png");
-    const file_question question = {"Save the picture", true, name,
-                                    "Pictures (png, exr, jpg, hdr, pfm)", images};
+    g_autofree char *folder = document_folder(w->document);
+    const file_question question = {"Save the picture",
+                                    true,
+                                    name,
+                                    folder,
+                                    "Pictures (png, exr, jpg, hdr, pfm)",
+                                    images};
     file_dialog_ask(w->gtk, &question, save_to, w);
 }
 
@@ -111,8 +118,9 @@ static void save_diagram(GSimpleAction *action, GVariant *parameter, void *data)
     static const char *const diagrams[] = {"*.svg", NULL};
     window *w = data;
     g_autofree char *name = name_with(w, "-material.svg");
-    const file_question question = {"Save the diagram", true, name, "Drawings (svg)",
-                                    diagrams};
+    g_autofree char *folder = document_folder(w->document);
+    const file_question question = {"Save the diagram", true,    name, folder,
+                                    "Drawings (svg)",   diagrams};
     file_dialog_ask(w->gtk, &question, save_diagram_to, w);
 }
 
@@ -312,8 +320,10 @@ static void enable(window *w, const char *name, bool enabled)
 void window_update_actions(window *w)
 {
     static const char *const of_scene[] = {
-        "play",     "restart", "zoom-fit",     "zoom-one",        "zoom-in",
-        "zoom-out", "search",  "save-picture", "save-picture-as", "trace-photons"};
+        "play",       "restart",    "zoom-fit",        "zoom-one",
+        "zoom-in",    "zoom-out",   "search",          "save-picture",
+        "reset-view", "frame-view", "save-picture-as", "trace-photons",
+        "copy-view",  "save-view",  "save-view-as",    "focus-tool"};
     bool rendering = w->state == SESSION_RENDERING;
     for (size_t i = 0; i < G_N_ELEMENTS(of_scene); i++)
         enable(w, of_scene[i], w->scene != NULL);

@@ -135,11 +135,54 @@ static void copy_view(GSimpleAction *action, GVariant *parameter, void *data)
     window_toast(w, "The view is on the clipboard");
 }
 
+static void kept_as_pbrt(GObject *source, GAsyncResult *result, void *data)
+{
+    (void)source;
+    window *w = data;
+    g_autoptr(GError) error = NULL;
+    bool ok = file_job_write_finish(result, &error);
+    g_application_release(g_application_get_default());
+    if (file_job_is_orphan(result))
+        return;
+    if (ok)
+        window_open(w, file_job_path(result));
+    else
+        window_toast(w, "%s", error->message);
+}
+
+static void keep_as_pbrt(const char *path, void *data)
+{
+    window *w = data;
+    const file_content content = {.scene = document_path(w->document),
+                                  .camera = w->view.camera};
+    g_application_hold(g_application_get_default());
+    file_job_write(path, &content, w->files, kept_as_pbrt, w);
+}
+
+/* Other formats have no LookAt: the scene goes on as a pbrt one. */
+static void ask_for_pbrt(window *w)
+{
+    static const char *const scenes[] = {"*.pbrt", NULL};
+    g_autofree char *folder = document_folder(w->document);
+    g_autofree char *base = g_path_get_basename(document_path(w->document));
+    char *dot = strrchr(base, '.');
+    if (dot)
+        *dot = '\0';
+    g_autofree char *name = g_strconcat(base, ".pbrt", NULL);
+    const file_question question = {
+        "Save the scene with this view", true, name, folder, "pbrt scenes", scenes};
+    file_dialog_ask(w->gtk, &question, keep_as_pbrt, w);
+}
+
 static void save_view(GSimpleAction *action, GVariant *parameter, void *data)
 {
     (void)action, (void)parameter;
     window *w = data;
     g_autoptr(GError) error = NULL;
+    if (!g_str_has_suffix(document_path(w->document), ".pbrt")) {
+        ask_for_pbrt(w);
+        return;
+    }
     if (neph_camera_save(&w->view.camera, document_path(w->document), &error))
         window_toast(w, "The scene begins with this view now");
     else
@@ -186,10 +229,17 @@ void window_ask_reference(void *data)
 {
     static const char *const images[] = {"*.exr", "*.png", "*.jpg",
                                          "*.hdr", "*.pfm", NULL};
-    const file_question question = {"A reference to compare with", false, NULL,
-                                    "Pictures", images};
     window *w = data;
+    g_autofree char *folder = document_folder(w->document);
+    const file_question question = {
+        "A reference to compare with", false, NULL, folder, "Pictures", images};
     file_dialog_ask(w->gtk, &question, reference_chosen, w);
+}
+
+static void save_view_as(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action;
+    keep_as_pbrt(g_variant_get_string(parameter, NULL), data);
 }
 
 static void load_reference(GSimpleAction *action, GVariant *parameter, void *data)
@@ -214,6 +264,7 @@ static const GActionEntry entries[] = {
     {.name = "frame-view", .activate = frame_view},
     {.name = "copy-view", .activate = copy_view},
     {.name = "save-view", .activate = save_view},
+    {.name = "save-view-as", .activate = save_view_as, .parameter_type = "s"},
     {.name = "focus-tool", .activate = focus_tool, .state = "false"},
     {.name = "reference", .activate = load_reference, .parameter_type = "s"},
     {.name = "brighter", .activate = expose},
