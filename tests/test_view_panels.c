@@ -188,6 +188,28 @@ static void test_save_view(void)
     view_close(w);
 }
 
+/* A scene of another format is kept as pbrt with the view, and goes on as that. */
+static void test_save_view_of_obj(void)
+{
+    g_autofree char *path = view_write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    g_autofree char *kept = g_build_filename(view_folder(), "tri.pbrt", NULL);
+    window *w = view_window();
+    window_open(w, path);
+    view_wait(view_is_rendering, w);
+    view_activate(w, "win.stop");
+    NephCamera camera = w->view.camera;
+    neph_camera_set_fov(&camera, 21.0);
+    camera.position[0] += 1.0;
+    window_camera_changed(&camera, w);
+    gtk_widget_activate_action(GTK_WIDGET(w->gtk), "win.save-view-as", "s", kept);
+    while (!g_str_has_suffix(document_path(w->document), ".pbrt") ||
+           fabs(w->scene->camera.fov - 21.0) > 1e-3)
+        g_main_context_iteration(NULL, TRUE);
+    g_assert_cmpfloat_with_epsilon(w->scene->camera.position[0], camera.position[0],
+                                   1e-4);
+    view_close(w);
+}
+
 /* ---- Inspecting ---- */
 
 static void test_inspect(void)
@@ -314,6 +336,7 @@ int main(int argc, char **argv)
     view_add_test("/view-panels/focus", test_focus);
     view_add_test("/view-panels/field-of-view", test_field_of_view);
     view_add_test("/view-panels/save-view", test_save_view);
+    view_add_test("/view-panels/save-view-of-obj", test_save_view_of_obj);
     view_add_test("/view-panels/inspect", test_inspect);
     view_add_test("/view-panels/compare", test_compare);
     view_add_test("/view-panels/zoom", test_zoom);
