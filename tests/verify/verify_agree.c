@@ -37,6 +37,8 @@ typedef struct subject {
     "Shape \"trianglemesh\" \"point3 P\" [-4 2 0 4 2 0 4 2 3 -4 2 3] \"integer "         \
     "indices\" [0 1 2 0 2 3] Shape \"sphere\" \"float radius\" 0.5\n"
 
+/* The floor pretends to be tilted, so that light by way of it and onto it tells whether
+   normals are taken for what they are. */
 static const subject subjects[] = {
     {"empty", IN_ROOM(""), ""},
     {"mirror",
@@ -57,7 +59,10 @@ static const subject subjects[] = {
     {"plastic",
      IN_ROOM("Material \"coateddiffuse\" \"rgb reflectance\" [0.2 0.4 0.8] " BALL), ""},
     {"shading-normals",
-     IN_ROOM("Translate 0 0 0.8 Shape \"trianglemesh\" \"point3 P\" [1 0 0 0 1 0 -1 0 0 "
+     IN_ROOM("Shape \"trianglemesh\" \"point3 P\" [-2 -4 0.01 2 -4 0.01 2 2 0.01 -2 2 "
+             "0.01] \"normal N\" [0.5 0.2 0.8 0.5 0.2 0.8 0.5 0.2 0.8 0.5 0.2 0.8] "
+             "\"integer indices\" [0 1 2 0 2 3]\n"
+             "Translate 0 0 0.8 Shape \"trianglemesh\" \"point3 P\" [1 0 0 0 1 0 -1 0 0 "
              "0 -1 0 0 0 0.8 0 0 -0.8] \"normal N\" [1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 1 0 0 "
              "-1] \"integer indices\" [0 1 4 1 2 4 2 3 4 3 0 4 1 0 5 2 1 5 3 2 5 0 3 "
              "5]\n"),

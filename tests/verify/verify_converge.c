@@ -85,6 +85,12 @@ static void test_path(void)
     g_test_message("slope %g", slope);
     g_assert_cmpfloat(slope, <, -0.92);
     g_assert_cmpfloat(slope, >, -1.5);
+    /* every pass must do its share, not only one in many */
+    for (size_t k = 1; k < c.n; k++) {
+        double step = log(c.error[k] / c.error[k - 1]) / log(4);
+        g_assert_cmpfloat(step, <, -0.8);
+        g_assert_cmpfloat(step, >, -1.6);
+    }
 }
 
 /* ---- The caustic of a plane mirror ---- */
