@@ -115,7 +115,7 @@ static void startup(GtkApplication *app)
 
 /* What the options ask for; one program, one command line. */
 static struct {
-    char *screenshot, *view, *page, *theme;
+    char *screenshot, *view, *page, *theme, *pick;
     double after; /* s */
     gboolean version;
 } given = {.after = 4.0};
@@ -126,6 +126,8 @@ static const GOptionEntry options[] = {
     {"page", 0, 0, G_OPTION_ARG_STRING, &given.page,
      "Begin with this page beside it, e.g. settings", "NAME"},
     {"theme", 0, 0, G_OPTION_ARG_STRING, &given.theme, "system, light or dark", "NAME"},
+    {"pick", 0, 0, G_OPTION_ARG_STRING, &given.pick,
+     "Pick what is seen there in the photon view, as soon as photons are traced", "X,Y"},
     {"screenshot", 0, 0, G_OPTION_ARG_FILENAME, &given.screenshot,
      "Take a picture of the window and end", "FILE.png"},
     {"after", 0, 0, G_OPTION_ARG_DOUBLE, &given.after,
@@ -168,6 +170,8 @@ static window *show_window(GtkApplication *app)
     for (size_t i = 0; i < G_N_ELEMENTS(wishes); i++)
         if (wishes[i][1])
             gtk_widget_activate_action(gtk, wishes[i][0], "s", wishes[i][1]);
+    if (given.pick)
+        window_pick_when_traced(w, given.pick);
     gtk_window_present(GTK_WINDOW(gtk));
     if (given.screenshot)
         g_timeout_add((guint)(1000.0 * given.after), take_screenshot, gtk);

@@ -130,15 +130,22 @@ static void draw(const gl_layer *layer, GLenum mode, size_t first, size_t n)
     glBindVertexArray(0);
 }
 
-/* OpenGL's core profile draws lines of one pixel only: wider ones are drawn again beside
-   themselves, across and down. */
-void gl_layer_lines(const gl_painter *p, const gl_layer *layer, float fade, int width)
+static void set_fade(const gl_painter *p, float fade)
 {
     if (fade < 1.0f) {
         glEnable(GL_BLEND);
         glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    } else {
+        glDisable(GL_BLEND);
     }
     glUniform1f(p->fade, fade);
+}
+
+/* OpenGL's core profile draws lines of one pixel only: wider ones are drawn again beside
+   themselves, across and down. */
+void gl_layer_lines(const gl_painter *p, const gl_layer *layer, float fade, int width)
+{
+    set_fade(p, fade);
     for (int i = 0; i < width; i++)
         for (int across = 0; across < (i > 0 ? 2 : 1); across++) {
             glUniform2f(p->shift, across ? (float)i * p->pixel[0] : 0.0f,
@@ -146,13 +153,11 @@ void gl_layer_lines(const gl_painter *p, const gl_layer *layer, float fade, int 
             draw(layer, GL_LINES, 0, layer->n);
         }
     glUniform2f(p->shift, 0.0f, 0.0f);
-    glDisable(GL_BLEND);
 }
 
-void gl_layer_points(const gl_painter *p, const gl_layer *layer, size_t first, size_t n,
-                     float size)
+void gl_layer_points(const gl_painter *p, const gl_layer *layer, const gl_points *points)
 {
-    glUniform1f(p->fade, 1.0f);
-    glUniform1f(p->point_size, size);
-    draw(layer, GL_POINTS, first, n);
+    set_fade(p, points->fade);
+    glUniform1f(p->point_size, points->size);
+    draw(layer, GL_POINTS, points->first, points->n);
 }

@@ -32,6 +32,11 @@ void gl_layer_clear(gl_layer *layer);
 /** @brief The vertices as lines of a width in pixels, colours multiplied by fade (with
  * alpha). */
 void gl_layer_lines(const gl_painter *p, const gl_layer *layer, float fade, int width);
-/** @brief The same as points of a size in pixels. */
-void gl_layer_points(const gl_painter *p, const gl_layer *layer, size_t first, size_t n,
-                     float size);
+/** @brief Points first .. first + n. */
+typedef struct gl_points {
+    size_t first, n;
+    float size; /**< pixels */
+    float fade; /**< as for lines */
+} gl_points;
+
+void gl_layer_points(const gl_painter *p, const gl_layer *layer, const gl_points *points);

@@ -1,5 +1,7 @@
 #include "help.h"
 
+#include <string.h>
+
 /* One line: an accelerator as GTK writes it, or a gesture in words. */
 typedef struct hint {
     const char *group, *title, *keys;
@@ -68,29 +70,50 @@ static void open_group(GString *out, const char *title)
                            title);
 }
 
+static void open_section(GString *out, const char *name, const char *title)
+{
+    g_string_append_printf(out,
+                           "<child><object class=\"GtkShortcutsSection\">"
+                           "<property name=\"section-name\">%s</property>"
+                           "<property name=\"title\">%s</property>"
+                           "<property name=\"max-height\">12</property>",
+                           name, title);
+}
+
+static const char end_object[] = "</object></child>";
+
+/* The groups of keys from one to another. */
+static void put_groups(GString *out, const char *const *groups)
+{
+    for (size_t g = 0; groups[g]; g++) {
+        open_group(out, groups[g]);
+        for (size_t i = 0; i < G_N_ELEMENTS(hints); i++)
+            if (strcmp(hints[i].group, groups[g]) == 0)
+                put(out, hints[i].title, "accelerator", hints[i].keys);
+        g_string_append(out, end_object);
+    }
+}
+
 static char *definition(void)
 {
-    static const char end_group[] = "</object></child>";
+    static const char *const of_view[] = {"Camera", "Picture", NULL};
+    static const char *const of_window[] = {"Scene", "Rendering", "Window", NULL};
     GString *out = g_string_new("<interface><object class=\"GtkShortcutsWindow\" "
                                 "id=\"help\"><property name=\"modal\">1</property>"
-                                "<child><object class=\"GtkShortcutsSection\">"
-                                "<property name=\"max-height\">24</property>");
-    const char *group = NULL;
-    for (size_t i = 0; i < G_N_ELEMENTS(hints); i++) {
-        if (g_strcmp0(group, hints[i].group) != 0) {
-            if (group)
-                g_string_append(out, end_group);
-            open_group(out, hints[i].group);
-        }
-        group = hints[i].group;
-        put(out, hints[i].title, "accelerator", hints[i].keys);
-    }
-    g_string_append(out, end_group);
-    open_group(out, "Mouse");
+                                "");
+    open_section(out, "window", "Keys of the window");
+    put_groups(out, of_window);
+    g_string_append(out, end_object);
+    open_section(out, "view", "Keys of the view");
+    put_groups(out, of_view);
+    g_string_append(out, end_object);
+    open_section(out, "mouse", "Mouse and touch");
+    open_group(out, "Mouse and touch");
     for (size_t i = 0; i < G_N_ELEMENTS(mouse); i++)
         put(out, mouse[i][0], "subtitle", mouse[i][1]);
-    g_string_append(out, end_group);
-    g_string_append(out, "</object></child></object></interface>");
+    g_string_append(out, end_object);
+    g_string_append(out, end_object);
+    g_string_append(out, "</object></interface>");
     return g_string_free(out, FALSE);
 }
 
@@ -98,5 +121,7 @@ GtkShortcutsWindow *help_make(void)
 {
     g_autofree char *text = definition();
     g_autoptr(GtkBuilder) builder = gtk_builder_new_from_string(text, -1);
-    return g_object_ref(GTK_SHORTCUTS_WINDOW(gtk_builder_get_object(builder, "help")));
+    GObject *help = gtk_builder_get_object(builder, "help");
+    g_object_set(help, "section-name", "window", NULL);
+    return g_object_ref(GTK_SHORTCUTS_WINDOW(help));
 }

@@ -362,7 +362,7 @@ static void add_display(inspector *n)
     row_add(list, "Tone curve", n->curve);
     row_add(list, "Gamma", n->gamma);
     row_add(list, "False colour", n->false_colour);
-    row_add_captioned(list, "Mark NaN and infinite", "magenta, and yellow", n->mark_bad);
+    row_add_captioned(list, "Mark NaN and infinite", "magenta and yellow", n->mark_bad);
     gtk_widget_set_sensitive(gtk_widget_get_parent(n->gamma), FALSE);
     listen(n, n->layer, "notify::selected", G_CALLBACK(on_options));
     listen(n, n->exposure, "value-changed", G_CALLBACK(on_options));

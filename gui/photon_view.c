@@ -19,7 +19,12 @@ enum { TELL_MS = 200 };
 #define FRAME_GOAL 0.02
 
 /* Width of a path, and of a wireframe's line, pixels. */
-enum { PATH_WIDTH = 2, WIRE_WIDTH = 1 };
+enum { PATH_WIDTH = 3, WIRE_WIDTH = 1 };
+/* Points where arrows begin, and marked ones, pixels. */
+#define ARROW_HEAD 4.0f
+#define MARK_SIZE 4.0f
+/* What is left of the photons' colours behind a picked one's path. */
+#define BEHIND_PICK 0.45f
 
 /* Length of an arrow, as share of the scene's extent. */
 #define ARROW_SHARE 0.05f
@@ -180,6 +185,7 @@ static size_t draw_photons(photon_view *v, int scale)
 {
     bool arrows = shows_arrows(v);
     float size = v->style.point_size * (float)scale;
+    float fade = v->n_mark_lines > 0 ? BEHIND_PICK : 1.0f;
     size_t drawn = 0;
     if (!v->cloud)
         return 0;
@@ -189,12 +195,13 @@ static size_t draw_photons(photon_view *v, int scale)
         size_t n = (size_t)ceil(share * (double)all);
         if (!(v->style.maps & (1u << c)))
             continue;
-        gl_layer_points(&v->painter, &v->photon_layer, v->cloud->first[c], n,
-                        arrows ? fmaxf(size, 4.0f) : size);
+        const gl_points points = {v->cloud->first[c], n,
+                                  arrows ? fmaxf(size, ARROW_HEAD) : size, fade};
+        gl_layer_points(&v->painter, &v->photon_layer, &points);
         drawn += n;
     }
     if (arrows)
-        gl_layer_lines(&v->painter, &v->arrow_layer, 1.0f, scale);
+        gl_layer_lines(&v->painter, &v->arrow_layer, fade, scale);
     return drawn;
 }
 
@@ -225,9 +232,9 @@ static gboolean render(GtkGLArea *area, GdkGLContext *context, photon_view *v)
         gl_layer_lines(&v->painter, &v->wire_layer, 0.55f, WIRE_WIDTH * scale);
     size_t points = draw_photons(v, scale);
     glDisable(GL_DEPTH_TEST);
+    gl_layer_points(&v->painter, &v->point_layer,
+                    &(gl_points){0, v->point_layer.n, MARK_SIZE * (float)scale, 1.0f});
     gl_layer_lines(&v->painter, &v->line_layer, 1.0f, PATH_WIDTH * scale);
-    gl_layer_points(&v->painter, &v->point_layer, 0, v->point_layer.n,
-                    5.0f * (float)scale);
     glFinish();
     v->frame =
         (photon_frame){.number = v->frame.number + 1,

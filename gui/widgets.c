@@ -133,19 +133,37 @@ GtkWidget *page_make(GtkWidget **content)
     return page;
 }
 
+/* What is to be seen, and how many frames it has had to find its place. */
+typedef struct scrolling {
+    GtkWidget *group;
+    int frames;
+} scrolling;
+
+enum { SETTLING_FRAMES = 3 };
+
+static void free_scrolling(void *data)
+{
+    scrolling *s = data;
+    g_object_unref(s->group);
+    g_free(s);
+}
+
 static gboolean scroll(GtkWidget *page, GdkFrameClock *clock, void *data)
 {
     (void)clock;
+    scrolling *s = data;
     double x, y;
     GtkAdjustment *at = gtk_scrolled_window_get_vadjustment(GTK_SCROLLED_WINDOW(page));
-    if (gtk_widget_translate_coordinates(data, page, 0.0, 0.0, &x, &y))
+    if (gtk_widget_translate_coordinates(s->group, page, 0.0, 0.0, &x, &y))
         gtk_adjustment_set_value(at, gtk_adjustment_get_value(at) + y);
-    return G_SOURCE_REMOVE;
+    return ++s->frames < SETTLING_FRAMES ? G_SOURCE_CONTINUE : G_SOURCE_REMOVE;
 }
 
 void page_scroll_to(GtkWidget *page, GtkWidget *group)
 {
-    gtk_widget_add_tick_callback(page, scroll, g_object_ref(group), g_object_unref);
+    scrolling *s = g_new(scrolling, 1);
+    *s = (scrolling){g_object_ref(group), 0};
+    gtk_widget_add_tick_callback(page, scroll, s, free_scrolling);
 }
 
 GtkWidget *value_row_add(GtkWidget *list, const char *title)

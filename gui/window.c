@@ -382,6 +382,7 @@ static void destroyed(window *w)
     g_object_unref(w->scenes);
     held_scene_unref(w->scene);
     neph_settings_free(w->of_scene);
+    g_free(w->pick_then);
     g_free(w);
 }
 

@@ -66,6 +66,7 @@ struct window {
 
     held_photons *photons; /* of the photon view; NULL: none yet */
     GCancellable *tracing; /* NULL: none are being traced */
+    char *pick_then;       /* where to pick when they are traced; NULL: nowhere */
     bool has_pick, picked_is_photon;
     size_t picked_photon;
     NephSurfacePoint picked; /* strings are the scene's */

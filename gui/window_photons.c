@@ -17,6 +17,23 @@ enum { MOST_NEIGHBOURS = 5000, MOST_EVENTS = 256, CIRCLE = 48 };
 
 /* ---- Tracing ---- */
 
+void window_pick_when_traced(window *w, const char *place)
+{
+    g_free(w->pick_then);
+    w->pick_then = g_strdup(place);
+}
+
+static void pick_then(window *w)
+{
+    g_autofree char *text = g_steal_pointer(&w->pick_then);
+    g_auto(GStrv) words = g_strsplit(text ? text : "", ",", 2);
+    if (g_strv_length(words) != 2)
+        return;
+    const double place[2] = {g_ascii_strtod(words[0], NULL),
+                             g_ascii_strtod(words[1], NULL)};
+    window_pick(w, place, REACH / fmax(photon_view_scale(w->photon_view), 1.0));
+}
+
 static void traced(GObject *source, GAsyncResult *result, void *data)
 {
     (void)source;
@@ -39,6 +56,7 @@ static void traced(GObject *source, GAsyncResult *result, void *data)
     photon_panel_show_pick(w->photon_panel, NULL);
     photon_view_set_cloud(w->photon_view, g_steal_pointer(&made->cloud));
     w->has_pick = false;
+    pick_then(w);
 }
 
 void window_stop_tracing(window *w)
@@ -119,7 +137,7 @@ static void put_vertex(GArray *to, const float p[3], const uint8_t color[4])
 /* The rim of the disc that photons are gathered from. */
 static void put_circle(GArray *lines, const NephSurfacePoint *at, double radius)
 {
-    static const uint8_t white[4] = {255, 255, 255, 255};
+    static const uint8_t rim[4] = {120, 255, 190, 255};
     int least = 0;
     double u[3] = {0}, s[3], t[3], length;
     for (int i = 1; i < 3; i++)
@@ -143,13 +161,13 @@ static void put_circle(GArray *lines, const NephSurfacePoint *at, double radius)
         for (int i = 0; i < 3; i++)
             p[i] = (float)(at->position[i] +
                            radius * (cos(angle) * s[i] + sin(angle) * t[i]));
-        put_vertex(lines, p, white);
+        put_vertex(lines, p, rim);
     }
 }
 
 static void put_path(GArray *lines, const NephPhotonEvent *events, size_t n, float beyond)
 {
-    static const uint8_t color[4] = {255, 235, 120, 255};
+    static const uint8_t color[4] = {255, 255, 255, 255};
     for (size_t i = 1; i < n; i++) {
         const NephPhotonEvent *e = &events[i];
         float end[3];

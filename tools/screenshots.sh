@@ -9,20 +9,32 @@ trap 'rm -rf "$settings"' EXIT
 export XDG_CONFIG_HOME="$settings" XDG_DATA_HOME="$settings" GSETTINGS_BACKEND=memory \
     GSK_RENDERER=cairo LIBGL_ALWAYS_SOFTWARE=1 GTK_A11Y=none
 
-# shot NAME SCENE SECONDS OPTION...
+# shot NAME SECONDS OPTION... [SCENE]
 shot() {
     name=$1
-    scene=$2
-    seconds=$3
-    shift 3
-    xvfb-run -a -s '-screen 0 1400x900x24' "$viewer" "$root/scenes/$scene" \
-        --screenshot "$folder/view-$name.png" --after "$seconds" "$@" 2>"$settings/log" ||
-        cat "$settings/log" >&2
+    seconds=$2
+    shift 2
+    xvfb-run -a -s '-screen 0 2800x1800x24' "$viewer" --screenshot "$folder/view-$name.png" \
+        --after "$seconds" "$@" 2>"$settings/log" || cat "$settings/log" >&2
     echo "$folder/view-$name.png"
 }
 
+scenes=$root/scenes
+cornell=$scenes/cornell-box/cornell-box.pbrt
+ring=$scenes/ring/ring.pbrt
+ball=$scenes/glass-ball/glass-ball.pbrt
+# What a misspelling looks like, at a path of its own.
+broken=$settings/broken.pbrt
+sed 's/"diffuse"/"difuse"/; s/Shape "trianglemesh"/Shape "trianglemsh"/' "$cornell" >"$broken"
+
 mkdir -p "$folder"
-shot picture cornell-box/cornell-box.pbrt 60 --view picture --page settings --theme light
-shot photons ring/ring.pbrt 20 --view photons --page photons --theme dark
-shot inspect glass-ball/glass-ball.pbrt 60 --view picture --page inspect --theme dark
-shot materials ring/ring.pbrt 8 --view materials --page settings --theme light
+shot welcome 2 --theme dark
+shot errors 3 --theme light "$broken"
+shot materials 4 --view materials --page settings --theme light "$ring"
+shot numbers 30 --view picture --page numbers --theme dark "$ball"
+shot camera 30 --view picture --page camera --theme light "$ring"
+shot photons 20 --view photons --page photons --pick 0.33,0.52 --theme dark "$cornell"
+shot ring 20 --view photons --page photons --theme light "$ring"
+shot inspect 50 --view picture --page inspect --theme dark "$ball"
+shot picture 60 --view picture --page settings --theme light "$cornell"
+GDK_SCALE=2 shot hidpi 15 --view photons --page photons --theme light "$ring"
