@@ -2,9 +2,14 @@
 #include "command.h"
 #include "message.h"
 
-static gboolean quiet;
+static gboolean quiet, lenient, thin_glass;
 
 static const GOptionEntry entries[] = {
+    {"lenient", 0, 0, G_OPTION_ARG_NONE, &lenient,
+     "Replace what can not be rendered, with a warning, instead of refusing the scene",
+     NULL},
+    {"thin-glass", 0, 0, G_OPTION_ARG_NONE, &thin_glass,
+     "Read glass without a volume (glTF, OBJ) as thin panes, on closed meshes too", NULL},
     {"quiet", 'q', 0, G_OPTION_ARG_NONE, &quiet, "Only warnings and errors", NULL},
     G_OPTION_ENTRY_NULL};
 
@@ -23,7 +28,11 @@ int command_convert(int argc, char **argv)
         return exit_code;
     g_autoptr(GError) error = NULL;
     bool silent = quiet;
-    if (!neph_scene_convert(argv[1], argv[2], log_to_stderr, &silent, &error))
+    const NephLoadOptions options = {.lenient = lenient,
+                                     .thin_glass = thin_glass,
+                                     .log = log_to_stderr,
+                                     .log_data = &silent};
+    if (!neph_scene_convert_with(argv[1], argv[2], &options, &error))
         return report_error(error);
     return EXIT_DONE;
 }

@@ -2,7 +2,7 @@
 # that this file never lags behind it.
 
 _nephroid_options() {
-    "$1" "$2" --help 2>/dev/null | grep -oE -- '--[a-z]+' | sort -u
+    "$1" "$2" --help 2>/dev/null | grep -oE -- '--[a-z-]+' | sort -u
 }
 
 _nephroid() {

@@ -7,7 +7,7 @@
 
 static struct {
     char *output, *trace;
-    gboolean quiet, lenient;
+    gboolean quiet, lenient, thin_glass;
     overrides settings;
 } given;
 
@@ -27,6 +27,8 @@ static const GOptionEntry entries[] = {
     {"lenient", 0, 0, G_OPTION_ARG_NONE, &given.lenient,
      "Replace what can not be rendered, with a warning, instead of refusing the scene",
      NULL},
+    {"thin-glass", 0, 0, G_OPTION_ARG_NONE, &given.thin_glass,
+     "Read glass without a volume (glTF, OBJ) as thin panes, on closed meshes too", NULL},
     {"quiet", 'q', 0, G_OPTION_ARG_NONE, &given.quiet, "Only warnings and errors", NULL},
     G_OPTION_ENTRY_NULL};
 
@@ -91,6 +93,7 @@ static int work_on(const char *file, unsigned threads, size_t n_stories)
     bool quiet = given.quiet;
     const NephLoadOptions options = {.threads = threads,
                                      .lenient = given.lenient,
+                                     .thin_glass = given.thin_glass,
                                      .log = log_to_stderr,
                                      .log_data = &quiet};
     g_autoptr(NephScene) scene = neph_scene_load_with(file, &options, &error);

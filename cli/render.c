@@ -15,7 +15,7 @@
 static struct {
     char **outputs;
     char *size, *exposure, *stats, *every;
-    gboolean quiet, lenient;
+    gboolean quiet, lenient, thin_glass;
     overrides settings;
 } given;
 
@@ -50,6 +50,8 @@ static const GOptionEntry entries[] = {
     {"lenient", 0, 0, G_OPTION_ARG_NONE, &given.lenient,
      "Replace what can not be rendered, with a warning, instead of refusing the scene",
      NULL},
+    {"thin-glass", 0, 0, G_OPTION_ARG_NONE, &given.thin_glass,
+     "Read glass without a volume (glTF, OBJ) as thin panes, on closed meshes too", NULL},
     {"quiet", 'q', 0, G_OPTION_ARG_NONE, &given.quiet,
      "Only warnings and errors; no progress, no table", NULL},
     G_OPTION_ENTRY_NULL};
@@ -226,6 +228,7 @@ static int render_scene(job *j)
     bool quiet = given.quiet;
     const NephLoadOptions options = {.threads = j->threads,
                                      .lenient = given.lenient,
+                                     .thin_glass = given.thin_glass,
                                      .log = log_to_stderr,
                                      .log_data = &quiet};
     g_autoptr(NephScene) scene = neph_scene_load_with(j->scene_file, &options, &error);

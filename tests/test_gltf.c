@@ -75,6 +75,8 @@ static void keep_note(log_level level, const char *text, void *data)
     g_string_append_printf(((notes *)data)->text, "%s\n", text);
 }
 
+static bool thin_glass; /* for the next load */
+
 /* Loads a file of these bytes; NULL with its error. */
 static scene *load_bytes(const char *name, const char *bytes, gssize size, notes *kept,
                          GError **error)
@@ -84,7 +86,9 @@ static scene *load_bytes(const char *name, const char *bytes, gssize size, notes
     folder_write(&f, "body.bin", (const char *)&tetrahedron, sizeof tetrahedron);
     g_autofree char *path = g_build_filename(f.path, name, NULL);
     const log_sink sink = {keep_note, kept};
-    scene *s = format_load(path, 1, kept ? &sink : NULL, error);
+    const load_options how = {
+        .threads = 1, .thin_glass = thin_glass, .log = kept ? &sink : NULL};
+    scene *s = format_load_with(path, &how, error);
     if (s && kept)
         s->log = (log_sink){0};
     folder_remove(&f);
@@ -321,6 +325,23 @@ static void test_solid_glass(void)
     memcpy(&eta, b.data, sizeof eta);
     g_assert_cmpfloat(spectrum_max(eta), >, 1.71f);
     g_assert_cmpfloat(-spectrum_max(-eta), <, 1.7f);
+    g_string_free(kept.text, TRUE);
+}
+
+/* By the standard, if it is asked for: light passes without being bent. */
+static void test_thin_glass(void)
+{
+    g_autoptr(scene) s = NULL;
+    notes kept = {g_string_new(NULL)};
+    thin_glass = true;
+    bsdf b = bsdf_of(material_of(GLASS(""), &kept, &s));
+    thin_glass = false;
+    bsdf_sample out;
+    vec3 slanted = normalize3(vec3_make(1, 0, 1));
+    g_assert_true(bsdf_sample_direction(&b, slanted, 0.9f, (vec2){0.5f, 0.5f}, LOBE_ALL,
+                                        TRANSPORT_RADIANCE, &out));
+    g_assert_cmpfloat(max_component3(abs3(out.wi + slanted)), <, 1e-4f);
+    g_assert_null(strstr(kept.text->str, "solid"));
     g_string_free(kept.text, TRUE);
 }
 
@@ -564,6 +585,7 @@ int main(int argc, char **argv)
     g_test_add_func("/gltf/lights-and-camera", test_lights_and_camera);
     g_test_add_func("/gltf/materials", test_materials);
     g_test_add_func("/gltf/solid-glass", test_solid_glass);
+    g_test_add_func("/gltf/thin-glass", test_thin_glass);
     g_test_add_func("/gltf/defaults", test_defaults);
     g_test_add_func("/gltf/emission", test_emission);
     g_test_add_func("/gltf/textured-emission", test_textured_emission);

@@ -32,11 +32,11 @@ block() {
 options_of_program() {
     for command in render photons info convert compare settings bsdf; do
         "$nephroid" "$command" --help
-    done | grep -o -E '^ +(-[a-zA-Z], )?--[a-z]+' | grep -o -E '\-\-[a-z]+' | sort -u
+    done | grep -o -E '^ +(-[a-zA-Z], )?--[a-z-]+' | grep -o -E '\-\-[a-z-]+' | sort -u
 }
 
 options_of_man_page() {
-    grep -o -E 'Fl -[a-z]+' "$root/docs/nephroid.1" | sed 's/Fl -/--/' | sort -u
+    grep -o -E 'Fl -[a-z-]+' "$root/docs/nephroid.1" | sed 's/Fl -/--/' | sort -u
 }
 
 echo 1..6

@@ -111,6 +111,8 @@ typedef struct NephLoadOptions {
     unsigned threads; /**< for the acceleration structure; 0: one per processor */
     bool lenient;     /**< what can not be rendered (hair, subsurface, measured, media) is
                          replaced, and a warning says by what */
+    bool thin_glass;  /**< of glTF, OBJ and the like: glass that the file gives no volume
+                         is a thin pane on closed meshes too, which are else solid */
     NephLogFunc log;  /**< may be NULL */
     void *log_data;
 } NephLoadOptions;
@@ -130,6 +132,9 @@ NEPH_API const char *neph_scene_output(const NephScene *scene);
  * PLY and its images into a folder beside it. log may be NULL. */
 NEPH_API bool neph_scene_convert(const char *in, const char *out, NephLogFunc log,
                                  void *log_data, GError **error);
+/** @brief The same by options; threads have no effect. */
+NEPH_API bool neph_scene_convert_with(const char *in, const char *out,
+                                      const NephLoadOptions *options, GError **error);
 /** @brief What is in the scene, for people (json false) or programs. Owned by caller. */
 NEPH_API char *neph_scene_describe(const NephScene *scene, bool json);
 

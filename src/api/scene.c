@@ -20,8 +20,10 @@ NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options
     NephScene *s = g_new(NephScene, 1);
     *s = (NephScene){.log = options->log, .log_data = options->log_data};
     const log_sink sink = {forward_log, s};
-    const load_options how = {
-        .threads = options->threads, .lenient = options->lenient, .log = &sink};
+    const load_options how = {.threads = options->threads,
+                              .lenient = options->lenient,
+                              .thin_glass = options->thin_glass,
+                              .log = &sink};
     s->scene = format_load_with(path, &how, error);
     if (!s->scene)
         g_clear_pointer(&s, neph_scene_free);
@@ -36,12 +38,21 @@ NephScene *neph_scene_load(const char *path, unsigned threads, NephLogFunc log,
     return neph_scene_load_with(path, &options, error);
 }
 
+bool neph_scene_convert_with(const char *in, const char *out,
+                             const NephLoadOptions *options, GError **error)
+{
+    NephScene to = {.log = options->log, .log_data = options->log_data};
+    const log_sink sink = {forward_log, &to};
+    const load_options how = {
+        .lenient = options->lenient, .thin_glass = options->thin_glass, .log = &sink};
+    return format_convert(in, out, &how, error);
+}
+
 bool neph_scene_convert(const char *in, const char *out, NephLogFunc log, void *log_data,
                         GError **error)
 {
-    NephScene to = {.log = log, .log_data = log_data};
-    const log_sink sink = {forward_log, &to};
-    return format_convert(in, out, &sink, error);
+    const NephLoadOptions options = {.log = log, .log_data = log_data};
+    return neph_scene_convert_with(in, out, &options, error);
 }
 
 void neph_scene_free(NephScene *s)

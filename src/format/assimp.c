@@ -130,11 +130,11 @@ static bool has_indices_in_range(const mesh *m)
 }
 
 /* Corrupt meshes are left to the scene to refuse. */
-static bool is_closed(const mesh *m, bool *closed, GError **error)
+static bool is_closed(const mesh *m, bool thin, bool *closed, GError **error)
 {
     mesh_body body = {0};
     *closed = false;
-    if (has_indices_in_range(m) && !mesh_body_of(m, &body, error))
+    if (!thin && has_indices_in_range(m) && !mesh_body_of(m, &body, error))
         return false;
     *closed = body.closed;
     return true;
@@ -151,7 +151,7 @@ static bool add_mesh(assimp_reader *r, const struct aiMesh *from,
     }
     const assimp_material *of = assimp_material_of(r, from->mMaterialIndex, error);
     bool done = of && copy_mesh(from, &m, error) &&
-                (!of->is_glass || is_closed(&m, &closed, error));
+                (!of->is_glass || is_closed(&m, r->scene->thin_glass, &closed, error));
     if (done && m.n_triangles > 0) {
         int index = assimp_material_index(r, from->mMaterialIndex, closed, error);
         done = index != NO_INDEX && add_shape(r, &m, of, index, to_world, error);

@@ -449,7 +449,8 @@ static void converter_clear(converter *c)
     g_clear_error(&c->error);
 }
 
-bool format_convert(const char *in, const char *out, const log_sink *log, GError **error)
+bool format_convert(const char *in, const char *out, const load_options *options,
+                    GError **error)
 {
     if (!g_str_has_suffix(out, ".pbrt")) {
         error_set(error, ERROR_USAGE, "%s: expected a name that ends in .pbrt", out);
@@ -470,7 +471,9 @@ bool format_convert(const char *in, const char *out, const log_sink *log, GError
                                      .object_begin = on_object_begin,
                                      .object_end = on_object_end,
                                      .instance = on_instance};
-    g_autoptr(scene) s = scene_new(log);
+    g_autoptr(scene) s = scene_new(options ? options->log : NULL);
+    s->lenient = options && options->lenient;
+    s->thin_glass = options && options->thin_glass;
     s->listener = &listener;
     c.scene = s;
     bool done = output_possible(out, error) && format_read(s, in, error);

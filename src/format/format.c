@@ -83,6 +83,7 @@ scene *format_load_with(const char *path, const load_options *options, GError **
 {
     g_autoptr(scene) s = scene_new(options->log);
     s->lenient = options->lenient;
+    s->thin_glass = options->thin_glass;
     if (!format_read(s, path, error) || !commit(s, path, options->threads, error))
         return NULL;
     return g_steal_pointer(&s);

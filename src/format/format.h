@@ -13,6 +13,7 @@ bool format_read(scene *s, const char *path, GError **error);
 typedef struct load_options {
     unsigned threads;    /**< for the acceleration structure; 0 = all */
     bool lenient;        /**< see scene/lenient.h */
+    bool thin_glass;     /**< see scene.h */
     const log_sink *log; /**< may be NULL; must outlive the scene */
 } load_options;
 

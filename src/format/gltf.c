@@ -392,7 +392,7 @@ static bool read_gltf(scene *s, const char *path, GError **error)
               .path = path,
               .directory = g_path_get_dirname(absolute),
               .notes = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
-              .solid = true};
+              .solid = !s->thin_glass};
     bool done = read_input(&g, &in, &inner);
     clear(&g);
     input_close(&in);

@@ -67,8 +67,10 @@ typedef struct scene {
     pixel_filter filter;
     settings settings; /**< defaults, then what the file asks for */
     log_sink log;
-    bool lenient; /**< what can not be rendered is replaced (lenient.h); set by the
-                     reader's caller before anything is added */
+    bool lenient;    /**< what can not be rendered is replaced (lenient.h); set by the
+                        reader's caller before anything is added */
+    bool thin_glass; /**< closed meshes of glass without a volume are no solid glass: for
+                        readers, set like lenient */
     const scene_listener *listener; /**< borrowed; NULL: nobody */
 
     /* From here on valid once committed. */
