@@ -4,6 +4,7 @@
  */
 #include "scene_text.h"
 
+#include "format/height_map.h"
 #include "image/image.h"
 #include "scene/bsdf_models.h"
 
@@ -105,6 +106,33 @@ static void test_maps(void)
                       0.01f);
 }
 
+/* A ramp is a slope, in the direction in which it falls, times -bm. */
+static void test_heights(void)
+{
+    static const char *const names[] = {"R", "G", "B"};
+    g_autoptr(image) img = image_new(8, 8, 3, names, NULL);
+    for (int i = 0; i < 64; i++)
+        for (int c = 0; c < 3; c++)
+            img->pixels[3 * i + c] = 0.25f * (float)(i % 8 % 4) / 4.0f;
+    g_assert_false(height_map_is_normals(img));
+    g_autoptr(GBytes) bytes = height_map_as_normals(img, 8.0);
+    g_autoptr(GError) error = NULL;
+    g_autoptr(image) normals = image_read_bytes("n.pfm", bytes, NULL, &error);
+    g_assert_no_error(error);
+    /* 1/16 a texel, eight times as steep. */
+    const float *n = normals->pixels + 3 * (8 * 3 + 2);
+    float slope = 0.5f, length = sqrtf(1.0f + slope * slope);
+    g_assert_cmpfloat(fabsf(2.0f * n[0] - 1.0f + slope / length), <, 1e-5f);
+    g_assert_cmpfloat(fabsf(2.0f * n[1] - 1.0f), <, 1e-5f);
+    g_assert_cmpfloat(fabsf(2.0f * n[2] - 1.0f - 1.0f / length), <, 1e-5f);
+
+    g_autoptr(scene) s = load_right(
+        TRIANGLE FACE("a"), "newmtl a\nKd 1 1 1\nillum 1\nmap_bump -bm 2 picture.png\n");
+    bsdf b = bsdf_at(first_material(s), 0.5f);
+    g_assert_true(first_material(s)->bump != NULL);
+    g_assert_cmpfloat(length3(b.shading.n), >, 0.999f);
+}
+
 static void test_emission(void)
 {
     g_autoptr(scene) s = load_right(TRIANGLE FACE("a"), "newmtl a\nKd 0 0 0\nKe 2 2 2\n");
@@ -202,6 +230,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/assimp/materials", test_materials);
     g_test_add_func("/assimp/maps", test_maps);
+    g_test_add_func("/assimp/heights", test_heights);
     g_test_add_func("/assimp/emission", test_emission);
     g_test_add_func("/assimp/stl-and-ply", test_stl_and_ply);
     g_test_add_func("/assimp/refused", test_refused);

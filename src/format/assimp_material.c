@@ -9,11 +9,13 @@
  *   Ks and Ns                        Blinn-Phong, normalised
  *   else                             diffuse
  *
- * Ke is radiance. map_Kd, map_Ke, map_d and normal maps are read; colours are linear.
+ * Ke is radiance. map_Kd, map_Ke, map_d and maps of normals or heights are read; colours
+ * are linear.
  */
 #include "format/assimp.h"
 
 #include "format/given.h"
+#include "format/height_map.h"
 
 #include <assimp/cimport.h>
 #include <assimp/material.h>
@@ -22,6 +24,7 @@
 #include <string.h>
 
 #define KEY_ILLUM "$mat.illum", 0, 0
+#define KEY_BUMP_STRENGTH "$tex.bumpmult", aiTextureType_HEIGHT, 0
 
 /* ---- Keys ---- */
 
@@ -219,15 +222,35 @@ static bool is_mirror(const look *l)
     return by_model && is_black(l->diffuse) && !is_black(l->specular);
 }
 
+/* The normals that a map of heights means: it may be a normal map by another name. */
+static void give_heights(assimp_reader *r, params *p, const struct aiMaterial *m)
+{
+    static const image_read_options linear = {.encoding = ENCODING_LINEAR};
+    g_autofree char *path = texture_path(r, m, aiTextureType_HEIGHT);
+    double strength = 1.0;
+    if (!path || !is_readable(r, path))
+        return;
+    g_autoptr(image) heights = scene_read_image(r->scene, path, &linear, NULL);
+    get_number(m, KEY_BUMP_STRENGTH, &strength);
+    if (!height_map_is_normals(heights)) {
+        g_autoptr(GBytes) normals = height_map_as_normals(heights, strength);
+        char *name = g_strdup_printf("%s.%g.normals.pfm", path, strength);
+        g_free(path);
+        path = name;
+        scene_add_file(r->scene, path, normals);
+        assimp_note(r, "maps of height say nothing of how high: a step from black to "
+                       "white across a texel is read as a slope of 45 degrees");
+    }
+    give_text(p, PARAM_STRING, "normalmap", path);
+}
+
 static void give_normals(assimp_reader *r, params *p, const struct aiMaterial *m)
 {
-    struct aiString name;
     g_autofree char *path = texture_path(r, m, aiTextureType_NORMALS);
     if (path && is_readable(r, path))
         give_text(p, PARAM_STRING, "normalmap", path);
-    else if (aiGetMaterialTexture(m, aiTextureType_HEIGHT, 0, &name, NULL, NULL, NULL,
-                                  NULL, NULL, NULL) == aiReturn_SUCCESS)
-        assimp_note(r, "maps of height are left out, since nothing says how high");
+    else
+        give_heights(r, p, m);
 }
 
 /* Fills p and names the kind. */
