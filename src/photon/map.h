@@ -45,8 +45,16 @@ typedef struct photon_hits {
 
 void photon_hits_clear(photon_hits *hits);
 
+/** @brief What MAP_AUTO stands for: where radii of queries differ much, a grid has cells
+ * that are too small for one and too large for the other. */
+static inline map_choice photon_map_chosen(map_choice wanted, bool radii_differ)
+{
+    return wanted != MAP_AUTO ? wanted : radii_differ ? MAP_KDTREE : MAP_GRID;
+}
+
 /** @brief Builds a map over *store, whose arrays are taken (also on failure) and put in
  *  an order of the map's own.
+ *  @param choice not MAP_AUTO
  *  @param radius that fixed-radius queries will mostly use, m; 0 if unknown
  *  The result does not depend on the number of threads. */
 photon_map *photon_map_build(map_choice choice, photon_store *store, float radius,

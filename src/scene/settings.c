@@ -16,7 +16,7 @@ static const char *const integrator_words[] = {"photonmap", "path", "auto",
                                                "vcm",       "sppm", NULL};
 static const char *const kernel_words[] = {"constant", "cone", "gaussian", "epanechnikov",
                                            NULL};
-static const char *const map_words[] = {"list", "kdtree", "grid", NULL};
+static const char *const map_words[] = {"list", "kdtree", "grid", "auto", NULL};
 static const char *const roulette_words[] = {"mean", "max", NULL};
 static const char *const emission_words[] = {"uniform", "specular-area", "guided", NULL};
 static const char *const vcm_words[] = {"all", "bpt", "bpm", "ppm", "light", NULL};
@@ -115,9 +115,10 @@ static const setting_row table[] = {
      "CAUSTICS_CONE_FILTER_PARAM CAUSTIC_CONE_FILTER_PARAM", "photonmap",
      "Slope of the caustic cone kernel 1 - d/(k r). The alias also chooses the kernel: "
      "below 1 constant, else cone."},
-    {"photon_map", SETTING_CHOICE, AT(photon_map), "", 0, 2, MAP_GRID, map_words, "",
-     "photonmap vcm",
-     "The structure photons are looked up in; all give the same answers."},
+    {"photon_map", SETTING_CHOICE, AT(photon_map), "", 0, 3, MAP_AUTO, map_words, "",
+     "photonmap auto vcm",
+     "The structure photons are looked up in; all give the same answers. auto is the "
+     "tree where the automatic radius differs from place to place, else the grid."},
     {"flatten", SETTING_REAL, AT(flatten), "", 0.001, 1, 1, NULL, "", "photonmap vcm",
      "Height of the neighbourhood along the normal over its radius; below 1 it leaks "
      "less light through corners."},

@@ -19,7 +19,7 @@ typedef enum kernel_choice {
     KERNEL_GAUSSIAN,
     KERNEL_EPANECHNIKOV
 } kernel_choice;
-typedef enum map_choice { MAP_LIST, MAP_KDTREE, MAP_GRID } map_choice;
+typedef enum map_choice { MAP_LIST, MAP_KDTREE, MAP_GRID, MAP_AUTO } map_choice;
 typedef enum roulette_choice { ROULETTE_MEAN, ROULETTE_MAX } roulette_choice;
 typedef enum emission_choice {
     EMISSION_UNIFORM,

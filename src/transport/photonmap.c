@@ -141,7 +141,10 @@ static bool build_class(const slice_task *s, trace_result *result,
     float radius = pass->estimates[s->c].radius;
     photon_store store = result->photons;
     result->photons = (photon_store){0};
-    *map = photon_map_build((map_choice)pass->how->photon_map, &store,
+    bool radii_differ =
+        pass->plan->radius_map[s->c] && pass->estimates[s->c].nearest == 0;
+    map_choice wanted = (map_choice)pass->how->photon_map;
+    *map = photon_map_build(photon_map_chosen(wanted, radii_differ), &store,
                             isfinite(radius) ? radius : 0.0f,
                             (unsigned)pass->how->threads, error);
     counts->time_build += seconds() - start;

@@ -82,8 +82,8 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
         }
         photon_store_put(&store, &p);
     }
-    pass->map = photon_map_build((map_choice)how->photon_map, &store, pass->radius,
-                                 (unsigned)how->threads, error);
+    pass->map = photon_map_build(photon_map_chosen((map_choice)how->photon_map, false),
+                                 &store, pass->radius, (unsigned)how->threads, error);
     counts->time_build += seconds() - start;
     if (pass->map)
         counts->memory_photons += photon_map_bytes(pass->map);
