@@ -5,6 +5,7 @@
 #include "math/sampler.h"
 #include "math/warp.h"
 #include "photon/estimate.h"
+#include "photon/neighbourhood.h"
 #include "scene_text.h"
 
 #define CAMERA                                                                           \
@@ -144,6 +145,36 @@ static void test_ball_is_as_bright_as_a_plane(void)
     }
 }
 
+static bool is_whole(const scene *s, vec3 p, vec3 n, float reach)
+{
+    neighbourhood hood = {.scene = s, .p = p, .n = n, .radius = reach};
+    return neighbourhood_is_whole(&hood);
+}
+
+/* A ball outside and inside; but not where a floor that it stands on comes near, at the
+ * rim of a half, or where the radius is too large for it. */
+static void test_what_bends_is_whole(void)
+{
+    g_autoptr(scene) s =
+        scene_of(CAMERA "WorldBegin\n" LAMP "Shape \"sphere\" \"float radius\" "
+                        "0.5 \"float zmax\" 0.1 Translate 0 0 -0.5 "
+                        "Shape \"disk\" \"float radius\" 2\n");
+    for (uint32_t i = 0; i < 200; i++) {
+        sampler random = sampler_make(5, i);
+        vec3 n = warp_sphere(sampler_2d(&random)), p = 0.5f * n;
+        float near_edge = 0.1f - p[2], above_floor = p[2] + 0.5f, r = 0.15f;
+        bool apart = near_edge > 1.2f * r && above_floor > 1.2f * r;
+        if (near_edge < 0.0f)
+            continue;
+        if (apart) {
+            g_assert_true(is_whole(s, p, n, r) && is_whole(s, p, -n, r));
+            g_assert_false(is_whole(s, p, n, 0.45f));
+        } else if (near_edge < 0.5f * r) {
+            g_assert_false(is_whole(s, p, n, r));
+        }
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -152,5 +183,6 @@ int main(int argc, char **argv)
     g_test_add_func("/neighbourhood/corner", test_corner_is_as_bright_as_the_middle);
     g_test_add_func("/neighbourhood/wall", test_thin_wall_does_not_leak);
     g_test_add_func("/neighbourhood/ball", test_ball_is_as_bright_as_a_plane);
+    g_test_add_func("/neighbourhood/bent", test_what_bends_is_whole);
     return g_test_run();
 }

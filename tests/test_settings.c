@@ -196,8 +196,9 @@ static void test_refusals(void)
            "setting 'radius': expected a number from 0 to 1000000000000 m, found ''");
     refuse("final_gather", "perhaps",
            "setting 'final_gather': expected true or false, found 'perhaps'");
-    refuse("photon_map", "octree",
-           "setting 'photon_map': expected one of list, kdtree, grid, found 'octree'");
+    refuse(
+        "photon_map", "octree",
+        "setting 'photon_map': expected one of list, kdtree, grid, auto, found 'octree'");
     refuse("direct_cone_k", "0.5",
            "setting 'direct_cone_k': expected a number from 1 to 1000000, found '0.5'");
 }

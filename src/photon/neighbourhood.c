@@ -14,6 +14,9 @@ enum {
 #define LIFT 0.06f
 #define RIM 0.9f
 
+/* So far off the plane the rim of what bends may be, over the radius. */
+#define ARC_HEIGHT 0.35f
+
 /* A surface that is met near the rim under a greater angle is a wall (cosine). */
 #define LEAST_SAME_NORMAL 0.8f
 
@@ -76,22 +79,64 @@ static float surface_height(const neighbourhood *hood, vec3 q)
                                                      : 1.0f;
 }
 
+/* From the lifted centre through the rim, until it is as far below the plane as a surface
+   may be. */
+static ray along_surface(const neighbourhood *hood, vec3 d)
+{
+    float slope = 1.0f / sqrtf(RIM * RIM + LIFT * LIFT);
+    return (ray){.origin = lifted(hood, hood->p),
+                 .time = hood->time,
+                 .direction = (d * RIM - hood->n * LIFT) * slope,
+                 .t_max = (LIFT + NEIGHBOURHOOD_FLATTEN) / (LIFT * slope) * hood->radius};
+}
+
+/* Down to the rim. */
+static ray onto_rim(const neighbourhood *hood, vec3 d)
+{
+    vec3 rim = hood->p + d * (RIM * hood->radius);
+    return (ray){.origin = rim + hood->n * (ARC_HEIGHT * hood->radius),
+                 .time = hood->time,
+                 .direction = -hood->n,
+                 .t_max = 2.0f * ARC_HEIGHT * hood->radius};
+}
+
+static float cosine_to(const neighbourhood *hood, const ray *r, const surface_hit *hit)
+{
+    return dot3(face_forward(hit->n_geom, -r->direction), hood->n);
+}
+
+/* True if what a ray met lies in the disc's plane and is no wall across the way. */
+static bool is_flat(const neighbourhood *hood, const ray *r, const surface_hit *hit)
+{
+    float height = dot3(hit->p - hood->p, hood->n);
+    return height < NEIGHBOURHOOD_FLATTEN * hood->radius &&
+           cosine_to(hood, r, hit) > LEAST_SAME_NORMAL;
+}
+
+/* True if what a ray met is joined to the centre by an arc: then both normals make the
+   same angle with the chord. */
+static bool is_arc(const neighbourhood *hood, const ray *r, const surface_hit *hit)
+{
+    vec3 n = face_forward(hit->n_geom, -r->direction);
+    float off = dot3(hit->p - hood->p, n + hood->n);
+    return fabsf(off) < 2.0f * NEIGHBOURHOOD_FLATTEN * hood->radius &&
+           cosine_to(hood, r, hit) > LEAST_SAME_NORMAL;
+}
+
 /* True if what a ray from the lifted centre meets near the rim, in direction d, is the
- * disc's own surface: in its plane, and no wall across the way. */
+ * disc's own surface, flat or evenly bent. */
 static bool rim_is_surface(const neighbourhood *hood, vec3 d)
 {
-    float height = LIFT * hood->radius, rim = RIM * hood->radius;
-    float slope = 1.0f / sqrtf(rim * rim + height * height);
-    vec3 across = (d * rim - hood->n * height) * slope;
-    float down = height * slope; /* per metre of the way */
-    float slab = NEIGHBOURHOOD_FLATTEN * hood->radius;
-    ray r = {.origin = lifted(hood, hood->p),
-             .time = hood->time,
-             .direction = across,
-             .t_max = (height + slab) / down};
     surface_hit hit;
-    return scene_intersect(hood->scene, &r, &hit) && hit.t * down > height - slab &&
-           fabsf(dot3(hit.n_geom, hood->n)) > LEAST_SAME_NORMAL;
+    ray along = along_surface(hood, d);
+    if (scene_intersect(hood->scene, &along, &hit)) {
+        if (is_flat(hood, &along, &hit))
+            return true;
+        if (hit.t < hood->radius && !is_arc(hood, &along, &hit))
+            return false;
+    }
+    ray down = onto_rim(hood, d);
+    return scene_intersect(hood->scene, &down, &hit) && is_arc(hood, &down, &hit);
 }
 
 bool neighbourhood_is_whole(neighbourhood *hood)

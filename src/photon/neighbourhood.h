@@ -13,6 +13,10 @@
  *
  * and where a probe fails, photons are held to the same test and the area is that of the
  * part that passes it.
+ *
+ * A surface that bends evenly is whole too: a ball of radius r cuts π r² out of a sphere
+ * of any size. Its probes meet it above or below the plane, where both normals make the
+ * same angle with the chord, as on an arc.
  */
 #pragma once
 
