@@ -156,24 +156,23 @@ static void make_clear(bsdf *b)
     bsdf_make_clear(b);
 }
 
-static coat_table *coat_of(float alpha_x, float alpha_y, float thickness)
+static coat_table *coat_of(float alpha, float thickness)
 {
-    return coat_table_new(&(coat_range){.alpha_min = fminf(alpha_x, alpha_y),
-                                        .alpha_max = fmaxf(alpha_x, alpha_y),
+    return coat_table_new(&(coat_range){.alpha_min = alpha,
+                                        .alpha_max = alpha,
                                         .eta_min = 1.5f,
                                         .eta_max = 1.76f,
                                         .thickness = thickness});
 }
 
 /* Coats that bsdfs of the models borrow; made by zoo_open. */
-static coat_table *smooth_coat, *satin_coat, *rough_coat, *brushed_coat;
+static coat_table *smooth_coat, *satin_coat, *rough_coat;
 
 static inline void zoo_open(void)
 {
-    smooth_coat = coat_of(0, 0, 0.01f);
-    satin_coat = coat_of(0.1f, 0.1f, 0.01f);
-    rough_coat = coat_of(0.5f, 0.5f, 0.01f);
-    brushed_coat = coat_of(0.1f, 0.25f, 0.01f);
+    smooth_coat = coat_of(0, 0.01f);
+    satin_coat = coat_of(0.1f, 0.01f);
+    rough_coat = coat_of(0.5f, 0.01f);
 }
 
 static inline void zoo_close(void)
@@ -181,28 +180,29 @@ static inline void zoo_close(void)
     coat_table_free(smooth_coat);
     coat_table_free(satin_coat);
     coat_table_free(rough_coat);
-    coat_table_free(brushed_coat);
 }
 
 static void make_plastic(bsdf *b)
 {
-    bsdf_make_coated(b, RAMP, spectrum_fill(1.5f), (ggx){0}, smooth_coat, 5);
+    bsdf_make_coated(b, RAMP, spectrum_fill(1.5f), 0.0f, smooth_coat, 5);
 }
 
 static void make_satin_plastic(bsdf *b)
 {
-    bsdf_make_coated(b, RAMP, spectrum_fill(1.5f), ggx_make(0.1f, 0.1f), satin_coat, 5);
+    bsdf_make_coated(b, RAMP, spectrum_fill(1.5f), 0.1f, satin_coat, 5);
 }
 
 static void make_rough_plastic(bsdf *b)
 {
-    bsdf_make_coated(b, RAMP, FLINT, ggx_make(0.5f, 0.5f), rough_coat, 5);
+    bsdf_make_coated(b, RAMP, FLINT, 0.5f, rough_coat, 5);
 }
 
 static void make_brushed_plastic(bsdf *b)
 {
-    bsdf_make_coated(b, RAMP, spectrum_fill(1.5f), ggx_make(0.1f, 0.25f), brushed_coat,
-                     5);
+    coat_layers layers = lacquer(ggx_make(0.1f, 0.25f), (ggx){0});
+    layers.is_metal = false;
+    layers.rho = RAMP;
+    bsdf_make_layered(b, &layers);
 }
 
 static void make_phong(bsdf *b)

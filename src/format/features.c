@@ -137,7 +137,7 @@ static const feature_note notes[] = {
     {"Material", "interface", "rendered", "lets light pass", NULL, NULL},
     {"Material", "coateddiffuse", "rendered",
      "the mean of pbrt's random walk; in closed form, where `nsamples` changes nothing, "
-     "if `albedo` is 0 and `thickness` a number",
+     "if `albedo` is 0, `thickness` a number and the coat not brushed",
      NULL, NULL},
     {"Material", "coatedconductor", "rendered",
      "pbrt's random walk; the lanes share the mean `interface.eta`", NULL, NULL},

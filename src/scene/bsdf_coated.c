@@ -13,8 +13,8 @@
  * and with a smooth coat, no thickness and n = ∞ reflects all light if ρ = 1.
  * Series: Wolff, Nayar & Oren, "Improved Diffuse Reflection Models", 1998.
  *
- * For different roughness along s and t the tables of the coat, which are for round ones,
- * are read at the roughness along the direction looked at: close, and still symmetric.
+ * The coat is as rough along s as along t: what brushed ones do depends on too much for a
+ * table (bsdf_layered.h).
  */
 #include "math/warp.h"
 #include "scene/bsdf_models.h"
@@ -50,20 +50,11 @@ static unsigned coat_lobe(const coated *c)
     return ggx_class(c->roughness) | LOBE_REFLECTION;
 }
 
-/* Roughness along w. */
-static float alpha_along(ggx g, vec3 w)
-{
-    float x2 = w[0] * w[0], y2 = w[1] * w[1], r2 = x2 + y2;
-    if (!(r2 > 1e-12f))
-        return sqrtf(g.alpha_x * g.alpha_y);
-    return sqrtf((square(g.alpha_x) * x2 + square(g.alpha_y) * y2) / r2);
-}
-
 typedef float (*coat_function)(const coat_table *table, float alpha, float eta, float mu);
 
 static spectrum over_lanes(const coated *c, coat_function f, vec3 w)
 {
-    float alpha = alpha_along(c->roughness, w);
+    float alpha = c->roughness.alpha_x;
     if (c->grey_eta)
         return spectrum_fill(f(c->table, alpha, c->eta[0], w[2]));
     spectrum out;
@@ -219,7 +210,7 @@ static bool same_in_all_lanes(spectrum s)
     return true;
 }
 
-void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, ggx roughness,
+void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, float alpha,
                       const coat_table *table, int bounces)
 {
     static const bsdf_ops ops = {
@@ -231,10 +222,9 @@ void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, ggx roughness,
     };
     coated *c = (void *)b->data;
     *c = (coated){.eta = eta,
-                  .roughness = roughness,
+                  .roughness = ggx_make(alpha, alpha),
                   .grey_eta = same_in_all_lanes(eta),
                   .table = table};
-    float alpha = sqrtf(roughness.alpha_x * roughness.alpha_y);
     spectrum internal, escape, sum;
     for (int i = 0; i < N_LANES; i++) {
         bool known = i && c->grey_eta;

@@ -75,9 +75,10 @@ void bsdf_make_clear(bsdf *b);
 /** @brief A diffuse base under a dielectric coat that may absorb.
  *  @param rho albedo of the base
  *  @param eta index of the coat over that outside, within the table's range
+ *  @param alpha roughness of the coat, in all directions
  *  @param table of the coat, borrowed
  *  @param bounces off the base, at most, before light is given up */
-void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, ggx roughness,
+void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, float alpha,
                       const coat_table *table, int bounces);
 
 /** @brief A metal or a diffuse base under a rough or smooth coat, in which light may be

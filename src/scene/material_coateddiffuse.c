@@ -45,6 +45,18 @@ static coat_range range_of(const plastic *m)
     return range;
 }
 
+static bool is_brushed(ggx g)
+{
+    return fabsf(g.alpha_x - g.alpha_y) > 0.01f * maxf(g.alpha_x, g.alpha_y);
+}
+
+static bool has_closed_form(const plastic *m)
+{
+    const roughness_input *r = &m->roughness;
+    return coat_input_is_plain(&m->coat) &&
+           !(roughness_input_is_constant(r) && is_brushed(roughness_input_eval(r, NULL)));
+}
+
 static void *plastic_create(const struct scene *s, const params *p, GError **error)
 {
     plastic *m = g_new0(plastic, 1);
@@ -55,7 +67,7 @@ static void *plastic_create(const struct scene *s, const params *p, GError **err
         roughness_input_init(&m->roughness, "", s, p, error) &&
         coat_input_init(&m->coat, s, p, error)) {
         coat_range range = range_of(m);
-        if (coat_input_is_plain(&m->coat))
+        if (has_closed_form(m))
             m->table = coat_table_new(&range);
         return m;
     }
@@ -74,10 +86,11 @@ static void plastic_bsdf(const void *self, const surface_hit *hit, const wavelen
         return;
     }
     ggx roughness = roughness_input_eval(&m->roughness, hit);
-    if (m->table) {
+    if (m->table && !is_brushed(roughness)) {
         /* The walk meets base and coat in turn. */
         int bounces = m->coat.max_depth / 2 + m->coat.max_depth % 2;
-        bsdf_make_coated(out, rho, curve_eval(m->eta, w), roughness, m->table, bounces);
+        bsdf_make_coated(out, rho, curve_eval(m->eta, w), roughness.alpha_x, m->table,
+                         bounces);
         return;
     }
     coat_layers from = {.rho = rho, .coat = roughness};
