@@ -368,6 +368,25 @@ static void test_defaults(void)
     g_string_free(kept.text, TRUE);
 }
 
+/* What glows is no lamp, unless its strength is given or the file has a camera. */
+static void test_glow(void)
+{
+    static const char *const cameras[] = {
+        "", "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1}}],"};
+    for (int i = 0; i < 2; i++) {
+        notes kept = {g_string_new(NULL)};
+        g_autofree char *text =
+            g_strdup_printf("\"materials\":[{\"emissiveFactor\":[1,1,1]}],%s" MESH(
+                                "0") "\"nodes\":[{\"mesh\":0%s}],",
+                            cameras[i], i ? ",\"camera\":0" : "");
+        g_autoptr(scene) s = load(text, &kept);
+        g_assert_cmpuint(s->lights->len, ==, i ? 1 : 2);
+        g_assert_true((strstr(kept.text->str, "only what glows a little") != NULL) ==
+                      (i == 0));
+        g_string_free(kept.text, TRUE);
+    }
+}
+
 static void test_emission(void)
 {
     g_autoptr(scene) s = NULL;
@@ -587,6 +606,7 @@ int main(int argc, char **argv)
     g_test_add_func("/gltf/solid-glass", test_solid_glass);
     g_test_add_func("/gltf/thin-glass", test_thin_glass);
     g_test_add_func("/gltf/defaults", test_defaults);
+    g_test_add_func("/gltf/glow", test_glow);
     g_test_add_func("/gltf/emission", test_emission);
     g_test_add_func("/gltf/textured-emission", test_textured_emission);
     g_test_add_func("/gltf/alpha", test_alpha);

@@ -250,6 +250,11 @@ static void test_instances(void)
     g_assert_cmpuint(shared->instances->len, ==, 3);
     g_assert_cmpuint(copied->shapes->len, ==, 3);
     g_assert_cmpuint(copied->instances->len, ==, 0);
+    /* The view that is added frames the same. */
+    for (int i = 0; i < 16; i++)
+        g_assert_cmpfloat(fabs(shared->camera.to_world.m[i / 4][i % 4] -
+                               copied->camera.to_world.m[i / 4][i % 4]),
+                          <, 1e-4);
     int met = 0;
     for (int i = 0; i < 400; i++) {
         sampler random = sampler_make(4, (uint64_t)i);
@@ -277,7 +282,7 @@ static void test_lamps_are_copied(void)
         load("\"materials\":[{\"emissiveFactor\":[1,1,1]}],\"meshes\":[" PRIMITIVE(
                  "") "]," PLACES("0", "0", "0"),
              NULL);
-    g_assert_cmpuint(s->lights->len, ==, 3);
+    g_assert_cmpuint(s->lights->len, ==, 4); /* and a sky */
     g_assert_cmpuint(s->instances->len, ==, 0);
     g_assert_cmpuint(s->shapes->len, ==, 3);
 }

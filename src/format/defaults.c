@@ -8,6 +8,7 @@
 
 #include "format/given.h"
 #include "math/frame.h"
+#include "scene/scene_geometry.h"
 
 #include <math.h>
 #include <string.h>
@@ -93,7 +94,8 @@ static bool add_sky(scene *s, const char *path, vec3 up, GError **error)
     g_autoptr(params) p = list(path);
     scene_add_file(s, absolute, picture);
     give_text(p, PARAM_STRING, "filename", absolute);
-    log_message(&s->log, LOG_NOTE, "%s: no light in it; a soft sky is added", path);
+    log_message(&s->log, LOG_NOTE, "%s: no %s in it; a soft sky is added", path,
+                s->lights->len > 0 ? "lamp, only what glows a little," : "light");
     return scene_add_light(s, "infinite", p, &to_world, error);
 }
 
@@ -103,16 +105,6 @@ static bool set_film(scene *s, const char *path, GError **error)
     give_integer(p, "xresolution", DEFAULT_WIDTH);
     give_integer(p, "yresolution", DEFAULT_HEIGHT);
     return scene_set_film(s, "rgb", p, error);
-}
-
-static box3 bounds_of(const scene *s)
-{
-    box3 box = box3_empty();
-    for (guint i = 0; i < s->shapes->len; i++) {
-        const shape *on = s->shapes->pdata[i];
-        box = box3_union(box, on->kind->bounds(on->self));
-    }
-    return box;
 }
 
 /* How far back from the centre a view has to stand so that a box is in it. */
@@ -150,7 +142,7 @@ static bool look_from(vec3 from, vec3 at, vec3 up, transform *out)
 
 static bool add_view(scene *s, const char *path, vec3 up, GError **error)
 {
-    box3 box = bounds_of(s);
+    box3 box = scene_world_bounds(s);
     vec3 toward = standpoint(up, 0.4f, 0.3f), center = box3_center(box);
     transform look;
     bool done = look_from(toward, vec3_make(0.0f, 0.0f, 0.0f), up, &look);
@@ -169,13 +161,13 @@ static bool add_view(scene *s, const char *path, vec3 up, GError **error)
            scene_set_camera(s, "perspective", p, &look, error);
 }
 
-bool scene_complete(scene *s, const char *path, vec3 up, GError **error)
+bool scene_complete(scene *s, const char *path, vec3 up, bool lit, GError **error)
 {
     if (s->shapes->len == 0) {
         error_at(error, (source_place){g_intern_string(path), 0, 0},
                  "expected something with a surface, found nothing");
         return false;
     }
-    return (s->lights->len > 0 || add_sky(s, path, up, error)) &&
+    return (lit || add_sky(s, path, up, error)) &&
            (s->has_camera || add_view(s, path, up, error));
 }

@@ -55,6 +55,7 @@ typedef struct gltf {
     guint n_meshes;
     GHashTable *notes; /**< texts given already */
     bool has_camera;
+    bool has_lamp; /**< a light, or a surface whose strength is given apart */
     bool solid;    /**< closed meshes that transmit are read as solid glass */
     guint n_solid; /**< such meshes */
 } gltf;

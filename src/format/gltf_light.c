@@ -90,6 +90,7 @@ static void add_light(gltf *g, const json_value *lamp, const transform *to_world
     }
     if (is_black(lamp) || gltf_failed(g))
         return;
+    g->has_lamp = true;
     GError *error = NULL;
     g_autoptr(params) p = found->make(g, lamp);
     if (!gltf_failed(g) && !scene_add_light(g->scene, found->kind, p, to_world, &error))

@@ -155,7 +155,7 @@ static bool read_picture(image_sky *l, const struct scene *s, const params *p,
     source_place place = params_find(p, "filename")->place;
     if (!sphere_map_init(&l->map, &pic, place, error))
         return false;
-    if (s)
+    if (s && place.line > 0) /* a reader that made it knows */
         log_message(&s->log, LOG_NOTE, "%s:%d: the sky's picture is read as %s map",
                     place.file, place.line, sphere_map_layout(&l->map));
     return true;

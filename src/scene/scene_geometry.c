@@ -109,7 +109,7 @@ static box3 *object_bounds(const scene *s)
     return boxes;
 }
 
-static box3 world_bounds(const scene *s)
+box3 scene_world_bounds(const scene *s)
 {
     box3 *boxes = object_bounds(s), all = box3_empty();
     for (guint i = 0; i < s->shapes->len; i++) {
@@ -127,7 +127,7 @@ static box3 world_bounds(const scene *s)
 
 bool scene_find_bounds(scene *s, GError **error)
 {
-    s->bounds = world_bounds(s);
+    s->bounds = scene_world_bounds(s);
     bool is_empty = box3_is_empty(s->bounds);
     s->center = is_empty ? vec3_make(0.0f, 0.0f, 0.0f) : box3_center(s->bounds);
     /* A little larger, so that what lies on the box is inside whatever the rounding. */
