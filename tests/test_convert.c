@@ -108,6 +108,16 @@ static void test_textures_and_lights(void)
         "Translate 0 0 2 Shape \"sphere\" \"float radius\" .2\n");
 }
 
+static void test_media(void)
+{
+    check_text("Material \"dielectric\" \"rgb attenuationcolor\" [.2 .7 .4] \"float "
+               "attenuationdistance\" 0.5\nShape \"sphere\"\n"
+               "Material \"dielectric\" \"spectrum absorption\" [300 1 900 3]\n"
+               "Shape \"sphere\" \"float radius\" 0.5\n"
+               "Material \"diffuse\"\nTranslate 0 0 -1 Shape \"disk\" \"float radius\" "
+               "9\n");
+}
+
 static void test_objects_and_motion(void)
 {
     check_text(
@@ -140,10 +150,43 @@ static void test_files(void)
     check_same(path); /* with the sky and the camera it gets */
     folder_remove(&f);
     check_same(SOURCE_ROOT "/scenes/glass-ball/glass-ball.pbrt");
-    static const char shared[] = SOURCE_ROOT
-        "/../shared/data/gltf/EmissiveStrengthTest/glTF/EmissiveStrengthTest.gltf";
-    if (g_file_test(shared, G_FILE_TEST_EXISTS))
-        check_same(shared);
+}
+
+/* Media, maps with transforms, embedded images, lamps; repeated nodes are in gltf-maps.
+ */
+static void test_shared(void)
+{
+    static const char *const names[] = {"EmissiveStrengthTest", "AttenuationTest",
+                                        "GlassHurricaneCandleHolder",
+                                        "LightsPunctualLamp"};
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        g_autofree char *path = g_strdup_printf(
+            SOURCE_ROOT "/../shared/data/gltf/%s/glTF/%s.gltf", names[i], names[i]);
+        if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
+            g_test_skip("no ../shared/data/gltf");
+            return;
+        }
+        check_same(path);
+    }
+}
+
+/* Maps by second coordinates, colours of vertices and instances, from Debian's package of
+   assimp's models. */
+static void test_models(void)
+{
+    static const char *const names[] = {"textureTransform/TextureTransformTest.gltf",
+                                        "2CylinderEngine-glTF-Binary/2CylinderEngine.glb",
+                                        "BoxTexcoords-glTF/boxTexcoords.gltf",
+                                        "ClearCoat-glTF/ClearCoatTest.gltf"};
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        g_autofree char *path =
+            g_strdup_printf("/usr/share/assimp/models/glTF2/%s", names[i]);
+        if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
+            g_test_skip("no package assimp-testmodels");
+            return;
+        }
+        check_same(path);
+    }
 }
 
 static void refuse(const char *in, const char *out, const char *message)
@@ -170,7 +213,10 @@ int main(int argc, char **argv)
     g_test_add_func("/convert/materials", test_materials);
     g_test_add_func("/convert/textures-and-lights", test_textures_and_lights);
     g_test_add_func("/convert/objects-and-motion", test_objects_and_motion);
+    g_test_add_func("/convert/media", test_media);
     g_test_add_func("/convert/files", test_files);
+    g_test_add_func("/convert/shared", test_shared);
+    g_test_add_func("/convert/models", test_models);
     g_test_add_func("/convert/refused", test_refused);
     return g_test_run();
 }
