@@ -226,6 +226,35 @@ static void test_vertex_colors(void)
     }
 }
 
+/* Reflectance straight on and glossiness, as constants and as an image, of which alpha is
+   1: the same surface. */
+static void test_glossiness(void)
+{
+    static const float blue[12] = {0.25f, 0.25f, 0.25f, 0.25f, 0.25f, 0.25f,
+                                   0.25f, 0.25f, 0.25f, 0.25f, 0.25f, 0.25f};
+    static const char *const maps[] = {
+        "\"specularFactor\":[0.2,0.2,0.2]",
+        "\"specularFactor\":[0.8,0.8,0.8],\"specularGlossinessTexture\":{\"index\":0}"};
+    const wavelengths w = wavelengths_at(0.5f);
+    const vec3 up = vec3_make(0, 0, 1);
+    for (size_t i = 0; i < G_N_ELEMENTS(maps); i++) {
+        g_autofree char *text = g_strdup_printf(
+            "\"materials\":[{\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{"
+            "\"diffuseFactor\":[0,0,0,1],\"glossinessFactor\":0.5,%s}}}],\"meshes\":"
+            "[" PRIMITIVE("") "]," NODE,
+            maps[i]);
+        g_autoptr(scene) s = load(text, blue);
+        surface_hit hit;
+        g_assert_true(hit_from(s, 0.4f, 0.4f, 5.0f, &hit));
+        bsdf b = bsdf_at(s, &hit, &w);
+        /* D = 1 / (π α²) straight on, f = F D / 4. */
+        float alpha = 0.25f, expected = 0.2f / (4.0f * PI_F * alpha * alpha);
+        float seen = spectrum_mean(bsdf_eval(&b, up, up, LOBE_ALL, TRANSPORT_RADIANCE));
+        g_test_message("%s: %g, expected %g", maps[i], (double)seen, (double)expected);
+        g_assert_cmpfloat(fabsf(seen / expected - 1.0f), <, 0.02f);
+    }
+}
+
 /* ---- Instances ---- */
 
 /* Turned, mirrored and moved. */
@@ -309,6 +338,7 @@ int main(int argc, char **argv)
     g_test_add_func("/gltf-maps/coordinates", test_coordinates);
     g_test_add_func("/gltf-maps/normal-maps", test_normal_maps);
     g_test_add_func("/gltf-maps/vertex-colors", test_vertex_colors);
+    g_test_add_func("/gltf-maps/glossiness", test_glossiness);
     g_test_add_func("/gltf-maps/instances", test_instances);
     g_test_add_func("/gltf-maps/lamps", test_lamps_are_copied);
     g_test_add_func("/gltf-maps/gpu-instancing", test_gpu_instancing);

@@ -122,6 +122,7 @@ const gltf_material_info *gltf_material(gltf *g, gint64 material);
 typedef struct gltf_channel {
     const char *channel; /**< "R" to "A": a number; NULL: the colours */
     bool vertex_color;   /**< times the colours of the vertices */
+    bool invert;         /**< a number: 1 - what the image and the factor say */
     bool is_cut;         /**< a number: 0 below `cut`, else 1 */
     double cut;
 } gltf_channel;

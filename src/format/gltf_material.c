@@ -14,7 +14,31 @@
 #define LINE_D 0.5875618
 #define LINE_C 0.6562725
 
+#define GLOSSY "KHR_materials_pbrSpecularGlossiness"
+
 /* ---- Parts ---- */
+
+/* KHR_materials_pbrSpecularGlossiness, from before metalness: reflectance straight on is
+ * given, which is 0.04 times our specular colour at the index of 1.5. */
+static void give_glossy(gltf *g, params *p, const json_value *of, bool colored)
+{
+    const gltf_channel base = {.vertex_color = colored};
+    const gltf_channel rough = {.channel = "A", .invert = true};
+    double color[4] = {1.0, 1.0, 1.0, 1.0}, specular[3] = {1.0, 1.0, 1.0};
+    json_value color_map = json_member(of, "diffuseTexture");
+    json_value map = json_member(of, "specularGlossinessTexture");
+    double gloss = CLAMP(json_real(of, "glossinessFactor", 1.0), 0.0, 1.0);
+    json_numbers(of, "diffuseFactor", color, 4);
+    json_numbers(of, "specularFactor", specular, 3);
+    for (int i = 0; i < 3; i++) {
+        color[i] = CLAMP(color[i], 0.0, 1.0);
+        specular[i] = CLAMP(specular[i], 0.0, 1.0) / 0.04;
+    }
+    gltf_give_textured(g, p, "basecolor", &color_map, &base, color);
+    gltf_give_textured(g, p, "specularcolor", &map, &(gltf_channel){0}, specular);
+    gltf_give_textured(g, p, "roughness", &map, &rough, &gloss);
+    give_float(p, "metallic", 0.0);
+}
 
 static void give_base(gltf *g, params *p, const json_value *m, bool colored)
 {
@@ -166,10 +190,14 @@ static params *read_alpha(gltf *g, const json_value *m, bool colored)
 {
     static const char *const modes[] = {"OPAQUE", "MASK", "BLEND", NULL};
     const char *mode = json_text(m, "alphaMode");
-    json_value pbr = json_member(m, "pbrMetallicRoughness");
-    json_value map = json_member(&pbr, "baseColorTexture");
+    json_value extensions, pbr = json_member(m, "pbrMetallicRoughness");
+    json_value glossy = gltf_extension(m, GLOSSY, &extensions);
+    bool is_glossy = json_exists(&glossy);
+    json_value map = is_glossy ? json_member(&glossy, "diffuseTexture")
+                               : json_member(&pbr, "baseColorTexture");
     double color[4] = {1.0, 1.0, 1.0, 1.0}, cut = json_real(m, "alphaCutoff", 0.5);
-    json_numbers(&pbr, "baseColorFactor", color, 4);
+    json_numbers(is_glossy ? &glossy : &pbr,
+                 is_glossy ? "diffuseFactor" : "baseColorFactor", color, 4);
     double alpha = CLAMP(color[3], 0.0, 1.0);
     if (mode && !g_strv_contains(modes, mode))
         json_fail(m, "expected \"alphaMode\" OPAQUE, MASK or BLEND, found %s", mode);
@@ -199,8 +227,14 @@ static params *material_params(gltf *g, const json_value *m, bool colored, bool 
 {
     params *p = gltf_params(g);
     json_value normals = json_member(m, "normalTexture");
-    give_base(g, p, m, colored);
-    give_specular(g, p, m);
+    json_value extensions;
+    json_value glossy = gltf_extension(m, GLOSSY, &extensions);
+    if (json_exists(&glossy)) {
+        give_glossy(g, p, &glossy, colored);
+    } else {
+        give_base(g, p, m, colored);
+        give_specular(g, p, m);
+    }
     give_coat(g, p, m);
     solid = give_transmission(g, p, m, solid);
     give_index(p, m, solid);

@@ -171,13 +171,16 @@ void gltf_give_textured(gltf *g, params *p, const char *name, const json_value *
     if (gltf_failed(g))
         return;
     if (!has_image && !how->vertex_color) {
-        give_factor(p, PARAM_RGB, name, factor, is_number ? 1 : 3);
+        double plain = how->invert ? 1.0 - *factor : *factor;
+        give_factor(p, PARAM_RGB, name, is_number ? &plain : factor, is_number ? 1 : 3);
         return;
     }
     if (is_number)
         give_text(img, PARAM_STRING, "channel", how->channel);
     if (how->vertex_color)
         give_bool(img, "vertexcolor", true);
+    if (how->invert)
+        give_bool(img, "invert", true);
     if (how->is_cut)
         give_float(img, "cutoff", how->cut);
     give_factor(img, PARAM_RGB, "factor", factor, is_number ? 1 : 3);

@@ -19,10 +19,10 @@ enum { AXIS_REPEAT, AXIS_CLAMP, AXIS_MIRROR };
 enum { FILTER_BILINEAR, FILTER_POINT };
 
 typedef struct gltf_texture {
-    picture pic; /* no levels: white */
-    int uv_set;  /* 0 or 1 */
-    bool vertex_color;
-    int channel; /* of a number, 0..3 */
+    picture pic;               /* no levels: white */
+    int uv_set;                /* 0 or 1 */
+    bool vertex_color, invert; /* invert: a number x becomes 1 - x */
+    int channel;               /* of a number, 0..3 */
     int wrap_u, wrap_v, filter;
     float matrix[2][3];
     float factor[3]; /* a number's is the first */
@@ -59,7 +59,8 @@ static bool read_factor(gltf_texture *t, bool is_spectrum, const params *p,
     t->factor[0] = t->factor[1] = t->factor[2] = 1.0f;
     t->cutoff = -1.0f;
     if (!is_spectrum)
-        return params_float(p, "factor", &t->factor[0], error) &&
+        return params_bool(p, "invert", &t->invert, error) &&
+               params_float(p, "factor", &t->factor[0], error) &&
                params_float(p, "cutoff", &t->cutoff, error);
     const param *q = params_find(p, "factor");
     if (q && (q->type != PARAM_RGB || q->n != 3)) {
@@ -167,6 +168,8 @@ static float gltf_eval_float(const void *self, const surface_hit *hit)
     }
     if (t->vertex_color)
         value *= hit_vertex_color(hit, t->channel);
+    if (t->invert)
+        value = 1.0f - value;
     if (t->cutoff >= 0.0f)
         return value < t->cutoff ? 0.0f : 1.0f;
     return value;
@@ -219,7 +222,7 @@ static void gltf_eval_normal(const void *self, const surface_hit *hit, float rgb
 const texture_kind texture_gltf = {
     .name = "gltf",
     .parameters = "filename uwrap vwrap filter channel uscale vscale udelta vdelta "
-                  "rotation factor cutoff uvset vertexcolor encoding",
+                  "rotation factor cutoff uvset vertexcolor encoding invert",
     .create = gltf_create,
     .free = gltf_free,
     .eval_float = gltf_eval_float,
