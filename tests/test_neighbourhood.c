@@ -103,6 +103,38 @@ static void test_thin_wall_does_not_leak(void)
     g_assert_cmpfloat(fabs(irradiance(s, map, 0.22f) - 1), <, 0.02);
 }
 
+/* Sunlight on the far side of the wall, a thousand watts a square metre; the room is dark.
+ */
+static photon_map *sunlit_wall(bool oriented)
+{
+    enum { N = 100000 };
+    photon_store store = {.oriented = oriented};
+    g_assert_true(photon_store_reserve(&store, N, NULL));
+    for (uint32_t i = 0; i < N; i++) {
+        sampler random = sampler_make(4, i);
+        vec2 u = sampler_2d(&random);
+        photon p = {.p = vec3_make(0.2f, 2 * u.y - 1, 0.1f * u.x),
+                    .wi = vec3_make(0.8f, 0, 0.6f),
+                    .n = vec3_make(1, 0, 0),
+                    .flux = spectrum_fill(1000.0f * 0.2f / N)};
+        photon_store_put(&store, &p);
+    }
+    return photon_map_build(MAP_GRID, &store, radius, 1, NULL);
+}
+
+static void test_bright_wall_does_not_light_the_floor(void)
+{
+    g_autoptr(scene) s = scene_of(CAMERA "WorldBegin\n" LAMP FLOOR WALL);
+    g_autoptr(photon_map) map = sunlit_wall(true), blind = sunlit_wall(false);
+    const float x[] = {0.101f, 0.11f, 0.13f, 0.16f, 0.19f, 0.199f};
+    float most = 0;
+    for (size_t i = 0; i < G_N_ELEMENTS(x); i++) {
+        g_assert_cmpfloat(irradiance(s, map, x[i]), <, 1e-6);
+        most = maxf(most, (float)irradiance(s, blind, x[i]));
+    }
+    g_assert_cmpfloat(most, >, 1); /* what their normals keep out */
+}
+
 /* An even field of photons on a ball of radius 0.5 m, one W/m². */
 static photon_map *field_on_ball(float reach)
 {
@@ -182,6 +214,8 @@ int main(int argc, char **argv)
     g_test_add_func("/neighbourhood/edge", test_edge_is_as_bright_as_the_middle);
     g_test_add_func("/neighbourhood/corner", test_corner_is_as_bright_as_the_middle);
     g_test_add_func("/neighbourhood/wall", test_thin_wall_does_not_leak);
+    g_test_add_func("/neighbourhood/bright-wall",
+                    test_bright_wall_does_not_light_the_floor);
     g_test_add_func("/neighbourhood/ball", test_ball_is_as_bright_as_a_plane);
     g_test_add_func("/neighbourhood/bent", test_what_bends_is_whole);
     return g_test_run();

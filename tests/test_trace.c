@@ -271,7 +271,8 @@ static void test_trace_is_the_same_on_any_number_of_threads(void)
         g_assert_cmpmem(a.photons.x, a.photons.n * 4, b.photons.x, b.photons.n * 4);
         g_assert_cmpmem(a.photons.flux, a.photons.n * 32, b.photons.flux,
                         b.photons.n * 32);
-        g_assert_cmpmem(a.normals, a.photons.n * 4, b.normals, b.photons.n * 4);
+        g_assert_cmpmem(a.photons.normal, a.photons.n * 4, b.photons.normal,
+                        b.photons.n * 4);
         trace_result_clear(&a);
         trace_result_clear(&b);
     }

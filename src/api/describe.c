@@ -68,14 +68,14 @@ static void count_textures(GHashTable *table, summary *all)
     g_array_sort(all->textures, compare_kinds);
 }
 
-/* Embree keeps about 90 bytes a triangle; a photon takes 48 bytes and as much again while
+/* Embree keeps about 90 bytes a triangle; a photon takes 52 bytes and as much again while
  * the map is built; the film some 25 numbers a pixel. */
 static size_t estimate_memory(const scene *s, const summary *all)
 {
     size_t triangles = 0;
     for (guint i = 0; i < all->shapes->len; i++)
         triangles += g_array_index(all->shapes, tally, i).n_triangles;
-    return all->geometry_bytes + 90 * triangles + 96 * (size_t)s->settings.photons +
+    return all->geometry_bytes + 90 * triangles + 104 * (size_t)s->settings.photons +
            200 * (size_t)s->film.width * (size_t)s->film.height;
 }
 

@@ -20,6 +20,10 @@ enum {
 /* A surface that is met near the rim under a greater angle is a wall (cosine). */
 #define LEAST_SAME_NORMAL 0.8f
 
+/* ... and what is turned further than this is not the disc's surface: the photons of it
+   are left out (SAME_SURFACE in probe.h). */
+#define LEAST_ALIKE 0.5f
+
 /* Even where no probe passes, the centre itself is surface. */
 #define LEAST_COVERAGE (0.5f / AREA_PROBES)
 
@@ -75,8 +79,9 @@ static float surface_height(const neighbourhood *hood, vec3 q)
     float slab = NEIGHBOURHOOD_FLATTEN * hood->radius, height = LIFT * hood->radius;
     ray down = {lifted(hood, q), -hood->n, height + slab, hood->time, {{NULL}}};
     surface_hit hit;
-    return scene_intersect(hood->scene, &down, &hit) ? fabsf(hit.t - height) / slab
-                                                     : 1.0f;
+    bool found = scene_intersect(hood->scene, &down, &hit) &&
+                 fabsf(dot3(hit.n_geom, hood->n)) > LEAST_ALIKE;
+    return found ? fabsf(hit.t - height) / slab : 1.0f;
 }
 
 /* From the lifted centre through the rim, until it is as far below the plane as a surface

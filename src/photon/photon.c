@@ -45,6 +45,8 @@ bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
               grow(&store->z, n, room, sizeof *store->z, error) &&
               grow(&store->wi, n, room, sizeof *store->wi, error) &&
               grow(&store->flux, n, room, sizeof *store->flux, error) &&
+              (!store->oriented ||
+               grow(&store->normal, n, room, sizeof *store->normal, error)) &&
               (!store->tagged || grow(&store->tag, n, room, sizeof *store->tag, error));
     if (ok)
         store->capacity = room - STORE_BLOCK;
@@ -59,6 +61,8 @@ void photon_store_put(photon_store *store, const photon *p)
     store->z[i] = p->p[2];
     store->wi[i] = direction_pack(p->wi, p->flags);
     store->flux[i] = p->flux;
+    if (store->oriented)
+        store->normal[i] = direction_pack(p->n, 0);
     if (store->tagged)
         store->tag[i] = p->tag;
 }
@@ -70,6 +74,7 @@ photon photon_store_get(const photon_store *store, size_t i)
         .wi = direction_unpack(store->wi[i]),
         .flux = store->flux[i],
         .flags = direction_flags(store->wi[i]),
+        .n = store->oriented ? direction_unpack(store->normal[i]) : (vec3){0},
         .tag = store->tagged ? store->tag[i] : 0,
     };
 }
@@ -81,6 +86,7 @@ void photon_store_clear(photon_store *store)
     big_free(store->z);
     big_free(store->wi);
     big_free(store->flux);
+    big_free(store->normal);
     big_free(store->tag);
     *store = (photon_store){0};
 }
@@ -88,6 +94,7 @@ void photon_store_clear(photon_store *store)
 size_t photon_store_bytes(const photon_store *store)
 {
     size_t each = 3 * sizeof(float) + sizeof(uint32_t) + sizeof(spectrum);
+    each += store->oriented ? sizeof(uint32_t) : 0;
     each += store->tagged ? sizeof(uint32_t) : 0;
     return store->x ? (store->capacity + STORE_BLOCK) * each : 0;
 }
@@ -142,6 +149,8 @@ bool photon_store_permute(photon_store *store, const size_t *order, unsigned thr
               permute(&store->z, store, order, sizeof *store->z, threads, error) &&
               permute(&store->wi, store, order, sizeof *store->wi, threads, error) &&
               permute(&store->flux, store, order, sizeof *store->flux, threads, error) &&
+              (!store->oriented || permute(&store->normal, store, order,
+                                           sizeof *store->normal, threads, error)) &&
               (!store->tagged ||
                permute(&store->tag, store, order, sizeof *store->tag, threads, error));
     if (ok)

@@ -9,8 +9,8 @@
  *   wi[]          4 bytes        octahedral and flags, read for blocks with some in reach
  *   flux[]        32 bytes       eight wavelengths, read for those in reach
  *
- * 48 bytes a photon, and four more for tags where they are asked for. Indices are size_t
- * throughout: 2³² photons are a matter of patience.
+ * 48 bytes a photon, and four more each for normals and tags where they are asked for.
+ * Indices are size_t throughout: 2³² photons are a matter of patience.
  */
 #pragma once
 
@@ -43,7 +43,9 @@ typedef struct photon {
     vec3 wi;        /**< unit, to where it came from */
     spectrum flux;  /**< W per nm */
     unsigned flags; /**< PHOTON_FROM_DELTA, PHOTON_BEHIND */
-    uint32_t tag;   /**< kept by tagged stores only: the light's group */
+    vec3 n; /**< kept by oriented stores only: the surface's unit geometric normal on
+               the side it arrived */
+    uint32_t tag; /**< kept by tagged stores only: the light's group */
 } photon;
 
 /** @brief Photons as arrays of n, big_alloc'ed; capacity >= n. The arrays go on behind
@@ -53,8 +55,11 @@ typedef struct photon_store {
     float *x, *y, *z;
     uint32_t *wi;
     spectrum *flux;
-    bool tagged;   /**< set before room is made: photons keep their tags */
-    uint32_t *tag; /**< NULL unless tagged */
+    bool oriented;    /**< set before room is made: photons keep the normals of their
+                         surfaces */
+    uint32_t *normal; /**< packed (direction_pack); NULL unless oriented */
+    bool tagged;      /**< set before room is made: photons keep their tags */
+    uint32_t *tag;    /**< NULL unless tagged */
 } photon_store;
 
 /** @brief Makes room for capacity photons in all; on failure the store is as it was. */

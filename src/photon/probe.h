@@ -3,7 +3,9 @@
  * is what "found" means; the form for eight gives the same bits.
  *
  *   distance2   (dx² + dy²) + dz², or (d·n / flatten)² where that is larger
- *   accepted    one-sided: the photon's direction lies on the side of n
+ *   accepted    where photons keep normals: the photon's surface is not turned by more
+ *               than 60 degrees, so that walls at a corner are told apart
+ *               one-sided: the photon's direction lies on the side of n
  *               of one face: its direction and its flag say that its own surface lies
  *               alike, or it lies in the plane, |d·n|² < 1e-5 |d|² (so that triangles of
  *               a sheet may be wound as they like)
@@ -18,8 +20,8 @@
 
 typedef struct photon_probe {
     const photon_store *store;
-    const float *x, *y, *z; /* of the store */
-    const uint32_t *wi;
+    const float *x, *y, *z;      /* of the store */
+    const uint32_t *wi, *normal; /* normal: NULL if they keep none */
     vec3 p;
     vec3 n;
     bool one_sided, flat;
@@ -36,6 +38,7 @@ static inline photon_probe photon_probe_make(const photon_store *store, vec3 p,
     probe.z = store->z;
     probe.wi = store->wi;
     if (filter) {
+        probe.normal = store->normal;
         probe.n = filter->n;
         probe.one_sided = filter->one_sided;
         probe.face = filter->face;
@@ -76,8 +79,21 @@ static inline bool probe_is_face(const photon_probe *probe, size_t i)
     return dot * dot <= SAME_PLANE * fused(z, z, fused(y, y, x * x));
 }
 
+/** @brief Squared cosine of the angle from which on surfaces are not the same. */
+#define SAME_SURFACE 0.25f
+
+/** @brief True if the surface of photon i is not turned away from the probe's. */
+static inline bool probe_is_alike(const photon_probe *probe, size_t i)
+{
+    vec3 o = direction_octahedron(probe->normal[i]);
+    float dot = direction_dot(probe->normal[i], probe->n);
+    return dot * dot > SAME_SURFACE * fused(o[2], o[2], fused(o[1], o[1], o[0] * o[0]));
+}
+
 static inline bool probe_accepts(const photon_probe *probe, size_t i)
 {
+    if (probe->normal && !probe_is_alike(probe, i))
+        return false;
     if (probe->face && !probe_is_face(probe, i))
         return false;
     return !probe->one_sided || direction_dot(probe->wi[i], probe->n) > 0.0f;
@@ -108,6 +124,12 @@ static inline unsigned probe_block(const photon_probe *probe, size_t i, size_t e
     if (bits && probe->one_sided) {
         directions8 wi = directions8_load(probe->wi + i);
         bits &= bits8(directions8_dot(wi, probe->n) > 0.0f);
+    }
+    if (bits && probe->normal) {
+        directions8 n = directions8_load(probe->normal + i);
+        floats8 dot = directions8_dot(n, probe->n);
+        floats8 length2 = fused8(n.z, n.z, fused8(n.y, n.y, n.x * n.x));
+        bits &= bits8(dot * dot > SAME_SURFACE * length2);
     }
     for (unsigned left = probe->face ? bits : 0u; left; left &= left - 1u) {
         size_t lane = (size_t)__builtin_ctz(left);

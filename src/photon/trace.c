@@ -10,7 +10,6 @@ enum { CHUNK = 4096 };
 /* What one chunk stored, until the chunks are joined in order. */
 typedef struct chunk_store {
     photon_store photons;
-    uint32_t *normals;
     uint64_t n_rays, n_not_finite;
     size_t offset; /* of its photons in the whole */
     GError *error;
@@ -33,7 +32,6 @@ typedef struct photon_path {
     unsigned n_diffuse;
     unsigned n_after; /* followed bounces since the last diffuse one */
     chunk_store *out; /* NULL when telling */
-    bool want_normals;
     void (*tell)(const photon_event *event, void *data);
     void *tell_data;
 } photon_path;
@@ -136,19 +134,10 @@ static photon_class class_here(const photon_path *path)
     return path->n_followed > 0 ? PHOTON_CAUSTIC : PHOTON_DIRECT;
 }
 
-static bool grow(chunk_store *out, bool want_normals)
+static bool grow(chunk_store *out)
 {
-    size_t old = out->photons.capacity, capacity = MAX(2 * old, CHUNK);
-    if (!photon_store_reserve(&out->photons, capacity, &out->error))
-        return false;
-    if (want_normals) {
-        uint32_t *normals = big_grow(out->normals, old, out->photons.capacity,
-                                     sizeof *normals, "photon normals", &out->error);
-        if (!normals)
-            return false;
-        out->normals = normals;
-    }
-    return true;
+    size_t capacity = MAX(2 * out->photons.capacity, CHUNK);
+    return photon_store_reserve(&out->photons, capacity, &out->error);
 }
 
 /* Of the middle of a task's slice of time. */
@@ -157,14 +146,12 @@ static float middle_of(const trace_task *task)
     return time_of_slice(task->slice, MAX(task->n_slices, 1));
 }
 
-/* Takes a photon on something that moves, and the normal n there, to where that will be:
-   directions turn with it, and where the surface grows the photon counts for more of it.
- */
-static void keep_for_slice(const trace_task *task, const surface_hit *hit, photon *p,
-                           vec3 *n)
+/* Takes a photon on something that moves to where that will be: directions turn with it,
+   and where the surface grows the photon counts for more of it. */
+static void keep_for_slice(const trace_task *task, const surface_hit *hit, photon *p)
 {
     transform by = scene_motion_to(task->scene, hit, middle_of(task));
-    *n = normalize3(transform_normal(&by, *n));
+    p->n = normalize3(transform_normal(&by, p->n));
     p->p = transform_point(&by, p->p);
     p->wi = normalize3(transform_vector(&by, p->wi));
     p->flux *= (float)scene_area_change(task->scene, hit, middle_of(task));
@@ -180,8 +167,7 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
         out->n_not_finite++;
         return;
     }
-    if (out->error ||
-        (out->photons.n == out->photons.capacity && !grow(out, path->want_normals)))
+    if (out->error || (out->photons.n == out->photons.capacity && !grow(out)))
         return;
     if (dot3(path->ray.direction, hit->n_geom) > 0.0f)
         flags |= PHOTON_BEHIND;
@@ -189,12 +175,10 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
                 .wi = -path->ray.direction,
                 .flux = path->flux,
                 .flags = flags,
+                .n = face_forward(hit->n_geom, -path->ray.direction),
                 .tag = (uint32_t)scene_light_group(path->task->scene, path->light)};
-    vec3 n = face_forward(hit->n_geom, p.wi);
     if (scene_hit_moves(path->task->scene, hit))
-        keep_for_slice(path->task, hit, &p, &n);
-    if (path->want_normals)
-        out->normals[out->photons.n] = direction_pack(n, 0);
+        keep_for_slice(path->task, hit, &p);
     photon_store_put(&out->photons, &p);
 }
 
@@ -339,7 +323,7 @@ void photon_tell(const trace_task *task, uint64_t index,
 
 typedef struct trace_loop {
     const trace_task *task;
-    bool want_normals;
+    bool oriented;
     chunk_store *chunks;
 } trace_loop;
 
@@ -348,21 +332,13 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
     (void)thread;
     trace_loop *loop = data;
     chunk_store *out = &loop->chunks[begin / CHUNK];
+    out->photons.oriented = loop->oriented;
     out->photons.tagged = loop->task->scene->n_light_groups > 0;
     for (size_t i = begin; i < end && !out->error; i++) {
-        photon_path path = {.task = loop->task,
-                            .index = loop->task->first + i,
-                            .out = out,
-                            .want_normals = loop->want_normals};
+        photon_path path = {
+            .task = loop->task, .index = loop->task->first + i, .out = out};
         trace_one(&path);
     }
-}
-
-static void chunk_clear(chunk_store *chunk)
-{
-    photon_store_clear(&chunk->photons);
-    big_free(chunk->normals);
-    chunk->normals = NULL;
 }
 
 typedef struct join_loop {
@@ -384,13 +360,12 @@ static void join_chunk(size_t i, size_t end, unsigned thread, void *data)
         memcpy(to->z + at, p->z, p->n * sizeof *p->z);
         memcpy(to->wi + at, p->wi, p->n * sizeof *p->wi);
         memcpy(to->flux + at, p->flux, p->n * sizeof *p->flux);
+        if (to->oriented)
+            memcpy(to->normal + at, p->normal, p->n * sizeof *p->normal);
         if (to->tagged)
             memcpy(to->tag + at, p->tag, p->n * sizeof *p->tag);
-        if (chunk->normals)
-            memcpy(loop->result->normals + at, chunk->normals,
-                   p->n * sizeof *chunk->normals);
     }
-    chunk_clear(chunk);
+    photon_store_clear(&chunk->photons);
 }
 
 /* Gives each chunk its place in the whole. @return false if one failed. */
@@ -419,33 +394,29 @@ static bool join(chunk_store *chunks, size_t n, const trace_loop *traced,
     if (!add_up(chunks, n, result, &total, error) ||
         !photon_store_reserve(&result->photons, total, error))
         return false;
-    if (traced->want_normals) {
-        result->normals = big_alloc(total, sizeof(uint32_t), "photon normals", error);
-        if (!result->normals)
-            return false;
-    }
     join_loop loop = {result, chunks};
     parallel_for(n, 1, (unsigned)traced->task->how->threads, NULL, join_chunk, &loop);
     result->photons.n = total;
     return true;
 }
 
-bool photon_trace(const trace_task *task, bool want_normals, trace_result *result,
+bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
                   GError **error)
 {
-    *result = (trace_result){.photons.tagged = task->scene->n_light_groups > 0};
+    *result = (trace_result){
+        .photons = {.oriented = oriented, .tagged = task->scene->n_light_groups > 0}};
     size_t n_chunks = ((size_t)task->n_photons + CHUNK - 1) / CHUNK;
     chunk_store *chunks = big_alloc(n_chunks, sizeof *chunks, "photon chunks", error);
     if (!chunks)
         return false;
-    trace_loop loop = {task, want_normals, chunks};
+    trace_loop loop = {task, oriented, chunks};
     bool done = parallel_for((size_t)task->n_photons, CHUNK, (unsigned)task->how->threads,
                              task->cancel, trace_chunk, &loop);
     if (!done)
         error_set(error, ERROR_CANCELLED, "cancelled");
     bool joined = done && join(chunks, n_chunks, &loop, result, error);
     for (size_t i = 0; i < n_chunks; i++) {
-        chunk_clear(&chunks[i]);
+        photon_store_clear(&chunks[i].photons);
         g_clear_error(&chunks[i].error);
     }
     big_free(chunks);
@@ -457,6 +428,5 @@ bool photon_trace(const trace_task *task, bool want_normals, trace_result *resul
 void trace_result_clear(trace_result *result)
 {
     photon_store_clear(&result->photons);
-    big_free(result->normals);
     *result = (trace_result){0};
 }

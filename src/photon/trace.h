@@ -52,17 +52,14 @@ typedef struct trace_result {
     photon_store photons; /**< in the order of emission; flux of each is its share of N */
     uint64_t n_rays;
     uint64_t n_not_finite; /**< photons dropped since their flux was not finite */
-    /** Where asked for: for every stored photon its surface's geometric normal on the
-     * side it arrived, packed (direction_pack). NULL otherwise. */
-    uint32_t *normals;
 } trace_result;
 
 /**
  * @brief Traces in parallel; the result does not depend on the number of threads.
- * @param want_normals fill result->normals
+ * @param oriented photons keep their surfaces' normals
  * @return false with ERROR_FAILED (memory) or ERROR_CANCELLED; result is then empty
  */
-bool photon_trace(const trace_task *task, bool want_normals, trace_result *result,
+bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
                   GError **error);
 void trace_result_clear(trace_result *result);
 

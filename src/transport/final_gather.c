@@ -20,7 +20,6 @@ enum { NEAREST_KEPT = 4 };
 typedef struct irradiance_loop {
     const photonmap_pass *pass;
     const photon_store *points;
-    const uint32_t *normals;
     photon_store *out;
     spectrum *groups; /* of all points, by light groups; NULL: there are none */
     size_t offset;
@@ -56,17 +55,16 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
     size_t n_groups = (size_t)loop->pass->scene->n_light_groups;
     bool ready = estimate_scratch_init(&scratch, n_groups, NULL);
     for (size_t i = begin; i < end && ready; i++) {
-        vec3 n = direction_unpack(loop->normals[i]);
         photon p = photon_store_get(loop->points, i);
         size_t at = loop->offset + i;
         loop->out->x[at] = p.p[0];
         loop->out->y[at] = p.p[1];
         loop->out->z[at] = p.p[2];
-        loop->out->wi[at] = loop->normals[i];
+        loop->out->wi[at] = loop->points->normal[i];
         if (n_groups)
             loop->out->tag[at] = (uint32_t)at;
         spectrum *groups = n_groups > 0 ? loop->groups + at * n_groups : NULL;
-        loop->out->flux[at] = irradiance_at(loop, p.p, n, &scratch, groups);
+        loop->out->flux[at] = irradiance_at(loop, p.p, p.n, &scratch, groups);
     }
     if (scratch.failed || !ready)
         loop->failed[begin / 256] = true;
@@ -80,7 +78,6 @@ static bool add_points(photonmap_pass *pass, int slice, const trace_result *poin
     g_autofree bool *failed = g_new0(bool, n_chunks);
     irradiance_loop loop = {.pass = pass,
                             .points = &points->photons,
-                            .normals = points->normals,
                             .out = out,
                             .groups = pass->irradiance_groups[slice],
                             .offset = out->n,

@@ -121,8 +121,8 @@ static bool trace_class(const slice_task *s, const cancel_flag *cancel,
 {
     double start = seconds();
     trace_task task = trace_task_for(s, cancel);
-    bool want_normals = keeps_irradiance(s->pass);
-    if (!photon_trace(&task, want_normals, result, error))
+    bool oriented = s->pass->how->edges || keeps_irradiance(s->pass);
+    if (!photon_trace(&task, oriented, result, error))
         return false;
     counts->time_trace += seconds() - start;
     counts->photon_rays += result->n_rays;
@@ -161,18 +161,14 @@ static bool set_points_apart(trace_result *from, trace_result *points, GError **
 {
     photon_store *photons = &from->photons;
     size_t n = photons->n, n_points = n / 4;
+    points->photons.oriented = true;
     if (!photon_store_reserve(&points->photons, n_points, error))
-        return false;
-    points->normals =
-        big_alloc(n_points, sizeof *points->normals, "irradiance points", error);
-    if (!points->normals)
         return false;
     float share = (float)n / (float)MAX(n - n_points, 1);
     photons->n = 0;
     for (size_t i = 0; i < n; i++) {
         photon p = photon_store_get(photons, i);
         if (i % 4 == 3) {
-            points->normals[points->photons.n] = from->normals[i];
             photon_store_put(&points->photons, &p);
         } else {
             p.flux *= share;

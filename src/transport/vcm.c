@@ -64,21 +64,24 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
 {
     const settings *how = &pass->plan->how;
     const light_paths *paths = &pass->light;
-    photon_store store = {0};
+    photon_store store = {.oriented = how->edges};
     double start = seconds();
     if (!photon_store_reserve(&store, paths->n_vertices, error))
         return false;
     for (size_t i = 0; i < paths->n_vertices; i++) {
         const light_vertex *v = &paths->vertices[i];
+        vec3 n = face_forward(v->hit.n_geom, v->wi);
         bool behind = dot3(v->wi, v->hit.n_geom) < 0.0f;
         photon p = {.p = v->hit.p,
                     .wi = v->wi,
                     .flux = vcm_payload(i),
-                    .flags = behind ? PHOTON_BEHIND : 0};
+                    .flags = behind ? PHOTON_BEHIND : 0,
+                    .n = n};
         if (scene_hit_moves(pass->scene, &v->hit)) {
             transform by = vcm_motion_to_map(pass, &v->hit);
             p.p = transform_point(&by, p.p);
             p.wi = normalize3(transform_vector(&by, p.wi));
+            p.n = normalize3(transform_normal(&by, p.n));
         }
         photon_store_put(&store, &p);
     }
