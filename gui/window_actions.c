@@ -368,12 +368,27 @@ GMenuModel *window_menu(void)
     return G_MENU_MODEL(menu);
 }
 
+/* The file's name, and its folder's where another has the same name. Owned by the caller.
+ */
+static char *scene_label(char **paths, size_t i)
+{
+    g_autofree char *base = g_path_get_basename(paths[i]);
+    g_autofree char *folder = g_path_get_dirname(paths[i]);
+    bool alone = true;
+    for (size_t k = 0; paths[k]; k++) {
+        g_autofree char *other = g_path_get_basename(paths[k]);
+        alone &= k == i || strcmp(base, other) != 0;
+    }
+    g_autofree char *label =
+        alone ? g_strdup(base) : g_strdup_printf("%s – %s", base, folder);
+    return g_utf8_make_valid(label, -1);
+}
+
 static void append_scenes(GMenu *menu, const char *title, char **paths)
 {
     g_autoptr(GMenu) section = g_menu_new();
     for (size_t i = 0; paths[i]; i++) {
-        g_autofree char *base = g_path_get_basename(paths[i]);
-        g_autofree char *label = g_utf8_make_valid(base, -1);
+        g_autofree char *label = scene_label(paths, i);
         g_autoptr(GMenuItem) item = g_menu_item_new(label, NULL);
         g_menu_item_set_action_and_target(item, "win.open-path", "s", paths[i]);
         g_menu_append_item(section, item);

@@ -14,7 +14,7 @@ shot() {
     name=$1
     seconds=$2
     shift 2
-    xvfb-run -a -s '-screen 0 2800x1800x24' "$viewer" --screenshot "$folder/view-$name.png" \
+    xvfb-run -a -s '-screen 0 1400x900x24' "$viewer" --screenshot "$folder/view-$name.png" \
         --after "$seconds" "$@" 2>"$settings/log" || cat "$settings/log" >&2
     echo "$folder/view-$name.png"
 }
@@ -23,18 +23,17 @@ scenes=$root/scenes
 cornell=$scenes/cornell-box/cornell-box.pbrt
 ring=$scenes/ring/ring.pbrt
 ball=$scenes/glass-ball/glass-ball.pbrt
-# What a misspelling looks like, at a path of its own.
+# Misspelt twice.
 broken=$settings/broken.pbrt
-sed 's/"diffuse"/"difuse"/; s/Shape "trianglemesh"/Shape "trianglemsh"/' "$cornell" >"$broken"
+sed '0,/"diffuse"/s//"difuse"/; 0,/Shape "trianglemesh"/s//Shape "trianglemsh"/' "$cornell" >"$broken"
 
 mkdir -p "$folder"
 shot welcome 2 --theme dark
 shot errors 3 --theme light "$broken"
 shot materials 4 --view materials --page settings --theme light "$ring"
-shot numbers 30 --view picture --page numbers --theme dark "$ball"
-shot camera 30 --view picture --page camera --theme light "$ring"
+shot numbers 70 --view picture --page numbers --theme dark "$ball"
+shot camera 60 --view picture --page camera --theme light "$ring"
 shot photons 20 --view photons --page photons --pick 0.33,0.52 --theme dark "$cornell"
 shot ring 20 --view photons --page photons --theme light "$ring"
-shot inspect 50 --view picture --page inspect --theme dark "$ball"
-shot picture 60 --view picture --page settings --theme light "$cornell"
-GDK_SCALE=2 shot hidpi 15 --view photons --page photons --theme light "$ring"
+shot inspect 70 --view picture --page inspect --theme dark "$ball"
+shot picture 80 --view picture --page settings --theme light "$cornell"
