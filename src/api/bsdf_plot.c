@@ -22,6 +22,7 @@ enum {
     LEAST_ANGLES = 4, /* that make a plot */
     MOST_ANGLES = 1 << 20,
     RAY_SAMPLES = 256, /* to find mirrored and refracted light */
+    WALKS = 128,       /* through coats */
 };
 
 /* Nearer to the horizon nothing comes in, degrees. */
@@ -53,7 +54,7 @@ static vec3 direction_at(double degrees)
 
 static void prober_init(prober *p, const material *m, double incidence, int offset)
 {
-    const bsdf_options options = {0};
+    const bsdf_options options = {.least_walks = WALKS};
     const surface_hit hit = flat_hit();
     g_autoptr(curve) d65 = curve_named("stdillum-D65");
     p->w = wavelengths_at(((float)offset + 0.5f) / OFFSETS);

@@ -14,6 +14,7 @@ struct scene;
 typedef struct bsdf_options {
     bool deterministic; /**< multiple_samples off: rough is smooth, glass only refracts
                            (or reflects totally), coats are dropped */
+    int least_walks;    /**< averaged where light walks at random between layers */
 } bsdf_options;
 
 typedef struct material_kind {

@@ -49,7 +49,7 @@ static void lacquered_bsdf(const void *self, const surface_hit *hit, const wavel
     from.eta = spectrum_mean(curve_eval(m->eta, w));
     from.coat = roughness_input_eval(&m->face, hit);
     from.base = roughness_input_eval(&m->metal, hit);
-    coat_input_eval(&m->coat, hit, w, &from);
+    coat_input_eval(&m->coat, hit, w, options, &from);
     bsdf_make_layered(out, &from);
 }
 

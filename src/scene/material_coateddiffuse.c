@@ -95,7 +95,7 @@ static void plastic_bsdf(const void *self, const surface_hit *hit, const wavelen
     }
     coat_layers from = {.rho = rho, .coat = roughness};
     from.eta = spectrum_mean(curve_eval(m->eta, w));
-    coat_input_eval(&m->coat, hit, w, &from);
+    coat_input_eval(&m->coat, hit, w, options, &from);
     bsdf_make_layered(out, &from);
 }
 

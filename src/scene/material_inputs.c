@@ -1,6 +1,7 @@
 #include "scene/material_inputs.h"
 
 #include "scene/bsdf_models.h"
+#include "scene/material.h"
 
 #include <string.h>
 
@@ -184,13 +185,13 @@ bool coat_input_is_plain(const coat_input *in)
 }
 
 void coat_input_eval(const coat_input *in, const surface_hit *hit, const wavelengths *w,
-                     coat_layers *out)
+                     const bsdf_options *options, coat_layers *out)
 {
     out->thickness = maxf(0.0f, float_input_eval(&in->thickness, hit));
     out->g = clampf(float_input_eval(&in->g, hit), -MOST_FORWARD, MOST_FORWARD);
     out->albedo = spectrum_clamp(spectrum_input_eval(&in->albedo, hit, w), 0.0f, 1.0f);
     out->max_depth = in->max_depth;
-    out->n_walks = in->n_walks;
+    out->n_walks = MAX(in->n_walks, options->least_walks);
     float first = w->lambda[0];
     memcpy(&out->seed, &first, sizeof out->seed);
 }

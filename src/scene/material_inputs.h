@@ -6,6 +6,7 @@
 #include "scene/microfacet.h"
 #include "scene/texture.h"
 
+struct bsdf_options;
 struct coat_layers;
 
 /** @brief pbrt's roughness, uroughness, vroughness and remaproughness. */
@@ -59,4 +60,4 @@ void coat_input_clear(coat_input *in);
 bool coat_input_is_plain(const coat_input *in);
 /** @brief Fills thickness, g, albedo, max_depth, n_walks and seed. */
 void coat_input_eval(const coat_input *in, const surface_hit *hit, const wavelengths *w,
-                     struct coat_layers *out);
+                     const struct bsdf_options *options, struct coat_layers *out);
