@@ -76,12 +76,29 @@ static void test_json(void)
     folder_remove(&f);
 }
 
+static void test_instances(void)
+{
+    scene_folder f =
+        folder_new(HEAD "ObjectBegin \"o\" " MATT "Shape \"sphere\" ObjectEnd "
+                        "ObjectInstance \"o\" Translate 3 0 0 "
+                        "ObjectInstance \"o\" ");
+    g_autoptr(GError) error = NULL;
+    g_autoptr(NephScene) s = neph_scene_load(f.main, 1, NULL, NULL, &error);
+    g_assert_no_error(error);
+    g_autofree char *text = neph_scene_describe(s, false);
+    g_assert_nonnull(strstr(text, "instances      2 of 1 objects\n"));
+    g_autofree char *json = neph_scene_describe(s, true);
+    g_assert_nonnull(strstr(json, "\"instances\": 2"));
+    folder_remove(&f);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/info/glass", test_glass);
     g_test_add_func("/info/lamps", test_lamps);
     g_test_add_func("/info/size", test_size);
+    g_test_add_func("/info/instances", test_instances);
     g_test_add_func("/info/json", test_json);
     return g_test_run();
 }

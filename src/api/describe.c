@@ -20,7 +20,8 @@ static size_t mesh_bytes(const mesh *m)
 {
     size_t per_vertex = 3 * sizeof(float) + (m->normals ? 3 * sizeof(float) : 0) +
                         (m->tangents ? 3 * sizeof(float) : 0) +
-                        (m->uvs ? sizeof(vec2) : 0);
+                        (m->uvs ? sizeof(vec2) : 0) + (m->uvs2 ? sizeof(vec2) : 0) +
+                        (m->colors ? 4 * sizeof(float) : 0);
     return m->n_vertices * per_vertex + m->n_triangles * 3 * sizeof(uint32_t);
 }
 

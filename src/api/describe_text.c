@@ -22,6 +22,9 @@ static void put_shapes(GString *out, const scene *s, const summary *all)
             g_string_append_printf(out, ", %zu shining", t->n_shining);
         g_string_append_c(out, '\n');
     }
+    if (s->instances->len > 0)
+        g_string_append_printf(out, "  instances      %u of %u objects\n",
+                               s->instances->len, s->objects->len);
     if (box3_is_empty(s->bounds))
         return;
     put_vec3(out, "from", s->bounds.low);
