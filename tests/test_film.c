@@ -192,9 +192,9 @@ static void test_gbuffer_file(void)
 /* All algorithms see the same through the other cameras. */
 static void test_cameras_agree(void)
 {
-    static const char *const cameras[] = {"\"orthographic\"", "\"spherical\"",
-                                          "\"spherical\" \"string mapping\" "
-                                          "\"equirectangular\""};
+    static const char *const cameras[] = {
+        "\"orthographic\"", "\"spherical\"",
+        "\"spherical\" \"string mapping\" \"equirectangular\""};
     static const char *const ways[] = {
         "integrator=vcm passes=6 spp=16 photons=20000",
         "integrator=vcm vcm_strategies=bpt passes=6 spp=16 photons=20000",
