@@ -2,8 +2,9 @@
 # Which transport is best at equal time: relMSE and FLIP after so many seconds on one thread,
 # against a long render. usage: equal_time.sh NEPHROID [SECONDS [SIZE [SCENE...]]]
 #
-# The reference is vcm's, with another seed and 15 times as long; auto's of that length is compared
-# with it in the last column: figures near that one mean nothing more. relMSE is at the mercy of
+# The reference is vcm's, or that of the transport named in REFERENCE, with another seed and 15 times
+# as long; auto's of that length is compared with it in the last column: figures near that one mean
+# nothing more. path is the better reference where nothing focuses light. relMSE is at the mercy of
 # single pixels (the lamp's image in a ball), FLIP is not. A second table gives the time of 16 passes
 # over that of path.
 set -e
@@ -42,7 +43,7 @@ against_reference() {
 printf '%-26s %17s %17s %17s %17s %17s\n' "relMSE, FLIP after $seconds s" path auto vcm photonmap check
 for scene; do
     [ -f "$scene" ] || continue
-    shot "$work/reference.exr" "$scene" --integrator vcm --seed 77 --time "$long" >/dev/null
+    shot "$work/reference.exr" "$scene" --integrator "${REFERENCE:-vcm}" --seed 77 --time "$long" >/dev/null
     shot "$work/check.exr" "$scene" --integrator auto --seed 78 --time "$long" >/dev/null
     printf '%-26s' "$(name "$scene")"
     for kind in path auto vcm photonmap; do

@@ -71,7 +71,7 @@ static bool intersect(const void *self, uint32_t primitive, const ray *r, float 
         for (int k = 0; k < 3; k++)
             p[k] = object.o[k] + roots[i] * object.d[k];
         if (roots[i] > (double)t_min && roots[i] < (double)r->t_max && p[2] >= c->z_min &&
-            p[2] <= c->z_max && quadric_phi(p) <= c->q.phi_max) {
+            p[2] <= c->z_max && quadric_in_turn(&c->q, p)) {
             tuv[0] = (float)roots[i];
             tuv[1] = tuv[2] = 0.0f;
             return true;

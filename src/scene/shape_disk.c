@@ -80,7 +80,7 @@ static bool intersect(const void *self, uint32_t primitive, const ray *r, float 
     double p[3] = {object.o[0] + where * object.d[0], object.o[1] + where * object.d[1]};
     double distance2 = p[0] * p[0] + p[1] * p[1];
     if (distance2 > d->radius * d->radius || distance2 < d->inner * d->inner ||
-        quadric_phi(p) > d->q.phi_max)
+        !quadric_in_turn(&d->q, p))
         return false;
     tuv[0] = (float)where;
     tuv[1] = tuv[2] = 0.0f;
@@ -96,7 +96,7 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     quadric_point at =
         at_xy(d, object.o[0] + t * object.d[0], object.o[1] + t * object.d[1]);
     double dpdu[3] = {-d->q.phi_max * at.p[1], d->q.phi_max * at.p[0], 0.0};
-    double rho = hypot(at.p[0], at.p[1]),
+    double rho = sqrt(at.p[0] * at.p[0] + at.p[1] * at.p[1]),
            slope = rho > 0.0 ? (d->inner - d->radius) / rho : 0.0;
     const double dpdv[3] = {slope * at.p[0], slope * at.p[1], 0.0};
     quadric_fill_hit(&d->q, &at, dpdu, dpdv, hit);

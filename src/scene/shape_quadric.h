@@ -55,6 +55,13 @@ void quadric_fill_hit(const quadric *q, const quadric_point *at, const double dp
                       const double dpdv[3], surface_hit *hit);
 /** @brief The angle of (x, y) in 0..2 pi. */
 double quadric_phi(const double p[3]);
+/** @brief True if p is on the part of the turn that there is: an arc tangent, but for a
+ * full turn. */
+static inline bool quadric_in_turn(const quadric *q, const double p[3])
+{
+    return q->phi_max >= 2.0 * G_PI * (1.0 - 1e-9) || quadric_phi(p) <= q->phi_max;
+}
+
 /** @brief World bounds of a box in object space, rounded outward. */
 box3 quadric_bounds(const quadric *q, const double low[3], const double high[3]);
 /** @brief Both roots of |d t + o|² = r² over the first n coordinates, ascending. */

@@ -99,7 +99,7 @@ static bool is_on_part(const sphere *s, const quadric_ray *r, double t)
     double p[3];
     for (int i = 0; i < 3; i++)
         p[i] = r->o[i] + t * r->d[i];
-    return p[2] >= s->z_min && p[2] <= s->z_max && quadric_phi(p) <= s->q.phi_max;
+    return p[2] >= s->z_min && p[2] <= s->z_max && quadric_in_turn(&s->q, p);
 }
 
 static bool intersect(const void *self, uint32_t primitive, const ray *r, float t_min,
