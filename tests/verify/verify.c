@@ -15,7 +15,7 @@ bool verify_is_long(void)
 typedef struct recorder {
     const render *render;
     trial *trial;
-    double lamps;                 /* share of what is seen of them directly */
+    bool lamps;                   /* with what is seen of them directly */
     int per_group;                /* passes */
     int64_t seen;                 /* passes that the last group ended with */
     double before[VERIFY_BLOCKS]; /* sum over the passes seen */
@@ -27,8 +27,8 @@ static size_t block_of(const image *img, size_t pixel)
     return pixel / w * SIDE / h * SIDE + pixel % w * SIDE / w;
 }
 
-/* Mean luminance by blocks, with the share `lamps` of what the camera sees of lamps. */
-static void measure_blocks(const image *img, double lamps, double mean[VERIFY_BLOCKS])
+/* Mean luminance by blocks, with or without what the camera sees of lamps. */
+static void measure_blocks(const image *img, bool lamps, double mean[VERIFY_BLOCKS])
 {
     static const double y[3] = {0.2126, 0.7152, 0.0722};
     double share = (double)VERIFY_BLOCKS / (double)pixels_of(img);
@@ -40,7 +40,7 @@ static void measure_blocks(const image *img, double lamps, double mean[VERIFY_BL
         size_t a = channel_of(img, all), b = channel_of(img, seen);
         for (size_t i = 0; i < pixels_of(img); i++)
             mean[block_of(img, i)] +=
-                share * y[c] * (at(img, i, a) - (1 - lamps) * at(img, i, b));
+                share * y[c] * (at(img, i, a) - (lamps ? 0 : at(img, i, b)));
     }
 }
 
@@ -87,39 +87,51 @@ static moments moments_of(const double *x, size_t n)
     return (moments){mean, sqrt(square / (double)(n * (n - 1)))};
 }
 
-static trial render_trial(const scene *s, const char *words, int passes, double lamps)
+/* Left for right. */
+static void flip_blocks(double blocks[VERIFY_BLOCKS])
+{
+    for (size_t y = 0; y < SIDE; y++) {
+        for (size_t x = 0; x < SIDE / 2; x++) {
+            double *a = &blocks[SIDE * y + x], *b = &blocks[SIDE * y + SIDE - 1 - x];
+            double keep = *a;
+            *a = *b;
+            *b = keep;
+        }
+    }
+}
+
+static void sum_up(trial *t, bool flip)
+{
+    double totals[VERIFY_GROUPS];
+    for (size_t g = 0; g < VERIFY_GROUPS; g++) {
+        if (flip)
+            flip_blocks(t->value[g]);
+        totals[g] = group_total(t, g);
+        for (size_t k = 0; k < VERIFY_BLOCKS; k++)
+            t->mean[k] += t->value[g][k] / VERIFY_GROUPS;
+    }
+    moments m = moments_of(totals, VERIFY_GROUPS);
+    t->total = m.mean;
+    t->error = m.error;
+}
+
+trial verify_render(const subject *of, int passes)
 {
     trial t = {0};
     g_assert_cmpint(passes % VERIFY_GROUPS, ==, 0);
-    g_autofree char *all = g_strdup_printf("%s passes=%d", words, passes);
-    g_autoptr(render) r = render_of(s, all);
+    g_autofree char *all = g_strdup_printf("%s passes=%d", of->words, passes);
+    g_autoptr(render) r = render_of(of->scene, all);
     g_autoptr(GError) error = NULL;
-    recorder rec = {
-        .render = r, .trial = &t, .lamps = lamps, .per_group = passes / VERIFY_GROUPS};
+    recorder rec = {.render = r,
+                    .trial = &t,
+                    .lamps = of->lamps,
+                    .per_group = passes / VERIFY_GROUPS};
     render_run(r, record, &rec, &error);
     g_assert_no_error(error);
     g_assert_cmpint(rec.seen, ==, passes);
     g_assert_cmpuint(render_get_statistics(r).n_not_finite, ==, 0);
-    double totals[VERIFY_GROUPS];
-    for (size_t g = 0; g < VERIFY_GROUPS; g++) {
-        totals[g] = group_total(&t, g);
-        for (size_t k = 0; k < VERIFY_BLOCKS; k++)
-            t.mean[k] += t.value[g][k] / VERIFY_GROUPS;
-    }
-    moments m = moments_of(totals, VERIFY_GROUPS);
-    t.total = m.mean;
-    t.error = m.error;
+    sum_up(&t, of->flip);
     return t;
-}
-
-trial verify_render(const scene *s, const char *words, int passes)
-{
-    return render_trial(s, words, passes, 0);
-}
-
-trial verify_render_all(const scene *s, const char *words, int passes)
-{
-    return render_trial(s, words, passes, 1);
 }
 
 /* ---- Comparing ---- */
@@ -173,29 +185,56 @@ agreement verify_compare(const trial *a, const trial *b, double bias)
     return found;
 }
 
-void verify_agree(const char *name, const trial *a, const trial *b, double tolerance,
-                  double bias)
+/* ---- The truth ---- */
+
+static trial constant(double expected)
 {
-    agreement found = verify_compare(a, b, bias);
-    g_test_message("%s: %g and %g, %+.3f %% (+- %.3f), worst block z = %.1f of %.1f",
-                   name, a->total, b->total, 100 * found.off, 100 * found.error, found.z,
-                   found.limit);
-    g_assert_cmpfloat(found.error, <, tolerance * VERIFY_SHORT_LONG(3.0, 0.5));
-    g_assert_cmpfloat(fabs(found.off) - tolerance, <,
-                      found.error * verify_sidak(FALSE_ALARM, 1));
-    g_assert_cmpfloat(found.z, <, found.limit);
+    trial t = {.total = expected};
+    for (size_t k = 0; k < VERIFY_BLOCKS; k++) {
+        t.mean[k] = expected;
+        for (size_t g = 0; g < VERIFY_GROUPS; g++)
+            t.value[g][k] = expected;
+    }
+    return t;
 }
 
-void verify_is(const char *name, const trial *a, double expected, double tolerance,
-               double bias)
+/* What is true of so many passes. */
+static const trial *rendered(yardstick *is, int level, int passes)
 {
-    trial truth = {.total = expected};
-    for (size_t k = 0; k < VERIFY_BLOCKS; k++) {
-        truth.mean[k] = expected;
-        for (size_t g = 0; g < VERIFY_GROUPS; g++)
-            truth.value[g][k] = expected;
+    if (!is->levels[level]) {
+        is->levels[level] = g_new(trial, 1);
+        *is->levels[level] =
+            is->of.scene ? verify_render(&is->of, passes) : constant(is->expected);
     }
-    verify_agree(name, a, &truth, tolerance, bias);
+    return is->levels[level];
+}
+
+void yardstick_clear(yardstick *is)
+{
+    for (int i = 0; i < VERIFY_LEVELS; i++)
+        g_clear_pointer(&is->levels[i], g_free);
+}
+
+void verify_agree(const char *name, const subject *of, yardstick *is, int passes,
+                  allowance allowed)
+{
+    double known = allowed.total * VERIFY_SHORT_LONG(3.0, 0.5);
+    agreement found = {.error = INFINITY};
+    for (int level = 0; level < VERIFY_SHORT_LONG(1, VERIFY_LEVELS); level++) {
+        const trial *b = rendered(is, level, passes), a = verify_render(of, passes);
+        found = verify_compare(&a, b, allowed.block);
+        g_test_message("%s: %g and %g, %+.3f %% (+- %.3f), worst block z = %.1f of %.1f "
+                       "by %d passes",
+                       name, a.total, b->total, 100 * found.off, 100 * found.error,
+                       found.z, found.limit, passes);
+        if (found.error < known)
+            break;
+        passes *= 4;
+    }
+    g_assert_cmpfloat(found.error, <, known);
+    g_assert_cmpfloat(fabs(found.off) - allowed.total, <,
+                      found.error * verify_sidak(FALSE_ALARM, 1));
+    g_assert_cmpfloat(found.z, <, found.limit);
 }
 
 double verify_log_slope(const double *x, const double *y, size_t n)

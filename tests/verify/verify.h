@@ -41,14 +41,17 @@ bool verify_is_long(void);
 /** @brief The first in the short form, the second in the long one. */
 #define VERIFY_SHORT_LONG(a, b) (verify_is_long() ? (b) : (a))
 
-/**
- * @brief Renders `passes` passes (a multiple of VERIFY_GROUPS) by the settings in words.
- * The image is cut into 8 x 8 blocks, so its sides are multiples of 8 pixels.
- */
-trial verify_render(const scene *s, const char *words, int passes);
+/** @brief What is rendered, by settings in words. The image is cut into 8 x 8 blocks, so
+ * its sides are multiples of 8 pixels. */
+typedef struct subject {
+    const scene *scene;
+    const char *words;
+    bool lamps; /**< with the lamps as the camera sees them */
+    bool flip;  /**< left for right */
+} subject;
 
-/** @brief The same with the lamps as the camera sees them. */
-trial verify_render_all(const scene *s, const char *words, int passes);
+/** @brief Renders `passes` passes, a multiple of VERIFY_GROUPS. */
+trial verify_render(const subject *of, int passes);
 
 /**
  * @brief Compares a with b, group by group: Student's t for each block, made a normal
@@ -58,15 +61,34 @@ trial verify_render_all(const scene *s, const char *words, int passes);
  */
 agreement verify_compare(const trial *a, const trial *b, double bias);
 
-/** @brief Fails if totals differ by more than `tolerance` and noise, or some block is
- * beyond its limit, or noise is so much that this says little: a total not known to three
- * times the tolerance, in the long form to half of it. */
-void verify_agree(const char *name, const trial *a, const trial *b, double tolerance,
-                  double bias);
+enum { VERIFY_LEVELS = 4 };
 
-/** @brief The same for a total that must be `expected` in every block. */
-void verify_is(const char *name, const trial *a, double expected, double tolerance,
-               double bias);
+/** @brief What others are held to: a subject, whose renders are kept by their numbers of
+ * passes (times 4 a level), or a number that every block must be. Clear at the end. */
+typedef struct yardstick {
+    subject of;
+    double expected;              /**< if there is no scene */
+    trial *levels[VERIFY_LEVELS]; /**< made when asked for */
+} yardstick;
+
+void yardstick_clear(yardstick *is);
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(yardstick, yardstick_clear)
+
+/** @brief What may differ. */
+typedef struct allowance {
+    double total; /**< relative */
+    double block; /**< bias of verify_compare */
+} allowance;
+
+/**
+ * @brief Renders and compares. Fails if totals differ by more than is allowed and noise,
+ * or some block is beyond its limit, or noise is so much that this says little: a total
+ * not known to three times what is allowed. The long form takes four times as many passes
+ * until it is known to half of that.
+ * @param passes of the short form
+ */
+void verify_agree(const char *name, const subject *of, yardstick *is, int passes,
+                  allowance allowed);
 
 /** @brief The normal deviate whose |z| one of n independent ones passes with probability
  * alpha (Šidák 1967). */

@@ -10,10 +10,10 @@
 #include "rooms.h"
 #include "verify.h"
 
-typedef struct subject {
+typedef struct place {
     const char *name, *text;
     const char *more; /* settings of photons */
-} subject;
+} place;
 
 #define EYE(more)                                                                        \
     "LookAt 0 -3.4 1.2  0 0 0.9  0 0 1 Camera \"perspective\" \"float fov\" 55 " more    \
@@ -39,7 +39,7 @@ typedef struct subject {
 
 /* The floor pretends to be tilted, so that light by way of it and onto it tells whether
    normals are taken for what they are. */
-static const subject subjects[] = {
+static const place places[] = {
     {"empty", IN_ROOM(""), ""},
     {"mirror",
      IN_ROOM("Material \"conductor\" \"spectrum eta\" \"metal-Ag-eta\" "
@@ -119,39 +119,36 @@ static const subject subjects[] = {
 /* An algorithm, its settings, and what its radii may do to a block. */
 typedef struct way {
     const char *name, *words;
-    int passes;
     double bias;
 } way;
 
 static const way ways[] = {
-    {"auto", "integrator=auto spp=4 photons=5000 max_backward_bounces=-1", 32, 0.01},
-    {"photonmap", "integrator=photonmap spp=2 photons=10000 max_backward_bounces=-1", 32,
+    {"auto", "integrator=auto spp=4 photons=5000 max_backward_bounces=-1", 0.01},
+    {"photonmap", "integrator=photonmap spp=2 photons=10000 max_backward_bounces=-1",
      0.03},
-    {"sppm", "integrator=sppm spp=1 photons=6000 seed=1 max_backward_bounces=-1", 32,
-     0.03},
-    {"vcm", "integrator=vcm spp=2 photons=4096 max_backward_bounces=-1", 32, 0.01},
+    {"sppm", "integrator=sppm spp=1 photons=6000 seed=1 max_backward_bounces=-1", 0.03},
+    {"vcm", "integrator=vcm spp=2 photons=4096 max_backward_bounces=-1", 0.01},
 };
 
 static void test_agreement(gconstpointer data)
 {
-    const subject *of = data;
-    int more = VERIFY_SHORT_LONG(1, 16);
-    g_autoptr(scene) s = scene_of(of->text);
-    trial path =
-        verify_render(s, "integrator=path spp=8 max_backward_bounces=-1", 32 * more);
+    const place *at = data;
+    g_autoptr(scene) s = scene_of(at->text);
+    g_auto(yardstick) path = {
+        .of = {.scene = s, .words = "integrator=path spp=8 max_backward_bounces=-1"}};
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
-        g_autofree char *words = g_strconcat(ways[i].words, of->more, NULL);
-        trial t = verify_render(s, words, ways[i].passes * more);
-        verify_agree(ways[i].name, &t, &path, 0.005, ways[i].bias);
+        g_autofree char *words = g_strconcat(ways[i].words, at->more, NULL);
+        verify_agree(ways[i].name, &(subject){.scene = s, .words = words}, &path, 32,
+                     (allowance){0.005, ways[i].bias});
     }
 }
 
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
-    for (size_t i = 0; i < G_N_ELEMENTS(subjects); i++) {
-        g_autofree char *name = g_strconcat("/verify/agree/", subjects[i].name, NULL);
-        g_test_add_data_func(name, &subjects[i], test_agreement);
+    for (size_t i = 0; i < G_N_ELEMENTS(places); i++) {
+        g_autofree char *name = g_strconcat("/verify/agree/", places[i].name, NULL);
+        g_test_add_data_func(name, &places[i], test_agreement);
     }
     return g_test_run();
 }

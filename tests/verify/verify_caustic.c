@@ -18,16 +18,18 @@
 
 static void test_point_light_through_glass(void)
 {
-    int more = VERIFY_SHORT_LONG(1, 16);
     g_autoptr(scene) s = scene_of(POINT_LIGHT_AND_GLASS);
-    trial sppm = verify_render(
-        s, "integrator=sppm spp=8 photons=40000 max_backward_bounces=-1", 32 * more);
-    trial found = verify_render(
-        s, "integrator=auto spp=8 photons=20000 max_backward_bounces=-1", 32 * more);
-    verify_agree("auto", &found, &sppm, 0.005, 0.02);
-    found = verify_render(s, "integrator=vcm spp=8 photons=8192 max_backward_bounces=-1",
-                          32 * more);
-    verify_agree("vcm", &found, &sppm, 0.005, 0.02);
+    const allowance allowed = {0.005, 0.02};
+    g_auto(yardstick) sppm = {
+        .of = {.scene = s,
+               .words = "integrator=sppm spp=8 photons=40000 max_backward_bounces=-1"}};
+    const subject by_auto = {
+        .scene = s,
+        .words = "integrator=auto spp=8 photons=20000 max_backward_bounces=-1"};
+    const subject by_vcm = {
+        .scene = s, .words = "integrator=vcm spp=8 photons=8192 max_backward_bounces=-1"};
+    verify_agree("auto", &by_auto, &sppm, 32, allowed);
+    verify_agree("vcm", &by_vcm, &sppm, 32, allowed);
 }
 
 /* ---- From a mirror to matt ---- */
@@ -124,7 +126,7 @@ static void test_roughness(gconstpointer data)
     double caustic[STEPS + 1], all[STEPS + 1];
     brightness before = {NAN, NAN};
     g_autofree char *words =
-        g_strdup_printf("%s passes=%d", of->words, VERIFY_SHORT_LONG(8, 256));
+        g_strdup_printf("%s passes=%d", of->words, VERIFY_SHORT_LONG(8, 64));
     for (int i = 0; i <= STEPS; i++) {
         brightness now = {NAN, NAN};
         if (i < STEPS && step_is_taken(i))

@@ -67,14 +67,12 @@ static void test_shading_normals(void)
             "-1 "
             "0 0 0 0.8 0 0 -0.8] \"normal N\" [1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 1 0 0 -1] "
             "\"integer indices\" [0 1 4 1 2 4 2 3 4 3 0 4 1 0 5 2 1 5 3 2 5 0 3 5]\n");
-    int more = VERIFY_SHORT_LONG(1, 16);
-    trial path =
-        verify_render(s, "integrator=path spp=4 max_backward_bounces=-1", 32 * more);
-    trial photons = verify_render(s,
-                                  "integrator=photonmap direct_illumination=off spp=2 "
-                                  "photons=40000 max_backward_bounces=-1",
-                                  32 * more);
-    verify_agree("direct map", &photons, &path, 0.01, 0.05);
+    g_auto(yardstick) path = {
+        .of = {.scene = s, .words = "integrator=path spp=4 max_backward_bounces=-1"}};
+    const subject by_map = {.scene = s,
+                            .words = "integrator=photonmap direct_illumination=off spp=2 "
+                                     "photons=40000 max_backward_bounces=-1"};
+    verify_agree("direct map", &by_map, &path, 32, (allowance){0.01, 0.05});
 }
 
 /* ---- One time a pass ---- */
