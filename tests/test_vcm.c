@@ -19,6 +19,7 @@ typedef struct random_path {
     double cos_lamp[MAX_SURFACES + 2], cos_eye[MAX_SURFACES + 2]; /* at i, to i -+ 1 */
     double pdf[MAX_SURFACES + 2], reverse[MAX_SURFACES + 2]; /* from lamp, from eye */
     bool mirror[MAX_SURFACES + 2];
+    double alone[MAX_SURFACES + 2];
     double eye; /* camera samples per solid angle over light subpaths */
     light_start start;
     strategy_ratios ratios;
@@ -41,6 +42,7 @@ static random_path path_of(GRand *random, const scene *s, int index, bool mirror
         p.mirror[i] = mirrors && g_rand_double(random) < 0.4;
         if (p.mirror[i])
             p.reverse[i] = p.pdf[i];
+        p.alone[i] = i < p.n ? between(random, 1e-4, 1) : 1;
     }
     p.eye = between(random, 0.01, 100);
     double merge = between(random, 0.01, 100);
@@ -92,7 +94,7 @@ static path_densities define(const random_path *p)
     }
     for (int m = 1; m <= p->n; m++) {
         if (!p->mirror[m])
-            d.merge[m] = lamp[m] * eye[m] * (double)p->ratios.merge;
+            d.merge[m] = lamp[m] * eye[m] * (double)p->ratios.merge * p->alone[m];
     }
     for (int i = 0; i <= p->n + 1; i++)
         d.sum += d.connect[i] + d.merge[i];
@@ -106,7 +108,8 @@ static void bounce_at(partial_weights *w, const random_path *p, int i, bool from
         weights_bounce_specular(w, (float)cosine);
     else
         weights_bounce(w, (float)cosine, (float)(from_lamp ? p->pdf[i] : p->reverse[i]),
-                       (float)(from_lamp ? p->reverse[i] : p->pdf[i]), &p->ratios);
+                       (float)(from_lamp ? p->reverse[i] : p->pdf[i]), &p->ratios,
+                       (float)p->alone[i]);
 }
 
 /* The partial weights of a light subpath at each surface. */
@@ -158,27 +161,29 @@ static double connected(const random_path *p, const partial_weights lamp[],
         bool delta = p->start.light->kind->is_delta;
         double others = delta ? 0 : p->reverse[1] / (double)p->start.pdf;
         float traced = light_start_traced_over_connected(&p->start);
-        return 1 /
-               (1 + others +
-                (double)weights_connected(&eye[1], traced, (float)p->pdf[1], &p->ratios));
+        return 1 / (1 + others +
+                    (double)weights_connected(&eye[1], traced, (float)p->pdf[1],
+                                              &p->ratios, (float)p->alone[1]));
     }
     bool to_eye = s == p->n + 1;
     double d2 = p->distance2[s];
     double area = (to_eye ? p->eye : p->reverse[s]) * p->cos_eye[s - 1] / d2;
-    double sum = 1 + (double)weights_connected(&lamp[s - 1], (float)area,
-                                               (float)p->reverse[s - 1], &p->ratios);
+    double sum =
+        1 + (double)weights_connected(&lamp[s - 1], (float)area, (float)p->reverse[s - 1],
+                                      &p->ratios, (float)p->alone[s - 1]);
     if (!to_eye)
-        sum += (double)weights_connected(&eye[s],
-                                         (float)(p->pdf[s - 1] * p->cos_lamp[s] / d2),
-                                         (float)p->pdf[s], &p->ratios);
+        sum += (double)weights_connected(
+            &eye[s], (float)(p->pdf[s - 1] * p->cos_lamp[s] / d2), (float)p->pdf[s],
+            &p->ratios, (float)p->alone[s]);
     return 1 / sum;
 }
 
 static double merged(const random_path *p, const partial_weights lamp[],
                      const partial_weights eye[], int m)
 {
-    float a = weights_merged(&lamp[m], (float)p->reverse[m], &p->ratios);
-    float b = weights_merged(&eye[m], (float)p->pdf[m], &p->ratios);
+    float alone = (float)p->alone[m];
+    float a = weights_merged(&lamp[m], (float)p->reverse[m], &p->ratios, alone);
+    float b = weights_merged(&eye[m], (float)p->pdf[m], &p->ratios, alone);
     return (double)(1 / (a + 1 + b));
 }
 

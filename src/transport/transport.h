@@ -85,6 +85,9 @@ typedef struct transport_plan {
     /** Where the radius is automatic: places (as photons) whose flux[0] is the radius of
      * pass 0 around there; owned. NULL: the same everywhere. */
     photon_map *radius_map[N_PHOTON_CLASSES];
+    /** vcm: places (as photons) whose flux[0] is how many vertices a light subpath has
+     * per square metre around there, on average; owned. NULL: not known. */
+    photon_map *density;
     emission_guide *guide; /**< owned; NULL: none was learned */
     bool shares;           /**< photons share caustics with paths from the eye */
     caustic_share share;   /**< what they share before radii are known, for trials */

@@ -49,8 +49,11 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
                   camera_kind_name(&plan->scene->camera));
         return false;
     }
-    return !vcm_strategies_of(plan->how.vcm_strategies).merge ||
-           choose_radius(plan, cancel, error);
+    vcm_strategies strategies = vcm_strategies_of(plan->how.vcm_strategies);
+    if (!strategies.merge)
+        return true;
+    return choose_radius(plan, cancel, error) &&
+           (strategies.end_here || vcm_keep_density(plan, cancel, error));
 }
 
 /* ---- A pass ---- */

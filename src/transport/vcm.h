@@ -63,6 +63,7 @@ typedef struct light_vertex {
     partial_weights weights;
     scattering_counts before; /**< what scattered between lamp and here */
     int light;                /**< that it left */
+    float alone;              /**< see vcm_weights.h */
 } light_vertex;
 
 /** @brief The light subpaths of a pass. */
@@ -99,6 +100,13 @@ static inline transform vcm_motion_to_map(const vcm_pass *pass, const surface_hi
     return scene_motion_to(pass->scene, hit, time_of_slice(slice, pass->n_slices));
 }
 
+/** @brief Traces a few light subpaths and keeps in plan->density how close they lie. */
+bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **error);
+
+/** @brief Of a vertex at p that chance has led to: one over one more than the light
+ * vertices that merging finds there. @param hits scratch */
+float vcm_alone_at(const vcm_pass *pass, vec3 p, photon_hits *hits);
+
 /** @brief The strategies of a vcm_choice. */
 vcm_strategies vcm_strategies_of(int choice);
 
@@ -122,8 +130,9 @@ static inline size_t vcm_payload_vertex(spectrum payload)
 /** @brief A surface point of a subpath, with what scatters there. */
 typedef struct vcm_vertex {
     const surface_hit *hit;
-    bsdf bsdf; /**< of all lanes: evaluates, and tells densities */
-    vec3 wo;   /**< to where the subpath came from */
+    bsdf bsdf;   /**< of all lanes: evaluates, and tells densities */
+    vec3 wo;     /**< to where the subpath came from */
+    float alone; /**< see vcm_weights.h */
 } vcm_vertex;
 
 /** @brief The two classes of lobes that are evaluated, apart, for the layers. */

@@ -126,7 +126,7 @@ static float lamp_weight(const camera_walk *c, const vcm_vertex *v, int index,
     float reverse = vcm_pdf_reverse(v, to_light->wi, TRANSPORT_RADIANCE);
     float traced =
         weights_connected(&c->walk.weights, light_start_traced_over_connected(&start),
-                          reverse, &c->pass->ratios);
+                          reverse, &c->pass->ratios, v->alone);
     return 1.0f / (met + 1.0f + traced);
 }
 
@@ -167,10 +167,11 @@ static float pair_weight(const camera_walk *c, const vertex_pair *p)
     float lamp_area = fabsf(dot3(d, p->lamp->hit->n_geom)) / p->distance2;
     float lamp_side = weights_connected(
         &p->light->weights, lamp_area * vcm_pdf(p->eye, d, TRANSPORT_RADIANCE),
-        vcm_pdf_reverse(p->lamp, -d, TRANSPORT_IMPORTANCE), &c->pass->ratios);
+        vcm_pdf_reverse(p->lamp, -d, TRANSPORT_IMPORTANCE), &c->pass->ratios,
+        p->lamp->alone);
     float eye_side = weights_connected(
         &c->walk.weights, eye_area * vcm_pdf(p->lamp, -d, TRANSPORT_IMPORTANCE),
-        vcm_pdf_reverse(p->eye, d, TRANSPORT_RADIANCE), &c->pass->ratios);
+        vcm_pdf_reverse(p->eye, d, TRANSPORT_RADIANCE), &c->pass->ratios, p->eye->alone);
     return 1.0f / (lamp_side + 1.0f + eye_side);
 }
 
@@ -205,7 +206,7 @@ static void connect_to_vertex(camera_walk *c, const vcm_vertex *v, const light_v
     if (!vcm_length_allowed(pass, c->walk.counts.n + l->before.n + 2) ||
         !(distance2 > 0.0f))
         return;
-    vcm_vertex lamp = {.hit = &l->hit, .wo = l->wi};
+    vcm_vertex lamp = {.hit = &l->hit, .wo = l->wi, .alone = l->alone};
     scene_bsdf(pass->scene, &l->hit, &pass->w, ALL_LANES, &options, &lamp.bsdf);
     const vertex_pair p = {v, &lamp, l, to / sqrtf(distance2), distance2};
     add_pair(c, &p);
@@ -225,10 +226,11 @@ static float merge_weight(const camera_walk *c, const vcm_vertex *v,
 {
     if (c->pass->strategies.end_here)
         return 1.0f;
-    float lamp_side =
-        weights_merged(&l->weights, vcm_pdf(v, wi, TRANSPORT_RADIANCE), &c->pass->ratios);
-    float eye_side = weights_merged(
-        &c->walk.weights, vcm_pdf_reverse(v, wi, TRANSPORT_RADIANCE), &c->pass->ratios);
+    float lamp_side = weights_merged(&l->weights, vcm_pdf(v, wi, TRANSPORT_RADIANCE),
+                                     &c->pass->ratios, v->alone);
+    float eye_side =
+        weights_merged(&c->walk.weights, vcm_pdf_reverse(v, wi, TRANSPORT_RADIANCE),
+                       &c->pass->ratios, v->alone);
     return 1.0f / (lamp_side + 1.0f + eye_side);
 }
 
@@ -403,6 +405,9 @@ static void follow(camera_walk *c)
         if (!vcm_length_allowed(pass, walk->counts.n + 1) || !(cosine > 0.0f))
             return;
         weights_arrive(&walk->weights, length3_2(hit.p - walk->from), cosine);
+        v.alone = walk->mirrors_only
+                      ? 1.0f
+                      : vcm_alone_at(pass, hit.p, &c->scratch->estimate.hits);
         shade(c, &v);
         if (!go_on(c, &v))
             return;

@@ -24,6 +24,7 @@ typedef struct light_chunk {
     splat *splats;
     size_t n_vertices, vertex_capacity, n_splats, splat_capacity;
     uint64_t n_rays, n_shadow_rays, n_not_finite;
+    photon_hits hits; /* scratch */
     GError *error;
 } light_chunk;
 
@@ -67,6 +68,7 @@ static void keep(light_walk *l, const vcm_vertex *v)
         .weights = l->walk.weights,
         .before = l->walk.counts,
         .light = l->light,
+        .alone = v->alone,
     };
 }
 
@@ -129,7 +131,7 @@ static float weight_to_eye(const light_walk *l, const vcm_vertex *v,
     float reverse = vcm_pdf_reverse(v, eye->direction, TRANSPORT_IMPORTANCE);
     return 1.0f /
            (1.0f + weights_connected(&l->walk.weights, pdf_area * pass->camera_per_light,
-                                     reverse, &pass->ratios));
+                                     reverse, &pass->ratios, 1.0f));
 }
 
 static void connect_to_eye(light_walk *l, const vcm_vertex *v)
@@ -277,6 +279,7 @@ static void follow(light_walk *l)
         if (!(fabsf(dot3(v.wo, hit.n_geom)) > 0.0f))
             return;
         arrive(l, &hit);
+        v.alone = vcm_alone_at(pass, hit.p, &l->out->hits);
         land(l, &v);
         spectrum before = l->walk.carried;
         if (!vcm_length_allowed(pass, l->walk.counts.n + 2) ||
@@ -306,6 +309,7 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
             follow(&l);
         loop->pass->light.end[i] = out->n_vertices;
     }
+    photon_hits_clear(&out->hits);
 }
 
 /* Puts chunk c's vertices and splats behind those before it. */

@@ -66,7 +66,7 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
         weights_bounce_specular(&walk->weights, cosine);
     else
         weights_bounce(&walk->weights, cosine, vcm_pdf(v, next.wi, walk->mode),
-                       vcm_pdf_reverse(v, next.wi, walk->mode), &pass->ratios);
+                       vcm_pdf_reverse(v, next.wi, walk->mode), &pass->ratios, v->alone);
     walk->carried *= next.weight;
     walk->lane = next.lane;
     walk->mirrors_only &= (next.lobe & LOBE_SPECULAR) != 0;

@@ -51,11 +51,11 @@ void weights_arrive(partial_weights *w, float distance2, float cosine)
 }
 
 void weights_bounce(partial_weights *w, float cosine, float pdf, float pdf_reverse,
-                    const strategy_ratios *ratios)
+                    const strategy_ratios *ratios, float alone)
 {
     float scale = cosine / pdf;
-    w->vc = scale * (ratios->merge + w->vcm + pdf_reverse * w->vc);
-    w->vm = scale * (1.0f + w->vcm * ratios->connect + pdf_reverse * w->vm);
+    w->vc = scale * (ratios->merge * alone + w->vcm + pdf_reverse * w->vc);
+    w->vm = scale * (alone + w->vcm * ratios->connect + pdf_reverse * w->vm);
     w->vcm = 1.0f / pdf;
 }
 

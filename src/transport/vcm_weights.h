@@ -8,13 +8,21 @@
  *
  *   vcm_1 = (p0 connected / p0 traced) / p_1   vc_1 = g0 / (p0 p_1)      vm_1 = vc_1 / η
  *   vcm_i = 1 / p_i
- *   vc_i  = g_{i-1} / p_i (η + vcm_{i-1} + p'_{i-2} vc_{i-1})
- *   vm_i  = g_{i-1} / p_i (1 + vcm_{i-1} / η + p'_{i-2} vm_{i-1}),       η = π r² N
+ *   vc_i  = g_{i-1} / p_i (η a_{i-1} + vcm_{i-1} + p'_{i-2} vc_{i-1})
+ *   vm_i  = g_{i-1} / p_i (a_{i-1} + vcm_{i-1} / η + p'_{i-2} vm_{i-1}),     η = π r² N
  *
  * p: densities per area in the subpath's direction, p': per solid angle against it, g:
  * cos / d². At a mirror vcm is zero, and p and p' cancel. Cosines are those of the
  * geometric normals, for areas are (Veach 1997, §5.3). What roulette leaves out, it
  * leaves out of all strategies nearly alike, so it has no part in the weights.
+ *
+ * Merging counts as N samples by η, but the light vertices it finds at once all hang on
+ * the one camera subpath that led there: however many they are, they find no more than it
+ * does. So where K of them lie within reach, merging there counts as K / (1 + K) samples
+ * of the place instead of K: a = 1 / (1 + K). (For the variance of a merge is that of its
+ * photons plus that of its place. Correlation in these weights: Grittmann, Georgiev &
+ * Slusallek, "Correlation-Aware Multiple Importance Sampling for Bidirectional Rendering
+ * Algorithms", 2021.) The first place the eye sees is no matter of chance: there a = 1.
  */
 #pragma once
 
@@ -57,9 +65,9 @@ partial_weights weights_from_light(const light_start *start,
 void weights_arrive(partial_weights *w, float distance2, float cosine);
 
 /** @brief Goes on from a vertex under the geometric cosine, with the density pdf per
- * solid angle; the reverse is sampled with pdf_reverse. */
+ * solid angle; the reverse is sampled with pdf_reverse. @param alone a of that vertex */
 void weights_bounce(partial_weights *w, float cosine, float pdf, float pdf_reverse,
-                    const strategy_ratios *ratios);
+                    const strategy_ratios *ratios, float alone);
 
 /** @brief The same at a mirror. */
 void weights_bounce_specular(partial_weights *w, float cosine);
@@ -67,16 +75,17 @@ void weights_bounce_specular(partial_weights *w, float cosine);
 /** @brief One subpath's share of the sum when its end is connected: the other side makes
  * this end with density pdf_area, and goes on with pdf_reverse. */
 static inline float weights_connected(const partial_weights *w, float pdf_area,
-                                      float pdf_reverse, const strategy_ratios *ratios)
+                                      float pdf_reverse, const strategy_ratios *ratios,
+                                      float alone)
 {
-    return pdf_area * (ratios->merge + w->vcm + pdf_reverse * w->vc);
+    return pdf_area * (ratios->merge * alone + w->vcm + pdf_reverse * w->vc);
 }
 
 /** @brief The same when it is merged. */
 static inline float weights_merged(const partial_weights *w, float pdf_reverse,
-                                   const strategy_ratios *ratios)
+                                   const strategy_ratios *ratios, float alone)
 {
-    return w->vcm * ratios->connect + pdf_reverse * w->vm;
+    return (w->vcm * ratios->connect + pdf_reverse * w->vm) / alone;
 }
 
 /** @brief The weight of a camera subpath that ran into a light, where w are those of its
