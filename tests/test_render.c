@@ -265,8 +265,10 @@ static const noise_case noise_cases[] = {
      "passes=16 spp=1 photons=3000 radius=0.2 alpha=1",
      "passes=256 spp=1 photons=3000 radius=0.2 alpha=1"},
     {"caustic", ROOM_LAMP("") ROOM_WALLS GLASS_BALL,
-     "integrator=auto passes=16 spp=1 photons=2000 radius=0.1 alpha=1",
-     "integrator=auto passes=256 spp=1 photons=2000 radius=0.1 alpha=1"},
+     "integrator=auto passes=16 spp=1 caustic_photons=2000 radius=0.1 alpha=1",
+     "integrator=auto passes=256 spp=1 caustic_photons=2000 radius=0.1 alpha=1"},
+    {"rare", ROOM_LAMP("") ROOM_WALLS GLASS_BALL, "integrator=path passes=16 spp=1",
+     "integrator=path passes=1024 spp=4"},
 };
 
 static void test_noise_is_honest(gconstpointer data)

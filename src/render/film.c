@@ -267,6 +267,20 @@ static double mean_below(const film *f, double ceiling)
     return sum / (double)n_pixels(f);
 }
 
+/* Mean over a pixel and its neighbours: where light is rare, what a pixel says of its own
+   brightness is as uncertain as its noise, and the ratio of the two says nothing. */
+static double mean_around(const film *f, size_t i)
+{
+    int width = f->width, x = (int)(i % (size_t)width), y = (int)(i / (size_t)width);
+    double sum = 0.0;
+    int n = 0;
+    for (int v = MAX(y - 1, 0); v <= MIN(y + 1, f->height - 1); v++) {
+        for (int u = MAX(x - 1, 0); u <= MIN(x + 1, width - 1); u++, n++)
+            sum += pixel_mean(&f->pixels[(size_t)v * (size_t)width + (size_t)u]);
+    }
+    return sum / n;
+}
+
 double film_noise(const film *f)
 {
     if (f->n_passes < 2)
@@ -274,7 +288,7 @@ double film_noise(const film *f)
     double dark = DARK_SHARE * mean_below(f, mean_below(f, (double)INFINITY));
     double sum = 0.0;
     for (size_t i = 0; i < n_pixels(f); i++) {
-        double y = pixel_mean(&f->pixels[i]);
+        double y = mean_around(f, i);
         double variance = pixel_variance(&f->pixels[i], f->n_passes);
         sum += variance > 0.0 ? variance / (y * y + dark * dark) : 0.0;
     }
