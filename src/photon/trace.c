@@ -188,7 +188,8 @@ static void land(photon_path *path, const surface_hit *hit, const bsdf *b)
     if (class_here(path) != path->task->photon_class)
         return;
     bool delta = path->from_delta && path->specular_only && path->n_diffuse == 0;
-    if ((b->lobes & LOBE_DIFFUSE) || (delta && (b->lobes & LOBE_GLOSSY)))
+    unsigned lobes = scene_lobes_around(path->task->scene, hit, b);
+    if ((lobes & LOBE_DIFFUSE) || (delta && (lobes & LOBE_GLOSSY)))
         store(path, hit, delta ? PHOTON_FROM_DELTA : 0);
 }
 

@@ -449,6 +449,11 @@ float scene_imaging_ratio(const scene *s)
     return s->film.iso / 100.0f * (s->camera.shutter_close - s->camera.shutter_open);
 }
 
+unsigned scene_lobes_around(const scene *s, const surface_hit *hit, const bsdf *b)
+{
+    return b->lobes | material_possible_lobes(s->materials->pdata[hit->material]);
+}
+
 bool scene_bsdf(const scene *s, const surface_hit *hit, const wavelengths *w, int lane,
                 const bsdf_options *options, bsdf *out)
 {

@@ -251,6 +251,9 @@ spectrum scene_emitted(const scene *s, const surface_hit *hit, vec3 wo,
                        const wavelengths *w);
 /** @brief Radiance of all environments arriving from direction d. */
 spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w);
+/** @brief Lobe classes and sides of the surface at the hit or beside it: a mixture is one
+ * material here and another a hair away, where the eye may gather what landed here. */
+unsigned scene_lobes_around(const scene *s, const surface_hit *hit, const bsdf *b);
 /** @brief The bsdf at a hit. @return false if the hit has no material (an interface). */
 bool scene_bsdf(const scene *s, const surface_hit *hit, const wavelengths *w, int lane,
                 const bsdf_options *options, bsdf *out);

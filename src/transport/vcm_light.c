@@ -252,7 +252,8 @@ static bool survives(light_walk *l, spectrum before)
 
 static void land(light_walk *l, const vcm_vertex *v)
 {
-    if (!(v->bsdf.lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)) ||
+    unsigned lobes = scene_lobes_around(l->pass->scene, v->hit, &v->bsdf);
+    if (!(lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)) ||
         !vcm_length_allowed(l->pass, l->walk.counts.n + 1))
         return;
     if (l->pass->strategies.connect || l->pass->strategies.merge)

@@ -96,6 +96,15 @@ static const place places[] = {
              "1 0.03] \"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 3 6 2 3 7 "
              "6 0 7 3 0 4 7 1 6 5 1 2 6]\n"),
      " radius=0.12"},
+    /* A photon may meet the mirror where the eye, a hair beside it, meets the paint. */
+    {"mixture",
+     IN_ROOM("MakeNamedMaterial \"mirror\" \"string type\" \"conductor\" \"rgb "
+             "reflectance\" [0.8 0.8 0.8] MakeNamedMaterial \"paint\" \"string type\" "
+             "\"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8] Material \"mix\" \"string "
+             "materials\" [\"mirror\" \"paint\"] Shape \"trianglemesh\" \"point3 P\" "
+             "[-1.6 1 0.01 1.6 1 0.01 1.6 1 1.7 -1.6 1 1.7] \"integer indices\" "
+             "[0 1 2 0 2 3]\n"),
+     ""},
     {"motion",
      IN_ROOM("AttributeBegin Translate 0.2 0 0.5 ActiveTransform EndTime "
              "Translate 0.8 0.3 0.4 Rotate 60 1 2 3 ActiveTransform All "
