@@ -291,7 +291,7 @@ static void test_uv_and_tangents(void)
 
 static void leave_and_expect_nothing(const accel *a, sampler *random, const ray *r)
 {
-    surface_hit hit;
+    surface_hit hit = {0};
     if (!accel_intersect(a, r, &hit))
         return;
     for (int i = 0; i < 8; i++) {
@@ -354,7 +354,7 @@ static void test_offset_rays_leave_spheres(void)
         for (uint32_t n = 0; n < 3000; n++) {
             sampler random = sampler_make(71, n);
             ray r = random_ray(&random, &at.to_world);
-            surface_hit hit; /* from outside only: the normal points outward */
+            surface_hit hit = {0}; /* from outside only: the normal points outward */
             if (accel_intersect(a, &r, &hit) && dot3(hit.n_geom, r.direction) < 0)
                 leave_and_expect_nothing(a, &random, &r);
         }

@@ -114,7 +114,7 @@ static void test_patch_is_where_it_is(void)
         vec3 p = transform_point(&at.to_world, twisted_point(uv.x, uv.y));
         vec3 d = warp_sphere(sampler_2d(&random));
         ray r = {p - 5.0f * d, d, INFINITY, 0, {{NULL}}};
-        surface_hit hit;
+        surface_hit hit = {0};
         g_assert_true(accel_intersect(a, &r, &hit));
         g_assert_cmpfloat(hit.t, <, 5.0f + 1e-4f);
         vec3 again = transform_point(&at.to_world, twisted_point(hit.uv.x, hit.uv.y));
@@ -398,7 +398,7 @@ static void test_bent_tube(void)
                 continue;
             vec3 target = c + radius * n;
             ray r = {target - 4.0f * d, d, INFINITY, 0, {{NULL}}};
-            surface_hit hit;
+            surface_hit hit = {0};
             g_assert_true(accel_intersect(a, &r, &hit));
             g_assert_cmpfloat(hit.t, <, 4.0f + 1e-4f);
             vec3 axis = bent_point(hit.uv.x, &tangent), off = hit.p - axis;
