@@ -81,72 +81,22 @@ json_value gltf_extension(const json_value *v, const char *name, json_value *ext
 
 /* ---- The scene graph ---- */
 
-static transform rotation_of(const double q[4])
-{
-    double x = q[0], y = q[1], z = q[2], w = q[3];
-    const double m[4][4] = {
-        {1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0},
-        {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0},
-        {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), 0},
-        {0, 0, 0, 1},
-    };
-    transform out;
-    return transform_from_matrix(m, &out) ? out : transform_identity();
-}
-
-/* Columns come first in the file. */
-static bool matrix_of(const double columns[16], transform *out)
-{
-    double m[4][4];
-    for (int i = 0; i < 4; i++)
-        for (int j = 0; j < 4; j++)
-            m[i][j] = columns[4 * j + i];
-    return transform_from_matrix((const double(*)[4])m, out);
-}
-
-bool gltf_transform(const double t[3], const double q[4], const double s[3],
-                    transform *out)
-{
-    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    double unit[4] = {q[0], q[1], q[2], q[3]};
-    for (int i = 0; i < 4 && length > 0.0; i++)
-        unit[i] /= length;
-    if (!(fabs(s[0] * s[1] * s[2]) > 0.0))
-        return false;
-    transform move = transform_translate(t[0], t[1], t[2]), turn = rotation_of(unit);
-    transform scale = transform_scale(s[0], s[1], s[2]);
-    *out = transform_multiply(&move, &turn);
-    *out = transform_multiply(out, &scale);
-    return true;
-}
-
-static bool node_transform(const json_value *node, transform *out)
-{
-    double columns[16], t[3] = {0}, s[3] = {1.0, 1.0, 1.0}, q[4] = {0, 0, 0, 1.0};
-    if (json_numbers(node, "matrix", columns, 16))
-        return matrix_of(columns, out);
-    json_numbers(node, "translation", t, 3);
-    json_numbers(node, "rotation", q, 4);
-    json_numbers(node, "scale", s, 3);
-    return gltf_transform(t, q, s, out);
-}
-
 static void add_node(gltf *g, const json_value *nodes, guint index,
-                     const transform *parent);
+                     const transform *parent, unsigned depth);
 
 static void add_children(gltf *g, const json_value *nodes, const json_value *list,
-                         const transform *to_world)
+                         const transform *to_world, unsigned depth)
 {
     guint n = json_length(list), n_nodes = json_length(nodes);
     for (guint i = 0; i < n && !gltf_failed(g); i++) {
         gint64 index = json_whole_at(list, i, (gint64)n_nodes - 1);
         if (index >= 0)
-            add_node(g, nodes, (guint)index, to_world);
+            add_node(g, nodes, (guint)index, to_world, depth);
     }
 }
 
 static void add_node(gltf *g, const json_value *nodes, guint index,
-                     const transform *parent)
+                     const transform *parent, unsigned depth)
 {
     json_value node = json_element(nodes, index);
     transform own, to_world;
@@ -154,8 +104,12 @@ static void add_node(gltf *g, const json_value *nodes, guint index,
         json_fail(&node, "the node is met twice: nodes must form a tree");
         return;
     }
+    if (depth > GLTF_DEEPEST) {
+        json_fail(&node, "expected nodes in a tree of at most %d levels", GLTF_DEEPEST);
+        return;
+    }
     g->visited[index] = true;
-    if (!node_transform(&node, &own)) {
+    if (!gltf_node_transform(&node, &own)) {
         if (!gltf_failed(g))
             gltf_note(g, LOG_WARNING, "a node scaled to nothing is left out");
         return;
@@ -166,27 +120,16 @@ static void add_node(gltf *g, const json_value *nodes, guint index,
     gltf_add_camera(g, &node, &to_world);
     json_value children = json_member(&node, "children");
     if (!gltf_failed(g))
-        add_children(g, nodes, &children, &to_world);
+        add_children(g, nodes, &children, &to_world, depth + 1);
 }
 
 /* Nodes that are nobody's child: what to show where the file names no scene. */
 static void add_roots(gltf *g, const json_value *nodes)
 {
-    guint n = json_length(nodes);
-    g_autofree bool *is_child = g_new0(bool, n + 1);
-    for (guint i = 0; i < n; i++) {
-        json_value node = json_element(nodes, i);
-        json_value children = json_member(&node, "children");
-        for (guint k = 0; k < json_length(&children); k++) {
-            gint64 index = json_whole_at(&children, k, (gint64)n - 1);
-            if (index >= 0)
-                is_child[index] = true;
-        }
-    }
     transform identity = transform_identity();
-    for (guint i = 0; i < n && !gltf_failed(g); i++)
-        if (!is_child[i])
-            add_node(g, nodes, i, &identity);
+    for (guint i = 0; i < g->n_nodes && !gltf_failed(g); i++)
+        if (g->parents[i] == NO_INDEX)
+            add_node(g, nodes, i, &identity, 0);
 }
 
 static void add_scene(gltf *g)
@@ -203,7 +146,7 @@ static void add_scene(gltf *g)
     json_value list = json_member(&of, "nodes");
     transform identity = transform_identity();
     if (!gltf_failed(g))
-        add_children(g, &nodes, &list, &identity);
+        add_children(g, &nodes, &list, &identity, 0);
 }
 
 /* ---- What the file is ---- */
@@ -287,6 +230,7 @@ static void read_document(gltf *g)
     if (gltf_failed(g))
         return;
     make_room(g);
+    gltf_find_parents(g);
     gltf_survey(g);
     note_extensions(g);
     note_animations(g);
@@ -357,6 +301,7 @@ static void clear(gltf *g)
     g_free(g->materials);
     g_free(g->meshes);
     g_free(g->visited);
+    g_free(g->parents);
     g_clear_pointer(&g->binary, g_bytes_unref);
     g_hash_table_unref(g->notes);
     g_free(g->directory);

@@ -3,7 +3,9 @@
  *
  *   gltf.c          .gltf and .glb, extensions, the scene graph
  *   gltf_buffer.c   buffers, views and accessors as arrays of numbers
+ *   gltf_node.c     where nodes stand
  *   gltf_mesh.c     primitives as meshes
+ *   gltf_pose.c     morph targets and skins
  *   gltf_instance.c meshes where nodes put them, once or many times
  *   gltf_material.c materials, gltf_texture.c their textures
  *   gltf_light.c    lights and cameras
@@ -19,6 +21,8 @@
 
 /** @brief Largest index or count that a file may name. */
 #define GLTF_MOST G_GINT64_CONSTANT(0x7fffffff)
+/** @brief Nodes that may hang on each other. */
+#define GLTF_DEEPEST 1000
 
 /** @brief What a primitive needs to know of its material. */
 typedef struct gltf_material_info {
@@ -51,6 +55,8 @@ typedef struct gltf {
     gltf_material_info *materials; /**< one per material, and the default one */
     guint n_materials;
     bool *visited; /**< per node */
+    int *parents;  /**< per node; NO_INDEX: a root */
+    guint n_nodes;
     gltf_mesh_info *meshes;
     guint n_meshes;
     GHashTable *notes; /**< texts given already */
@@ -96,19 +102,30 @@ unsigned gltf_components(gltf *g, gint64 accessor);
 /** @brief gltf_read_floats of unsigned integers, one each. */
 uint32_t *gltf_read_indices(gltf *g, gint64 accessor, size_t *count);
 
-/* ---- the others ---- */
+/* ---- gltf_node.c ---- */
 
-/** @brief What a node's transform is, of "matrix" or "translation", "rotation" and
- * "scale"; false if it flattens space. */
+/** @brief A move times a turn (a quaternion of any length) times a scale; false if it
+ * flattens space. */
 bool gltf_transform(const double t[3], const double q[4], const double s[3],
                     transform *out);
+/** @brief The same of a node, relative to its parent, by "matrix" or "translation",
+ * "rotation" and "scale". */
+bool gltf_node_transform(const json_value *node, transform *out);
+/** @brief Fills g->parents. */
+void gltf_find_parents(gltf *g);
+/** @brief Node to world, row by row. @return false with an error noted */
+bool gltf_node_matrix(gltf *g, guint node, double out[4][4]);
+
+/* ---- the others ---- */
+
+typedef struct gltf_pose gltf_pose;
 /** @brief Which primitives of a mesh are meant: those that shine can not be part of an
  * object. */
 typedef enum gltf_part { GLTF_ALL, GLTF_SHINING, GLTF_DARK } gltf_part;
-/** @brief Adds primitives of a mesh to the scene, or the object that is open.
- *  @return how many there are of that part */
-guint gltf_add_primitives(gltf *g, const json_value *mesh, gltf_part part,
-                          const transform *to_world);
+/** @brief Adds primitives of a mesh, bent by a pose, to the scene, or the object that is
+ * open. @return how many there are of that part */
+guint gltf_add_primitives(gltf *g, const json_value *mesh, const gltf_pose *pose,
+                          gltf_part part, const transform *to_world);
 /** @brief Counts how often each mesh is shown, and which materials have colours. */
 void gltf_survey(gltf *g);
 /** @brief Adds the mesh of a node to the scene. */

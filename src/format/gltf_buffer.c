@@ -153,7 +153,9 @@ static unsigned components_of(const json_value *accessor)
     for (unsigned i = 0; type && i < G_N_ELEMENTS(names); i++)
         if (strcmp(type, names[i]) == 0)
             return i + 1;
-    json_fail(accessor, "expected \"type\" SCALAR, VEC2, VEC3 or VEC4, found %s",
+    if (type && strcmp(type, "MAT4") == 0)
+        return 16;
+    json_fail(accessor, "expected \"type\" SCALAR, VEC2, VEC3, VEC4 or MAT4, found %s",
               type ? type : "none");
     return 1;
 }

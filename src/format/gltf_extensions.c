@@ -42,14 +42,31 @@ const gltf_extension_row *gltf_find_extension(const char *name)
     return NULL;
 }
 
-void gltf_append_features(GString *out)
+/* What the standard itself has that is not plain. */
+static const gltf_extension_row core[] = {
+    {"skins", GLTF_RENDERED,
+     "in the pose of the joints at rest; copies of one by "
+     "EXT_mesh_gpu_instancing are left out"},
+    {"morph targets", GLTF_RENDERED, "by the weights of the node, else of the mesh"},
+    {"animations", GLTF_LEFT_OUT, "the scene stands as it begins"},
+    {"points and lines", GLTF_LEFT_OUT, ""},
+};
+
+static void append_rows(GString *out, const gltf_extension_row *row, size_t n)
 {
     static const char *const words[] = {[GLTF_RENDERED] = "rendered",
                                         [GLTF_APPROXIMATED] = "approximated",
                                         [GLTF_LEFT_OUT] = "left out, with a note",
                                         [GLTF_REFUSED] = "refused"};
+    const char *quote = row == core ? "" : "`";
+    for (size_t i = 0; i < n; i++)
+        g_string_append_printf(out, "| %s%s%s | %s | %s |\n", quote, row[i].name, quote,
+                               words[row[i].support], row[i].note);
+}
+
+void gltf_append_features(GString *out)
+{
     g_string_append(out, "\n| glTF 2.0 | | |\n|---|---|---|\n");
-    for (size_t i = 0; i < G_N_ELEMENTS(rows); i++)
-        g_string_append_printf(out, "| `%s` | %s | %s |\n", rows[i].name,
-                               words[rows[i].support], rows[i].note);
+    append_rows(out, core, G_N_ELEMENTS(core));
+    append_rows(out, rows, G_N_ELEMENTS(rows));
 }

@@ -2,9 +2,9 @@
  * Meshes where glTF's nodes put them. One that is shown once is put into the world as it
  * is. One that several nodes show, or that EXT_mesh_gpu_instancing repeats, becomes an
  * object with an instance for each place; what shines of it is copied, since each copy is
- * a lamp of its own.
+ * a lamp of its own, and so is what a node poses in a way of its own.
  */
-#include "format/gltf.h"
+#include "format/gltf_pose.h"
 
 #include "base/memory.h"
 
@@ -17,6 +17,8 @@ static void count_node(gltf *g, const json_value *node, bool *shown)
     json_value of = gltf_refer(g, node, "mesh", "meshes", &array, &index);
     json_value copies = gltf_extension(node, "EXT_mesh_gpu_instancing", &extensions);
     if (!json_exists(&of))
+        return;
+    if (gltf_pose_is_own(node))
         return;
     g->meshes[index].repeats |= shown[index] || json_exists(&copies);
     shown[index] = true;
@@ -57,7 +59,8 @@ void gltf_survey(gltf *g)
 /* ---- Places ---- */
 
 /* Makes the object at the first call, if there is anything to put into one. */
-static void make_object(gltf *g, const json_value *of, gltf_mesh_info *info)
+static void make_object(gltf *g, const json_value *of, const gltf_pose *pose,
+                        gltf_mesh_info *info)
 {
     const transform identity = transform_identity();
     const source_place place = {g_intern_string(g->path), 0, 0};
@@ -70,24 +73,33 @@ static void make_object(gltf *g, const json_value *of, gltf_mesh_info *info)
         gltf_take_error(g, of, error);
         return;
     }
-    if (gltf_add_primitives(g, of, GLTF_DARK, &identity) > 0)
+    if (gltf_add_primitives(g, of, pose, GLTF_DARK, &identity) > 0)
         info->object = object;
     scene_object_end(g->scene);
 }
 
-static void place_mesh(gltf *g, const json_value *of, gltf_mesh_info *info,
-                       const transform *to_world)
+/* What nodes show, and how. */
+typedef struct shown_mesh {
+    json_value of;
+    gltf_mesh_info *info;
+    gltf_pose pose;
+} shown_mesh;
+
+static void place_mesh(gltf *g, const shown_mesh *shown, const transform *to_world)
 {
+    const json_value *of = &shown->of;
+    const gltf_pose *pose = &shown->pose;
+    gltf_mesh_info *info = shown->info;
     const source_place place = {g_intern_string(g->path), 0, 0};
     const motion still = motion_still(to_world);
     GError *error = NULL;
-    if (!info->repeats) {
-        gltf_add_primitives(g, of, GLTF_ALL, to_world);
+    if (!info->repeats || pose->is_own) {
+        gltf_add_primitives(g, of, pose, GLTF_ALL, to_world);
         return;
     }
-    make_object(g, of, info);
+    make_object(g, of, pose, info);
     if (!gltf_failed(g))
-        gltf_add_primitives(g, of, GLTF_SHINING, to_world);
+        gltf_add_primitives(g, of, pose, GLTF_SHINING, to_world);
     if (!gltf_failed(g) && info->object != NO_INDEX &&
         !scene_add_instance(g->scene, info->object, &still, place, &error))
         gltf_take_error(g, of, error);
@@ -111,8 +123,8 @@ static bool read_attribute(gltf *g, const json_value *attributes, const char *na
     return !gltf_failed(g);
 }
 
-static void place_copies(gltf *g, const json_value *of, gltf_mesh_info *info,
-                         const json_value *attributes, const transform *to_world)
+static void place_copies(gltf *g, const shown_mesh *shown, const json_value *attributes,
+                         const transform *to_world)
 {
     float *t = NULL, *q = NULL, *s = NULL;
     size_t n = 0;
@@ -131,7 +143,7 @@ static void place_copies(gltf *g, const json_value *of, gltf_mesh_info *info,
         if (!gltf_transform(move, turn, scale, &own))
             continue;
         own = transform_multiply(to_world, &own);
-        place_mesh(g, of, info, &own);
+        place_mesh(g, shown, &own);
     }
     big_free(t);
     big_free(q);
@@ -142,13 +154,19 @@ void gltf_add_mesh(gltf *g, const json_value *node, const transform *to_world)
 {
     json_value array, extensions;
     gint64 index;
-    json_value of = gltf_refer(g, node, "mesh", "meshes", &array, &index);
-    if (!json_exists(&of))
+    shown_mesh shown = {.of = gltf_refer(g, node, "mesh", "meshes", &array, &index)};
+    if (!json_exists(&shown.of))
         return;
     json_value copies = gltf_extension(node, "EXT_mesh_gpu_instancing", &extensions);
     json_value attributes = json_member(&copies, "attributes");
-    if (json_exists(&copies))
-        place_copies(g, &of, &g->meshes[index], &attributes, to_world);
-    else
-        place_mesh(g, &of, &g->meshes[index], to_world);
+    shown.info = &g->meshes[index];
+    bool done = gltf_pose_read(g, node, &shown.of, &shown.pose);
+    if (json_exists(&copies) && shown.pose.joints)
+        gltf_note(g, LOG_WARNING,
+                  "a mesh with a skin is shown once: copies are left out");
+    if (done && json_exists(&copies) && !shown.pose.joints)
+        place_copies(g, &shown, &attributes, to_world);
+    else if (done)
+        place_mesh(g, &shown, to_world);
+    gltf_pose_clear(&shown.pose);
 }

@@ -5,7 +5,7 @@
  * glTF's texture coordinates go down from the upper left corner, ours up from the lower
  * left one: v becomes 1 - v.
  */
-#include "format/gltf.h"
+#include "format/gltf_pose.h"
 
 #include "base/memory.h"
 #include "scene/mesh_closed.h"
@@ -171,23 +171,10 @@ static bool read_triangles(gltf *g, const json_value *primitive, gint64 mode, me
     return m->indices && check_indices(primitive, m);
 }
 
-static void note_left_out(gltf *g, const json_value *primitive,
-                          const json_value *attributes)
-{
-    json_value joints = json_member(attributes, "JOINTS_0");
-    if (json_exists(&joints))
-        gltf_note(g, LOG_WARNING,
-                  "skins are left out: the mesh stands as it was modelled");
-    json_value targets = json_member(primitive, "targets");
-    if (json_exists(&targets))
-        gltf_note(g, LOG_WARNING, "morph targets are left out");
-}
-
 static bool read_primitive(gltf *g, const json_value *primitive, mesh *m)
 {
     json_value attributes = json_member(primitive, "attributes");
     gint64 mode = json_whole(primitive, "mode", 6);
-    note_left_out(g, primitive, &attributes);
     return !gltf_failed(g) && read_positions(g, &attributes, m) &&
            read_normals(g, &attributes, m) && read_tangents(g, &attributes, m) &&
            read_uvs(g, &attributes, "TEXCOORD_0", m, &m->uvs) &&
@@ -238,12 +225,14 @@ static void add_shape(gltf *g, const json_value *primitive, mesh *m,
 }
 
 static void add_primitive(gltf *g, const json_value *primitive, gint64 number,
-                          const gltf_material_info *info, const transform *to_world)
+                          const gltf_pose *pose, const transform *to_world)
 {
     mesh m = {0};
+    const gltf_material_info *info = gltf_material(g, number);
     if (read_primitive(g, primitive, &m)) {
-        bool solid = is_solid(g, primitive, &m, info);
-        shape_place at = {.to_world = *to_world,
+        bool in_world = gltf_pose_apply(g, primitive, pose, &m);
+        bool solid = !gltf_failed(g) && is_solid(g, primitive, &m, info);
+        shape_place at = {.to_world = in_world ? transform_identity() : *to_world,
                           .material = gltf_material_index(g, number, solid),
                           .area_light = info->area_light};
         if (!gltf_failed(g))
@@ -266,8 +255,8 @@ static bool has_surface(gltf *g, const json_value *primitive)
     return false;
 }
 
-guint gltf_add_primitives(gltf *g, const json_value *of, gltf_part part,
-                          const transform *to_world)
+guint gltf_add_primitives(gltf *g, const json_value *of, const gltf_pose *pose,
+                          gltf_part part, const transform *to_world)
 {
     json_value primitives = json_member(of, "primitives");
     guint n = json_length(&primitives), n_added = 0;
@@ -278,7 +267,7 @@ guint gltf_add_primitives(gltf *g, const json_value *of, gltf_part part,
         if (!info || !has_surface(g, &primitive) || gltf_failed(g))
             continue;
         if (part == GLTF_ALL || (part == GLTF_SHINING) == (info->area_light != NULL)) {
-            add_primitive(g, &primitive, number, info, to_world);
+            add_primitive(g, &primitive, number, pose, to_world);
             n_added++;
         }
     }

@@ -210,6 +210,15 @@ gint64 json_whole_at(const json_value *of, guint index, gint64 most)
     return v.node ? read_whole(&v, most) : -1;
 }
 
+double json_real_at(const json_value *of, guint index)
+{
+    json_value v = json_element(of, index);
+    double x = 0.0;
+    if (v.node)
+        read_number(&v, &x);
+    return x;
+}
+
 bool json_numbers(const json_value *of, const char *key, double *out, guint n)
 {
     json_value v = json_member(of, key);

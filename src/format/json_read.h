@@ -53,6 +53,8 @@ const char *json_text(const json_value *of, const char *key);
 gint64 json_whole(const json_value *of, const char *key, gint64 most);
 /** @brief The same of an array's element. */
 gint64 json_whole_at(const json_value *of, guint index, gint64 most);
+/** @brief A number of an array's element; 0 with an error. */
+double json_real_at(const json_value *of, guint index);
 /** @brief Fills n numbers. @return false, out untouched, if absent or wrong. */
 bool json_numbers(const json_value *of, const char *key, double *out, guint n);
 
