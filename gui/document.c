@@ -7,7 +7,7 @@ enum { SETTLE_MS = 300, MOST_RECENT = 8 };
 
 struct document {
     char *path;
-    GFileMonitor *monitor;
+    GHashTable *monitors; /* path -> GFileMonitor* */
     guint settle;
     void (*changed)(void *data);
     void *data;
@@ -32,14 +32,29 @@ static void file_changed(document *d, GFile *file, GFile *other, GFileMonitorEve
     d->settle = g_timeout_add(SETTLE_MS, settled, d);
 }
 
+static void stop_monitor(void *monitor)
+{
+    g_file_monitor_cancel(monitor);
+    g_object_unref(monitor);
+}
+
+/* A monitor that was cancelled tells nothing any more. */
 static void stop_watching(document *d)
 {
-    if (d->monitor) {
-        g_signal_handlers_disconnect_by_data(d->monitor, d);
-        g_file_monitor_cancel(d->monitor);
-    }
-    g_clear_object(&d->monitor);
+    g_hash_table_remove_all(d->monitors);
     g_clear_handle_id(&d->settle, g_source_remove);
+}
+
+static void watch(document *d, const char *path)
+{
+    if (g_hash_table_contains(d->monitors, path))
+        return;
+    g_autoptr(GFile) file = g_file_new_for_path(path);
+    GFileMonitor *monitor = g_file_monitor_file(file, G_FILE_MONITOR_NONE, NULL, NULL);
+    if (!monitor)
+        return;
+    g_signal_connect_swapped(monitor, "changed", G_CALLBACK(file_changed), d);
+    g_hash_table_insert(d->monitors, g_strdup(path), monitor);
 }
 
 document *document_new(void (*changed)(void *data), void *data)
@@ -47,6 +62,7 @@ document *document_new(void (*changed)(void *data), void *data)
     document *d = g_new0(document, 1);
     d->changed = changed;
     d->data = data;
+    d->monitors = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, stop_monitor);
     return d;
 }
 
@@ -55,19 +71,24 @@ void document_free(document *d)
     if (!d)
         return;
     stop_watching(d);
+    g_hash_table_unref(d->monitors);
     g_free(d->path);
     g_free(d);
 }
 
 void document_set_path(document *d, const char *path)
 {
-    g_autoptr(GFile) file = g_file_new_for_path(path);
+    g_autofree char *own = g_strdup(path);
     stop_watching(d);
     g_free(d->path);
-    d->path = g_strdup(path);
-    d->monitor = g_file_monitor_file(file, G_FILE_MONITOR_NONE, NULL, NULL);
-    if (d->monitor)
-        g_signal_connect_swapped(d->monitor, "changed", G_CALLBACK(file_changed), d);
+    d->path = g_steal_pointer(&own);
+    watch(d, d->path);
+}
+
+void document_watch(document *d, const char *const *paths)
+{
+    for (; *paths; paths++)
+        watch(d, *paths);
 }
 
 const char *document_path(const document *d)

@@ -1,5 +1,6 @@
 /*
- * The scene file that is open: watched for changes, remembered among the recent ones.
+ * The scene file that is open: it and the files it is made of are watched for changes; it
+ * is remembered among the recent ones.
  */
 #pragma once
 
@@ -8,11 +9,13 @@
 
 typedef struct document document;
 
-/** @brief changed: the file has been written, a moment ago. */
+/** @brief changed: one of the files has been written, a moment ago. */
 document *document_new(void (*changed)(void *data), void *data);
 void document_free(document *d);
-/** @brief Another file: watches it. */
+/** @brief Another file, or the same anew: watches it and no other. */
 void document_set_path(document *d, const char *path);
+/** @brief Watches these too, be they there or not; NULL-terminated, absolute. */
+void document_watch(document *d, const char *const *paths);
 /** @brief NULL: none. */
 const char *document_path(const document *d);
 /** @brief Where its file lies; NULL: there is none. Owned by the caller. */

@@ -41,7 +41,8 @@ struct session {
     session_order wanted;
     NephRender *running;    /* to be cancelled */
     NephSettings *rendered; /* what the render was given; NULL: none yet */
-    session_news news;      /* owned fields */
+    session_news news;      /* owned fields; files: those of new_files, when told */
+    GPtrArray *new_files;   /* char* */
     GError *news_error;
     bool news_pending; /* an idle source is on its way */
 
@@ -66,6 +67,7 @@ static double seconds(void)
 
 static void clear_news(session_news *news)
 {
+    g_clear_pointer(&news->files, g_strfreev);
     g_clear_pointer(&news->loaded, held_scene_unref);
     g_clear_pointer(&news->picture, held_picture_unref);
 }
@@ -77,6 +79,10 @@ static gboolean tell_news(void *data)
     session *s = data;
     pthread_mutex_lock(&s->lock);
     session_news news = s->news;
+    if (s->new_files->len > 0) {
+        g_ptr_array_add(s->new_files, NULL);
+        news.files = (char **)g_ptr_array_steal(s->new_files, NULL);
+    }
     GError *error = g_steal_pointer(&s->news_error);
     s->news.loaded = NULL;
     s->news.picture = NULL;
@@ -93,6 +99,7 @@ static gboolean tell_news(void *data)
 static void free_session(session *s)
 {
     clear_news(&s->news);
+    g_ptr_array_unref(s->new_files);
     g_clear_error(&s->news_error);
     g_free(s->wanted.path);
     neph_settings_free(s->wanted.settings);
@@ -128,6 +135,16 @@ static void tell_state(session *s, session_state state)
 {
     pthread_mutex_lock(&s->lock);
     s->news.state = state;
+    send_news(s);
+    pthread_mutex_unlock(&s->lock);
+}
+
+/* At once, so that a file is watched while those after it are read. */
+static void tell_file(const char *path, void *data)
+{
+    session *s = data;
+    pthread_mutex_lock(&s->lock);
+    g_ptr_array_add(s->new_files, g_strdup(path));
     send_news(s);
     pthread_mutex_unlock(&s->lock);
 }
@@ -324,8 +341,9 @@ static void take_over(session *s)
 static void load(session *s, const char *path)
 {
     g_autoptr(GError) error = NULL;
+    const NephLoadOptions options = {.file = tell_file, .file_data = s};
     tell_state(s, SESSION_LOADING);
-    NephScene *scene = neph_scene_load(path, 0, NULL, NULL, &error);
+    NephScene *scene = neph_scene_load_with(path, &options, &error);
     if (!scene) {
         tell_state(s, s->scene ? SESSION_STOPPED : SESSION_EMPTY);
         tell_error(s, g_steal_pointer(&error), true);
@@ -415,6 +433,7 @@ session *session_new(session_listener listener, void *data)
     s->wanted.playing = true;
     s->wanted.keep = true;
     s->news.statistics.noise = (double)INFINITY;
+    s->new_files = g_ptr_array_new_with_free_func(g_free);
     pthread_mutex_init(&s->lock, NULL);
     pthread_cond_init(&s->wake, NULL);
     s->has_thread = pthread_create(&s->thread, NULL, work, s) == 0;

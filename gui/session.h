@@ -27,6 +27,7 @@ typedef enum session_state {
 /** @brief What has happened since the last news. Borrowed; ref what is to be kept. */
 typedef struct session_news {
     session_state state;
+    char **files;          /**< that reading has come to, NULL-terminated; else NULL */
     held_scene *loaded;    /**< a scene has been read; else NULL */
     held_picture *picture; /**< a newer one; else NULL */
     const GError *error;   /**< reading or rendering failed; else NULL */

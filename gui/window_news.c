@@ -124,6 +124,8 @@ void window_on_news(const session_news *news, void *data)
     w->state = news->state;
     w->statistics = news->statistics;
     w->fraction = news->fraction;
+    if (news->files)
+        document_watch(w->document, (const char *const *)news->files);
     if (news->loaded)
         scene_loaded(w, news->loaded);
     if (news->error)

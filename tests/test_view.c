@@ -106,6 +106,25 @@ static void test_reload(void)
     view_close(w);
 }
 
+/* So is one that the scene is made of, also one that was not there. */
+static void test_reload_included(void)
+{
+    g_autofree char *text = g_strconcat(view_scene, "Include \"part.pbrt\"\n", NULL);
+    g_autofree char *path = view_write("whole.pbrt", text);
+    window *w = open_scene(path);
+    view_wait(shows_error, w);
+    g_autofree char *part = view_write("part.pbrt", "Shape \"spere\"\n");
+    while (!has_text(error_page_widget(w->errors), "part.pbrt:1"))
+        g_main_context_iteration(NULL, TRUE);
+    g_assert_true(g_file_set_contents(part, "# nothing yet\n", -1, NULL));
+    view_wait(view_is_done, w);
+    view_wait(shows_main, w);
+    g_assert_null(neph_scene_files(w->scene->scene)[2]);
+    g_assert_true(g_file_set_contents(part, "Shape \"plymesh\"\n", -1, NULL));
+    view_wait(shows_error, w);
+    view_close(w);
+}
+
 /* ---- Settings ---- */
 
 /* Another value that is quick to render with. */
@@ -410,6 +429,7 @@ int main(int argc, char **argv)
     view_add_test("/view/open", test_open);
     view_add_test("/view/broken", test_broken);
     view_add_test("/view/reload", test_reload);
+    view_add_test("/view/reload-included", test_reload_included);
     view_add_test("/view/each-setting", test_each_setting);
     view_add_test("/view/unused-settings", test_unused_settings);
     view_add_test("/view/search", test_search);

@@ -106,6 +106,8 @@ typedef struct NephScene NephScene;
  * failure the error holds up to 20 messages, one a line. */
 NEPH_API NephScene *neph_scene_load(const char *path, unsigned threads, NephLogFunc log,
                                     void *log_data, GError **error);
+/** @brief Receives the absolute path of a file, on the thread that called the library. */
+typedef void (*NephFileFunc)(const char *path, void *data);
 /** @brief How to load a scene; zero-initialise. */
 typedef struct NephLoadOptions {
     unsigned threads; /**< for the acceleration structure; 0: one per processor */
@@ -115,6 +117,9 @@ typedef struct NephLoadOptions {
                          is a thin pane on closed meshes too, which are else solid */
     NephLogFunc log;  /**< may be NULL */
     void *log_data;
+    NephFileFunc file; /**< told each file just before it is first opened, be it there or
+                          not, also where reading then fails; may be NULL */
+    void *file_data;
 } NephLoadOptions;
 
 /** @brief The same by options. */
@@ -126,6 +131,10 @@ NEPH_API void neph_scene_free(NephScene *scene);
 NEPH_API NephSettings *neph_scene_settings(const NephScene *scene);
 NEPH_API void neph_scene_size(const NephScene *scene, int *width, int *height);
 NEPH_API bool neph_scene_resize(NephScene *scene, int width, int height, GError **error);
+/** @brief The files that the scene was read from, its own first: what it includes,
+ * meshes, images, spectra, buffers, materials; also those that it names, does without and
+ * that are missing. Absolute paths, each once, NULL-terminated; the scene's. */
+NEPH_API const char *const *neph_scene_files(const NephScene *scene);
 /** @brief The output name in the file, or NULL. Owned by the scene. */
 NEPH_API const char *neph_scene_output(const NephScene *scene);
 /** @brief Writes a scene of any format as pbrt-v4 text (out ends in .pbrt), its meshes as

@@ -79,6 +79,14 @@ static void put_materials(json *j, const summary *all)
     json_object_end(j);
 }
 
+static void put_files(json *j, const scene *s)
+{
+    json_array_begin(j, "files");
+    for (const char *const *path = scene_sources_paths(s->sources); *path; path++)
+        json_string(j, NULL, *path);
+    json_array_end(j);
+}
+
 static void put_camera(json *j, const scene *s, const summary *all)
 {
     const transform *to_world = &s->camera.to_world;
@@ -128,6 +136,7 @@ char *describe_as_json(const scene *s, const summary *all)
     json_count(&j, "peak", all->process_bytes);
     json_count(&j, "rendering", all->render_bytes);
     json_object_end(&j);
+    put_files(&j, s);
     put_list(&j, "warnings", all->warnings);
     json_object_end(&j);
     return json_finish(&j);

@@ -124,6 +124,17 @@ static void put_memory(GString *out, const summary *all)
                            geometry, peak, rendering);
 }
 
+static void put_files(GString *out, const scene *s)
+{
+    const char *const *paths = scene_sources_paths(s->sources);
+    guint n = g_strv_length((char **)paths);
+    g_string_append_printf(out, "read from        %u file%s\n", n, n == 1 ? "" : "s");
+    for (guint i = 0; i < MIN(n, MOST_NAMES); i++)
+        g_string_append_printf(out, "  %s\n", paths[i]);
+    if (n > MOST_NAMES)
+        g_string_append_printf(out, "  and %u more\n", n - MOST_NAMES);
+}
+
 static void put_warnings(GString *out, const summary *all)
 {
     for (guint i = 0; i < all->warnings->len; i++)
@@ -145,6 +156,7 @@ char *describe_as_text(const scene *s, const summary *all)
     if (out->len == before)
         g_string_append(out, "  none\n");
     put_memory(out, all);
+    put_files(out, s);
     put_warnings(out, all);
     return g_string_free(out, FALSE);
 }

@@ -23,7 +23,9 @@ NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options
     const load_options how = {.threads = options->threads,
                               .lenient = options->lenient,
                               .thin_glass = options->thin_glass,
-                              .log = &sink};
+                              .log = &sink,
+                              .source = options->file,
+                              .source_data = options->file_data};
     s->scene = format_load_with(path, &how, error);
     if (!s->scene)
         g_clear_pointer(&s, neph_scene_free);
@@ -43,8 +45,11 @@ bool neph_scene_convert_with(const char *in, const char *out,
 {
     NephScene to = {.log = options->log, .log_data = options->log_data};
     const log_sink sink = {forward_log, &to};
-    const load_options how = {
-        .lenient = options->lenient, .thin_glass = options->thin_glass, .log = &sink};
+    const load_options how = {.lenient = options->lenient,
+                              .thin_glass = options->thin_glass,
+                              .log = &sink,
+                              .source = options->file,
+                              .source_data = options->file_data};
     return format_convert(in, out, &how, error);
 }
 
@@ -85,6 +90,11 @@ bool neph_scene_resize(NephScene *s, int width, int height, GError **error)
     }
     scene_resize(s->scene, width, height);
     return true;
+}
+
+const char *const *neph_scene_files(const NephScene *s)
+{
+    return scene_sources_paths(s->scene->sources);
 }
 
 const char *neph_scene_output(const NephScene *s)

@@ -264,7 +264,7 @@ static bool read_file(assimp_reader *r, GError **error)
         error_at(error, place, "a file this short cannot hold what it claims to");
         return false;
     }
-    r->source = aiImportFile(r->path, STEPS);
+    r->source = assimp_import(r->scene->sources, r->path, STEPS);
     if (!r->source) {
         error_at(error, place, "%s", aiGetErrorString());
         return false;

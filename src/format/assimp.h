@@ -27,6 +27,10 @@ typedef struct assimp_reader {
     vec3 up;
 } assimp_reader;
 
+/** @brief aiImportFile; the files it opens go to sources, which may be NULL. */
+const struct aiScene *assimp_import(scene_sources *sources, const char *path,
+                                    unsigned steps);
+
 params *assimp_params(const assimp_reader *r);
 /** @brief A note, once however often it is met. */
 void assimp_note(assimp_reader *r, const char *format, ...) G_GNUC_PRINTF(2, 3);

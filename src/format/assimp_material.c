@@ -117,6 +117,7 @@ static char *texture_path(assimp_reader *r, const struct aiMaterial *m,
         return inside;
     g_autofree char *mended = g_strdelimit(g_strdup(name.data), "\\", '/');
     char *path = g_canonicalize_filename(mended, r->directory);
+    scene_sources_add(r->scene->sources, path);
     if (g_file_test(path, G_FILE_TEST_IS_REGULAR))
         return path;
     g_free(path);

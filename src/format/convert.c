@@ -474,6 +474,8 @@ bool format_convert(const char *in, const char *out, const load_options *options
     g_autoptr(scene) s = scene_new(options ? options->log : NULL);
     s->lenient = options && options->lenient;
     s->thin_glass = options && options->thin_glass;
+    if (options)
+        s->sources = scene_sources_new(options->source, options->source_data);
     s->listener = &listener;
     c.scene = s;
     bool done = output_possible(out, error) && format_read(s, in, error);

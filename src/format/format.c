@@ -73,6 +73,7 @@ static bool commit(scene *s, const char *path, unsigned threads, GError **error)
 bool format_read(scene *s, const char *path, GError **error)
 {
     const format_reader *reader = find_reader(path);
+    scene_sources_add(s->sources, path);
     if (reader)
         return reader->read(s, path, error);
     refuse(path, error);
@@ -84,6 +85,7 @@ scene *format_load_with(const char *path, const load_options *options, GError **
     g_autoptr(scene) s = scene_new(options->log);
     s->lenient = options->lenient;
     s->thin_glass = options->thin_glass;
+    s->sources = scene_sources_new(options->source, options->source_data);
     if (!format_read(s, path, error) || !commit(s, path, options->threads, error))
         return NULL;
     return g_steal_pointer(&s);

@@ -15,6 +15,8 @@ typedef struct load_options {
     bool lenient;        /**< see scene/lenient.h */
     bool thin_glass;     /**< see scene.h */
     const log_sink *log; /**< may be NULL; must outlive the scene */
+    source_func source;  /**< told the files that are read; may be NULL */
+    void *source_data;
 } load_options;
 
 /** @brief format_load by options. */

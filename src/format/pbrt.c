@@ -191,6 +191,7 @@ void pbrt_include(pbrt_parser *parser, const char *name, source_place place)
     }
     input in;
     g_autoptr(GError) error = NULL;
+    scene_sources_add(parser->scene->sources, path);
     if (!input_open(&in, path, &error)) {
         pbrt_error(parser, place, "%s", error->message);
         return;

@@ -192,6 +192,7 @@ static bool add_spectrum(pbrt_parser *parser, params *p, const declaration *d,
         return params_add_strings(p, place, PARAM_SPECTRUM_NAME, d->name, names,
                                   strings->len, error);
     g_autofree char *path = g_canonicalize_filename(names[0], parser->base_directory);
+    scene_sources_add(parser->scene->sources, path);
     if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
         error_at(error, place,
                  "parameter '%s': expected a spectrum's name or file, found \"%s\"",

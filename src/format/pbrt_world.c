@@ -223,6 +223,7 @@ static bool add_ply(pbrt_parser *parser, const params *p, const shape_place *at,
     source_place named = params_find(p, "filename")->place;
     g_autoptr(GError) inner = NULL;
     mesh m = {0};
+    scene_sources_add(parser->scene->sources, path);
     if (ply_read(path, &m, &inner))
         return scene_add_mesh(parser->scene, &m, at, named, error);
     if (g_error_matches(inner, NEPH_ERROR, ERROR_FAILED))

@@ -104,8 +104,10 @@ static bool read_map(goniometric_light *l, const struct scene *s, const params *
         return even_map(l, p->place, error);
     source_place place = params_find(p, "filename")->place;
     g_autofree char *lower = g_ascii_strdown(path, -1);
-    if (g_str_has_suffix(lower, ".ies"))
+    if (g_str_has_suffix(lower, ".ies")) {
+        scene_sources_add(s->sources, path);
         return read_profile(l, path, place, error);
+    }
     return picture_read(&pic, s, p, "filename", NULL, error) &&
            sphere_map_init(&l->map, &pic, place, error);
 }

@@ -73,6 +73,7 @@ void scene_free(scene *s)
     scene_close_objects(s);
     g_hash_table_unref(s->material_names);
     g_hash_table_unref(s->files);
+    scene_sources_free(s->sources);
     g_hash_table_unref(s->float_textures);
     g_hash_table_unref(s->spectrum_textures);
     filter_clear(&s->filter);
@@ -106,8 +107,11 @@ image *scene_read_image(const scene *s, const char *path,
                         const image_read_options *options, GError **error)
 {
     GBytes *bytes = s && s->files ? g_hash_table_lookup(s->files, path) : NULL;
-    return bytes ? image_read_bytes(path, bytes, options, error)
-                 : image_read(path, options, error);
+    if (bytes)
+        return image_read_bytes(path, bytes, options, error);
+    if (s)
+        scene_sources_add(s->sources, path);
+    return image_read(path, options, error);
 }
 
 bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spectrum,

@@ -21,6 +21,7 @@
 #include "scene/material.h"
 #include "scene/medium.h"
 #include "scene/settings.h"
+#include "scene/sources.h"
 #include "scene/texture.h"
 
 #include "math/distribution.h"
@@ -57,10 +58,11 @@ typedef struct scene {
     GPtrArray *lights;                              /**< light* */
     GHashTable *float_textures, *spectrum_textures; /**< name -> texture* */
     GHashTable *material_names;                     /**< name -> index + 1 */
-    GHashTable *files; /**< path -> GBytes*: images that came within another file */
-    GArray *objects;   /**< scene_object */
-    GArray *instances; /**< instance */
-    int open_object;   /**< that shapes are added to now, or NO_INDEX: the world */
+    GHashTable *files;      /**< path -> GBytes*: images that came within another file */
+    scene_sources *sources; /**< owned; NULL: nobody asks for them */
+    GArray *objects;        /**< scene_object */
+    GArray *instances;      /**< instance */
+    int open_object;        /**< that shapes are added to now, or NO_INDEX: the world */
     camera camera;
     bool has_camera;
     film_settings film;
