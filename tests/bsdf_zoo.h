@@ -244,6 +244,21 @@ static void make_gltf_all(bsdf *b)
                                       .coat_roughness = ggx_make(0.1f, 0.1f)});
 }
 
+/* Brushed aslant, over a leaf, under a coat. */
+static void make_gltf_brushed(bsdf *b)
+{
+    bsdf_make_gltf(b, &(gltf_surface){.f0 = spectrum_fill(0.3f),
+                                      .f90 = 1.0f,
+                                      .plain_f0 = 0.3f,
+                                      .plain_f90 = 1.0f,
+                                      .diffuse = 0.4f * RAMP,
+                                      .leaf = 0.5f * RAMP,
+                                      .coat = 0.3f,
+                                      .roughness = ggx_make(0.6f, 0.2f),
+                                      .coat_roughness = ggx_make(0.3f, 0.3f),
+                                      .turn = 0.7f});
+}
+
 static void make_gltf_smooth(bsdf *b)
 {
     bsdf_make_gltf(b, &(gltf_surface){.f0 = spectrum_fill(0.04f),
@@ -296,6 +311,7 @@ static const model MODELS[] = {
     {"tinted glass", make_tinted_glass, 0.2},
     {"glTF satin", make_gltf_satin, 0.2},
     {"glTF all layers", make_gltf_all, 0.2},
+    {"glTF brushed", make_gltf_brushed, 0.2},
     {"glTF smooth", make_gltf_smooth, 0.15},
     {"glTF white", make_gltf_white, 0.97},
 };

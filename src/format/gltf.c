@@ -295,8 +295,11 @@ static void clear(gltf *g)
 {
     for (guint i = 0; i < g->n_buffers; i++)
         g_clear_pointer(&g->buffers[i], g_bytes_unref);
-    for (guint i = 0; g->materials && i <= g->n_materials; i++)
-        params_free(g->materials[i].area_light), params_free(g->materials[i].alpha);
+    for (guint i = 0; g->materials && i <= g->n_materials; i++) {
+        params_free(g->materials[i].area_light);
+        params_free(g->materials[i].both_sides);
+        params_free(g->materials[i].alpha);
+    }
     g_free(g->buffers);
     g_free(g->materials);
     g_free(g->meshes);

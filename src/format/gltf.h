@@ -29,6 +29,7 @@ typedef struct gltf_material_info {
     int index;          /**< in the scene; NO_INDEX: not made yet */
     int solid_index;    /**< the same read as solid glass; NO_INDEX: not made yet */
     params *area_light; /**< what it shines with, owned; NULL: it does not */
+    params *both_sides; /**< the same from both sides, owned; NULL: it may not */
     params *alpha;      /**< "alpha" of its shapes, owned; NULL: opaque */
     bool transmits;     /**< without a volume: thin by the standard */
     bool colored;       /**< some primitive of it has colours of vertices */

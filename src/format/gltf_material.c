@@ -82,6 +82,40 @@ static void give_specular(gltf *g, params *p, const json_value *m)
     gltf_give_textured(g, p, "specularcolor", &map, &(gltf_channel){0}, color);
 }
 
+/* The texture has the direction in red and green, -1..1 as 0..1, the strength in blue. */
+static void give_anisotropy(gltf *g, params *p, const json_value *m)
+{
+    json_value extensions;
+    json_value e = gltf_extension(m, "KHR_materials_anisotropy", &extensions);
+    const double one = 1.0;
+    double strength = CLAMP(json_real(&e, "anisotropyStrength", 0.0), 0.0, 1.0);
+    if (!json_exists(&e))
+        return;
+    json_value map = json_member(&e, "anisotropyTexture");
+    gltf_give_textured(g, p, "anisotropy", &map, &(gltf_channel){.channel = "B"},
+                       &strength);
+    give_float(p, "anisotropyrotation", json_real(&e, "anisotropyRotation", 0.0));
+    if (!json_exists(&map))
+        return;
+    gltf_give_textured(g, p, "anisotropyu", &map, &(gltf_channel){.channel = "R"}, &one);
+    gltf_give_textured(g, p, "anisotropyv", &map, &(gltf_channel){.channel = "G"}, &one);
+}
+
+static void give_leaf(gltf *g, params *p, const json_value *m)
+{
+    json_value extensions;
+    json_value e = gltf_extension(m, "KHR_materials_diffuse_transmission", &extensions);
+    double color[3] = {1.0, 1.0, 1.0};
+    if (!json_exists(&e))
+        return;
+    json_value map = json_member(&e, "diffuseTransmissionColorTexture");
+    json_numbers(&e, "diffuseTransmissionColorFactor", color, 3);
+    for (int i = 0; i < 3; i++)
+        color[i] = CLAMP(color[i], 0.0, 1.0);
+    give_share(g, p, "diffusetransmission", &e, "diffuseTransmission", 0.0, "A");
+    gltf_give_textured(g, p, "diffusetransmissioncolor", &map, &(gltf_channel){0}, color);
+}
+
 static void give_coat(gltf *g, params *p, const json_value *m)
 {
     json_value extensions;
@@ -166,6 +200,36 @@ static bool give_transmission(gltf *g, params *p, const json_value *m, bool soli
 
 /* ---- What shines ---- */
 
+/* Whether a material is unlit: it shows its base colour whatever falls on it, and is
+ * black else. Other things see that light, as they see that of what glows. */
+static bool is_unlit(const json_value *m)
+{
+    json_value extensions;
+    json_value e = gltf_extension(m, "KHR_materials_unlit", &extensions);
+    return json_exists(&e);
+}
+
+static params *read_unlit(gltf *g, const json_value *m, bool colored)
+{
+    const gltf_channel base = {.vertex_color = colored};
+    json_value pbr = json_member(m, "pbrMetallicRoughness");
+    json_value map = json_member(&pbr, "baseColorTexture");
+    double color[4] = {1.0, 1.0, 1.0, 1.0};
+    json_numbers(&pbr, "baseColorFactor", color, 4);
+    if (!(color[0] + color[1] + color[2] > 0.0))
+        return NULL;
+    params *p = gltf_params(g);
+    gltf_give_textured(g, p, "L", &map, &base, color);
+    return p;
+}
+
+static void give_black(params *p)
+{
+    give_triple(p, PARAM_RGB, "basecolor", 0.0, 0.0, 0.0);
+    give_float(p, "metallic", 0.0);
+    give_float(p, "specular", 0.0);
+}
+
 static params *read_emission(gltf *g, const json_value *m)
 {
     json_value extensions;
@@ -181,6 +245,11 @@ static params *read_emission(gltf *g, const json_value *m)
     gltf_give_textured(g, p, "L", &map, &(gltf_channel){0}, color);
     give_float(p, "scale", strength);
     return p;
+}
+
+static params *read_shine(gltf *g, const json_value *m, bool colored)
+{
+    return is_unlit(m) ? read_unlit(g, m, colored) : read_emission(g, m);
 }
 
 /* ---- Cut-outs ---- */
@@ -226,6 +295,10 @@ static void note_occlusion(gltf *g, const json_value *m)
 static params *material_params(gltf *g, const json_value *m, bool colored, bool solid)
 {
     params *p = gltf_params(g);
+    if (is_unlit(m)) {
+        give_black(p);
+        return p;
+    }
     json_value normals = json_member(m, "normalTexture");
     json_value extensions;
     json_value glossy = gltf_extension(m, GLOSSY, &extensions);
@@ -235,6 +308,8 @@ static params *material_params(gltf *g, const json_value *m, bool colored, bool 
         give_base(g, p, m, colored);
         give_specular(g, p, m);
     }
+    give_anisotropy(g, p, m);
+    give_leaf(g, p, m);
     give_coat(g, p, m);
     solid = give_transmission(g, p, m, solid);
     give_index(p, m, solid);
@@ -261,10 +336,18 @@ static void read_info(gltf *g, const json_value *m, gltf_material_info *info)
     json_value extensions;
     json_value e = gltf_extension(m, "KHR_materials_transmission", &extensions);
     info->is_read = true;
-    info->transmits = json_exists(&e) && !has_volume(m);
-    info->area_light = read_emission(g, m);
+    info->transmits = json_exists(&e) && !has_volume(m) && !is_unlit(m);
     info->alpha = read_alpha(g, m, info->colored);
     note_occlusion(g, m);
+    info->area_light = read_shine(g, m, info->colored);
+    if (!info->area_light || !json_flag(m, "doubleSided", false))
+        return;
+    /* A closed body that is unlit may be a sky, seen from within. */
+    if (!is_unlit(m))
+        info->both_sides = read_shine(g, m, info->colored);
+    if (!gltf_failed(g))
+        give_bool(info->both_sides ? info->both_sides : info->area_light, "twosided",
+                  true);
 }
 
 static void make(gltf *g, const json_value *m, gltf_material_info *info, bool solid)

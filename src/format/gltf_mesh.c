@@ -201,6 +201,19 @@ static bool is_solid(gltf *g, const json_value *primitive, const mesh *m,
     return body.closed;
 }
 
+/* What a mesh shines with: a closed one that is not inside out shows its front alone. */
+static const params *shine_of(gltf *g, const json_value *primitive, const mesh *m,
+                              const gltf_material_info *info)
+{
+    GError *error = NULL;
+    mesh_body body = {0};
+    if (!info->both_sides)
+        return info->area_light;
+    if (!mesh_body_of(m, &body, &error))
+        gltf_take_error(g, primitive, error);
+    return body.closed && body.volume > 0.0 ? info->area_light : info->both_sides;
+}
+
 static bool alpha_hides_all(const shape_place *at)
 {
     return at->alpha && !at->alpha->texture && !(at->alpha->constant > 0.0f);
@@ -234,7 +247,9 @@ static void add_primitive(gltf *g, const json_value *primitive, gint64 number,
         bool solid = !gltf_failed(g) && is_solid(g, primitive, &m, info);
         shape_place at = {.to_world = in_world ? transform_identity() : *to_world,
                           .material = gltf_material_index(g, number, solid),
-                          .area_light = info->area_light};
+                          .area_light = NULL};
+        if (!gltf_failed(g))
+            at.area_light = shine_of(g, primitive, &m, info);
         if (!gltf_failed(g))
             add_shape(g, primitive, &m, info, &at);
     }

@@ -5,10 +5,12 @@
  *   coat      c · Schlick(0.04), GGX
  *   facets    Schlick(F0, F90), GGX          metal: F0 = base colour; else that of the
  * ior base      ρ/π · (1-E(o)) (1-E(i)) / (1-E̅)    what the facets leave, the same both
- * ways pane      through · (1-F) · GGX mirrored below
+ * ways leaf      τ/π, as the base, to the other side
+ *   pane      through · (1-F) · GGX mirrored below
  *
  * E(μ) is the albedo of the facets of what is not metal; with Schlick's Fresnel term it
- * is F0 a(μ, α) + F90 b(μ, α), two tables made once. A coat dims what is under it by 1 -
+ * is F0 a(μ, α) + F90 b(μ, α), two tables made once, for brushed facets at the geometric
+ * mean of their two α. A coat dims what is under it by 1 -
  * c E(μ) on the way in and out. No more light goes out than came in: E + ρ(1-E) <= 1.
  *
  * Khronos, "glTF 2.0 Specification", appendix B, and KHR_materials_*; the form of the
@@ -24,7 +26,7 @@
 #include <glib.h>
 
 enum { N_MU = 32, N_ALPHA = 16, N_SIDE = 24 };
-enum { LAYER_COAT, LAYER_FACETS, LAYER_PANE, LAYER_BASE, N_LAYERS };
+enum { LAYER_COAT, LAYER_FACETS, LAYER_PANE, LAYER_BASE, LAYER_LEAF, N_LAYERS };
 
 #define COAT_F0 0.04f
 
@@ -42,6 +44,7 @@ typedef struct facet_tables {
 typedef struct gltf_data {
     gltf_surface s;
     float mean_e; /* E̅ of what is not metal */
+    float turn_cos, turn_sin;
 } gltf_data;
 
 _Static_assert(sizeof(gltf_data) <= BSDF_DATA_SIZE, "a glTF surface must fit");
@@ -126,8 +129,9 @@ static facet_shares blend(facet_shares x, facet_shares y, float share)
     return (facet_shares){lerpf(x.a, y.a, share), lerpf(x.b, y.b, share)};
 }
 
-static int row_of_alpha(float alpha, float *share)
+static int row_of(ggx g, float *share)
 {
+    float alpha = sqrtf(g.alpha_x * g.alpha_y);
     float y = sqrtf(clampf(alpha, 0.0f, 1.0f)) * (N_ALPHA - 1);
     int i = MIN((int)y, N_ALPHA - 2);
     *share = y - (float)i;
@@ -139,7 +143,7 @@ static facet_shares shares(ggx g, float mu)
     if (ggx_is_smooth(g))
         return (facet_shares){1.0f - power5(1.0f - mu), power5(1.0f - mu)};
     float dy, x = clampf(mu * N_MU - 0.5f, 0.0f, N_MU - 1.0f);
-    int i = row_of_alpha(g.alpha_x, &dy), j = MIN((int)x, N_MU - 2);
+    int i = row_of(g, &dy), j = MIN((int)x, N_MU - 2);
     const facet_shares(*at)[N_MU] = tables()->at;
     float dx = x - (float)j;
     return blend(blend(at[i][j], at[i][j + 1], dx),
@@ -151,7 +155,7 @@ static facet_shares mean_shares(ggx g)
     float dy;
     if (ggx_is_smooth(g)) /* ∫ 2μ(1-μ)⁵ dμ = 1/21 */
         return (facet_shares){20.0f / 21.0f, 1.0f / 21.0f};
-    int i = row_of_alpha(g.alpha_x, &dy);
+    int i = row_of(g, &dy);
     return blend(tables()->mean[i], tables()->mean[i + 1], dy);
 }
 
@@ -186,6 +190,8 @@ static unsigned layer_lobe(const gltf_surface *s, int layer)
         return ggx_class(s->roughness) | LOBE_REFLECTION;
     case LAYER_PANE:
         return ggx_class(s->roughness) | LOBE_TRANSMISSION;
+    case LAYER_LEAF:
+        return LOBE_DIFFUSE | LOBE_TRANSMISSION;
     default:
         return LOBE_DIFFUSE | LOBE_REFLECTION;
     }
@@ -203,6 +209,7 @@ static void layer_albedos(const gltf_data *d, float mu, spectrum out[N_LAYERS])
     out[LAYER_FACETS] = (s->f0 * e.a + s->f90 * e.b) * square(coat);
     out[LAYER_PANE] = s->through * (maxf(0.0f, e.a + e.b - taken) * square(coat));
     out[LAYER_BASE] = s->diffuse * ((1.0f - taken) * coat * escape);
+    out[LAYER_LEAF] = s->leaf * ((1.0f - taken) * coat * escape);
 }
 
 static choice choose(const bsdf *b, vec3 o, unsigned lobes)
@@ -256,11 +263,12 @@ static spectrum layers_eval(const gltf_data *d, const choice *c, vec3 o, vec3 i,
         else
             f += s->through * (1.0f - schlick(s->plain_f0, s->plain_f90, cos_m)) * g;
     }
-    if (above && c->wanted[LAYER_BASE]) {
+    int matt = above ? LAYER_BASE : LAYER_LEAF;
+    if (c->wanted[matt]) {
         float left =
             (1.0f - taken_by_facets(s, o[2])) * (1.0f - taken_by_facets(s, j[2]));
-        f += s->diffuse * (INV_PI_F * left / (1.0f - d->mean_e));
-        *pdf += c->p[LAYER_BASE] * j[2] * INV_PI_F;
+        f += (above ? s->diffuse : s->leaf) * (INV_PI_F * left / (1.0f - d->mean_e));
+        *pdf += c->p[matt] * j[2] * INV_PI_F;
     }
     if (s->coat > 0.0f)
         f *= left_by_coat(s, o[2]) * left_by_coat(s, j[2]);
@@ -272,13 +280,21 @@ static spectrum layers_eval(const gltf_data *d, const choice *c, vec3 o, vec3 i,
     return f;
 }
 
+/* To the axes of the facets, above or below; turned = -1: back. */
+static vec3 turned(const gltf_data *d, vec3 w, bool flip, float sign)
+{
+    float c = d->turn_cos, s = sign * d->turn_sin;
+    return flip_z(vec3_make(c * w[0] + s * w[1], c * w[1] - s * w[0], w[2]), flip);
+}
+
 /* The directions turned so that wo is above. */
 static spectrum gltf_scatter(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes, float *pdf)
 {
+    const gltf_data *d = data_of(b);
     bool flip = wo[2] < 0.0f;
-    vec3 o = flip_z(wo, flip);
+    vec3 o = turned(d, wo, flip, 1.0f);
     choice c = choose(b, o, lobes);
-    return layers_eval(data_of(b), &c, o, flip_z(wi, flip), pdf);
+    return layers_eval(d, &c, o, turned(d, wi, flip, 1.0f), pdf);
 }
 
 static spectrum gltf_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
@@ -316,7 +332,7 @@ static void follow_smooth(const gltf_surface *s, int layer, vec3 o, bsdf_sample 
 
 static vec3 sample_layer(const gltf_surface *s, int layer, vec3 o, vec2 u)
 {
-    if (layer == LAYER_BASE)
+    if (layer == LAYER_BASE || layer == LAYER_LEAF)
         return warp_cosine_hemisphere(u);
     ggx g = layer == LAYER_COAT ? s->coat_roughness : s->roughness;
     return reflect3(o, ggx_sample_visible(g, o, u));
@@ -342,7 +358,7 @@ static bool gltf_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned l
     (void)mode;
     const gltf_data *d = data_of(b);
     bool flip = wo[2] < 0.0f;
-    vec3 o = flip_z(wo, flip);
+    vec3 o = turned(d, wo, flip, 1.0f);
     choice c = choose(b, o, lobes);
     int layer = pick_layer(&c, u_lobe);
     if (layer < 0)
@@ -355,10 +371,10 @@ static bool gltf_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned l
         vec3 i = sample_layer(&d->s, layer, o, u);
         if (!(i[2] > 0.0f))
             return false;
-        out->wi = flip_z(i, layer == LAYER_PANE);
+        out->wi = flip_z(i, layer == LAYER_PANE || layer == LAYER_LEAF);
         out->weight = layers_eval(d, &c, o, out->wi, &out->pdf) * (i[2] / out->pdf);
     }
-    out->wi = flip_z(out->wi, flip);
+    out->wi = turned(d, out->wi, flip, -1.0f);
     return out->pdf > 0.0f;
 }
 
@@ -384,7 +400,8 @@ void bsdf_make_gltf(bsdf *b, const gltf_surface *surface)
     };
     gltf_data *d = (void *)b->data;
     facet_shares e = mean_shares(surface->roughness);
-    *d = (gltf_data){.s = *surface};
+    *d = (gltf_data){
+        .s = *surface, .turn_cos = cosf(surface->turn), .turn_sin = sinf(surface->turn)};
     d->mean_e = minf(surface->plain_f0 * e.a + surface->plain_f90 * e.b, 0.999f);
     b->ops = &ops;
     b->lambertian = false;
@@ -393,6 +410,8 @@ void bsdf_make_gltf(bsdf *b, const gltf_surface *surface)
         b->lobes |= layer_lobe(surface, LAYER_COAT);
     if (!spectrum_is_black(surface->diffuse))
         b->lobes |= layer_lobe(surface, LAYER_BASE);
+    if (!spectrum_is_black(surface->leaf))
+        b->lobes |= layer_lobe(surface, LAYER_LEAF);
     if (!spectrum_is_black(surface->through))
         b->lobes |= layer_lobe(surface, LAYER_PANE);
 }

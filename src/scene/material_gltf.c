@@ -1,6 +1,7 @@
 /*
  * "gltf": the surface that glTF 2.0 files describe, by metalness and roughness, with the
- * extensions transmission, volume, ior, specular, clearcoat and dispersion.
+ * extensions transmission, volume, ior, specular, clearcoat, dispersion, anisotropy and
+ * diffuse_transmission.
  *
  * Thin, it is one BSDF (bsdf_gltf.c). Solid, the part that transmits is glass: at each
  * point either that or the rest is chosen, by a number made from where the point lies, so
@@ -15,14 +16,17 @@
 
 #include <string.h>
 
-/* No matter reflects less than 2 % straight on: what is said to (Blender writes a colour of
- * black for "no specular") is dimmed at grazing angles too (Lagarde & de Rousiers, "Moving
- * Frostbite to Physically Based Rendering", 2014). */
+/* No matter reflects less than 2 % straight on: what is said to (Blender writes a colour
+ * of black for "no specular") is dimmed at grazing angles too (Lagarde & de Rousiers,
+ * "Moving Frostbite to Physically Based Rendering", 2014). */
 #define GRAZING_PER_F0 50.0f
 
 typedef struct gltf_material {
-    spectrum_input base_color, specular_color;
-    float_input metallic, roughness, specular, coat, coat_roughness, transmission;
+    spectrum_input base_color, specular_color, leaf_color;
+    float_input metallic, roughness, specular, coat, coat_roughness, transmission, leaf;
+    float_input anisotropy;       /* its strength */
+    float_input along_u, along_v; /* where it goes: 0..1 stand for -1..1 */
+    float turn;                   /* from there, rad */
     curve *eta;
     bool thin;
     medium *interior; /* NULL: clear, or thin */
@@ -40,6 +44,7 @@ static void gltf_free(void *self)
     gltf_material *m = self;
     spectrum_input_clear(&m->base_color);
     spectrum_input_clear(&m->specular_color);
+    spectrum_input_clear(&m->leaf_color);
     curve_unref(m->eta);
     medium_free(m->interior);
     g_free(m);
@@ -71,7 +76,19 @@ static bool read_layers(gltf_material *m, const struct scene *s, const params *p
            read_share(&m->specular, s, p, "specular", 1.0f, error) &&
            read_share(&m->coat, s, p, "clearcoat", 0.0f, error) &&
            read_share(&m->coat_roughness, s, p, "clearcoatroughness", 0.0f, error) &&
-           read_share(&m->transmission, s, p, "transmission", 0.0f, error);
+           read_share(&m->transmission, s, p, "transmission", 0.0f, error) &&
+           read_share(&m->leaf, s, p, "diffusetransmission", 0.0f, error) &&
+           spectrum_input_init(&m->leaf_color, s, p, "diffusetransmissioncolor",
+                               CURVE_ALBEDO, curve_constant(1.0f), error);
+}
+
+static bool read_anisotropy(gltf_material *m, const struct scene *s, const params *p,
+                            GError **error)
+{
+    return read_share(&m->anisotropy, s, p, "anisotropy", 0.0f, error) &&
+           read_share(&m->along_u, s, p, "anisotropyu", 1.0f, error) &&
+           read_share(&m->along_v, s, p, "anisotropyv", 0.5f, error) &&
+           params_float(p, "anisotropyrotation", &m->turn, error);
 }
 
 static bool read_inside(gltf_material *m, const params *p, GError **error)
@@ -85,7 +102,8 @@ static bool read_inside(gltf_material *m, const params *p, GError **error)
 static void *gltf_create(const struct scene *s, const params *p, GError **error)
 {
     gltf_material *m = g_new0(gltf_material, 1);
-    if (read_layers(m, s, p, error) && read_inside(m, p, error))
+    if (read_layers(m, s, p, error) && read_anisotropy(m, s, p, error) &&
+        read_inside(m, p, error))
         return m;
     gltf_free(m);
     return NULL;
@@ -103,6 +121,24 @@ static ggx facets_of(const float_input *roughness, const surface_hit *hit)
     return ggx_make(alpha, alpha);
 }
 
+/* Brushed facets are rougher along one axis, up to 1 (KHR_materials_anisotropy). */
+static ggx brushed(const gltf_material *m, const surface_hit *hit)
+{
+    float strength = square(share_of(&m->anisotropy, hit));
+    float alpha = square(share_of(&m->roughness, hit));
+    return ggx_make(lerpf(alpha, 1.0f, strength), alpha);
+}
+
+/* From the tangent to that axis. Where the texture is mirrored, so is the turn. */
+static float turn_of(const gltf_material *m, const surface_hit *hit)
+{
+    float x = 2.0f * share_of(&m->along_u, hit) - 1.0f;
+    float y = 2.0f * share_of(&m->along_v, hit) - 1.0f;
+    bool mirrored = dot3(cross3(hit->n, hit->dpdu), hit->dpdv) < 0.0f;
+    float turn = m->turn + atan2f(y, x);
+    return mirrored ? -turn : turn;
+}
+
 static gltf_point point_of(const gltf_material *m, const surface_hit *hit,
                            const wavelengths *w)
 {
@@ -110,7 +146,7 @@ static gltf_point point_of(const gltf_material *m, const surface_hit *hit,
         .base = spectrum_clamp(spectrum_input_eval(&m->base_color, hit, w), 0.0f, 1.0f),
         .eta = curve_eval(m->eta, w),
         .metallic = share_of(&m->metallic, hit),
-        .roughness = facets_of(&m->roughness, hit),
+        .roughness = brushed(m, hit),
     };
     at.transmission = share_of(&m->transmission, hit) * (1.0f - at.metallic);
     return at;
@@ -128,15 +164,21 @@ static gltf_surface surface_of(const gltf_material *m, const surface_hit *hit,
     float matt = m->thin || at->transmission >= 1.0f
                      ? 1.0f - metal - at->transmission
                      : (1.0f - metal - at->transmission) / (1.0f - at->transmission);
+    float leaf = share_of(&m->leaf, hit);
+    spectrum leaf_color =
+        leaf > 0.0f ? spectrum_input_eval(&m->leaf_color, hit, w) : spectrum_fill(0.0f);
+    matt = maxf(0.0f, matt);
     return (gltf_surface){
         .f0 = plain * (1.0f - metal) + at->base * metal,
         .f90 = grazing * (1.0f - metal) + metal,
         .plain_f0 = spectrum_max(plain),
         .plain_f90 = grazing,
-        .diffuse = at->base * maxf(0.0f, matt),
+        .diffuse = at->base * (matt * (1.0f - leaf)),
+        .leaf = spectrum_clamp(leaf_color, 0.0f, 1.0f) * (matt * leaf),
         .through = at->base * through,
         .coat = share_of(&m->coat, hit),
         .roughness = at->roughness,
+        .turn = ggx_is_round(at->roughness) ? 0.0f : turn_of(m, hit),
         .coat_roughness = facets_of(&m->coat_roughness, hit),
     };
 }
@@ -201,10 +243,22 @@ static unsigned classes_of(const float_input *roughness)
     return ggx_class(facets_of(roughness, NULL));
 }
 
+static unsigned facet_classes(const gltf_material *m)
+{
+    unsigned round = classes_of(&m->roughness);
+    if (!may_be_above_0(&m->anisotropy))
+        return round;
+    if (m->roughness.texture || m->anisotropy.texture)
+        return LOBE_SPECULAR | LOBE_GLOSSY | LOBE_DIFFUSE;
+    return round | ggx_class(brushed(m, NULL));
+}
+
 static unsigned gltf_lobes(const void *self)
 {
     const gltf_material *m = self;
-    unsigned lobes = classes_of(&m->roughness) | LOBE_REFLECTION;
+    unsigned lobes = facet_classes(m) | LOBE_REFLECTION;
+    if (may_be_below_1(&m->metallic) && may_be_above_0(&m->leaf))
+        lobes |= LOBE_DIFFUSE | LOBE_TRANSMISSION;
     if (may_be_below_1(&m->metallic) && may_be_below_1(&m->transmission))
         lobes |= LOBE_DIFFUSE;
     if (may_be_below_1(&m->metallic) && may_be_above_0(&m->transmission))
@@ -229,7 +283,9 @@ static bool gltf_encloses(const void *self)
 const material_kind material_gltf = {
     .name = "gltf",
     .parameters = "basecolor metallic roughness eta specular specularcolor clearcoat "
-                  "clearcoatroughness transmission thin " MEDIUM_PARAMETERS,
+                  "clearcoatroughness transmission thin anisotropy anisotropyu "
+                  "anisotropyv anisotropyrotation diffusetransmission "
+                  "diffusetransmissioncolor " MEDIUM_PARAMETERS,
     .create = gltf_create,
     .free = gltf_free,
     .make_bsdf = gltf_bsdf,

@@ -38,6 +38,12 @@ static inline ggx ggx_make(float alpha_x, float alpha_y)
     return (ggx){maxf(alpha_x, 1e-4f), maxf(alpha_y, 1e-4f)};
 }
 
+/** @brief Whether it is the same along all axes. */
+static inline bool ggx_is_round(ggx g)
+{
+    return fabsf(g.alpha_x - g.alpha_y) <= 1e-6f * g.alpha_x;
+}
+
 /** @brief s(w), see above. */
 static inline float ggx_stretched(ggx g, vec3 w)
 {
