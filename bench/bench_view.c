@@ -10,6 +10,7 @@
 #include "app.h"
 
 #include <epoxy/gl.h>
+#include <math.h>
 #include <stdio.h>
 #include <time.h>
 
@@ -89,34 +90,81 @@ static void trace(window *w)
     printf("GL              %s\n", (const char *)glGetString(GL_RENDERER));
 }
 
-/* Draws one frame and waits until it is on the screen. */
-static void draw(window *w, bool moving)
+static const photon_frame *next_frame(window *w)
 {
-    const photon_frame before = *photon_view_frame(w->photon_view);
-    viewpoint_orbit(&w->view, 0.01, 0.0);
-    photon_view_redraw(w->photon_view, moving);
-    while (photon_view_frame(w->photon_view)->number == before.number)
+    guint64 before = photon_view_frame(w->photon_view)->number;
+    while (photon_view_frame(w->photon_view)->number == before)
         g_main_context_iteration(NULL, TRUE);
+    return photon_view_frame(w->photon_view);
 }
 
-static void bench_photons(window *w, const char *what, bool moving, int frames)
+/* From elsewhere: a new picture begins. */
+static const photon_frame *turn_photons(window *w)
 {
-    double drawing = 0.0, start, cpu;
+    viewpoint_orbit(&w->view, 0.01, 0.0);
+    photon_view_redraw(w->photon_view);
+    return next_frame(w);
+}
+
+/* Called between whatever else the main loop does. */
+typedef struct watch {
+    double last, longest; /* s */
+} watch;
+
+static gboolean look_at_clock(void *data)
+{
+    watch *of = data;
+    of->longest = fmax(of->longest, seconds() - of->last);
+    of->last = seconds();
+    return G_SOURCE_CONTINUE;
+}
+
+/* The picture that comes when the view stands still, until every photon is in it: how
+   long the main loop is kept from anything else. */
+static void bench_standing(window *w)
+{
+    double start = seconds(), cpu = cpu_seconds();
+    const photon_frame *frame = turn_photons(w);
+    watch busy = {seconds(), 0.0};
+    guint source = g_timeout_add_full(G_PRIORITY_HIGH, 1, look_at_clock, &busy, NULL);
+    int shown = 1;
+    for (; frame->points < frame->all; shown++)
+        frame = next_frame(w);
+    g_source_remove(source);
+    printf(
+        "standing still  %7.2f s for %zu photons, %.0f ms of processor; shown %d times, "
+        "busy for %.0f ms at most\n",
+        seconds() - start, frame->points, 1e3 * (cpu_seconds() - cpu), shown,
+        1e3 * busy.longest);
+}
+
+static void bench_moving_photons(window *w, const char *what)
+{
+    double drawing = 0.0, start = seconds(), cpu = cpu_seconds();
     size_t points = 0;
-    draw(w, false); /* what is new goes to the graphics */
-    draw(w, moving);
-    start = seconds();
-    cpu = cpu_seconds();
-    for (int i = 0; i < frames; i++) {
-        draw(w, moving);
-        const photon_frame *frame = photon_view_frame(w->photon_view);
+    for (int i = 0; i < FRAMES; i++) {
+        const photon_frame *frame = turn_photons(w);
         drawing += frame->seconds;
         points += frame->points;
     }
     printf("%-15s %7.1f frames a second of %zu photons; a frame %.2f ms, its window "
            "%.1f ms of processor\n",
-           what, frames / (seconds() - start), points / (size_t)frames,
-           1e3 * drawing / frames, 1e3 * (cpu_seconds() - cpu) / frames);
+           what, FRAMES / (seconds() - start), points / FRAMES, 1e3 * drawing / FRAMES,
+           1e3 * (cpu_seconds() - cpu) / FRAMES);
+}
+
+/* What the main loop does when a million photons are there: they are coloured and given
+   to the graphics. */
+static void bench_colors(window *w)
+{
+    photon_style style = *photon_view_style(w->photon_view);
+    double start = seconds(), cpu = cpu_seconds();
+    style.coloring = COLOR_MAP;
+    photon_view_set_style(w->photon_view, &style);
+    const photon_frame *frame = next_frame(w);
+    printf("new colours     %7.0f ms and a frame of %.1f, %.0f ms of processor\n",
+           1e3 * (seconds() - start - frame->seconds), 1e3 * frame->seconds,
+           1e3 * (cpu_seconds() - cpu));
 }
 
 int main(void)
@@ -134,12 +182,14 @@ int main(void)
     bench_first(w);
     bench_moving(w);
     trace(w);
-    bench_photons(w, "standing still", false, 8);
-    bench_photons(w, "moving", true, FRAMES);
+    next_frame(w);
+    bench_standing(w);
+    bench_moving_photons(w, "moving");
+    bench_colors(w);
     photon_style none = *photon_view_style(w->photon_view);
     none.maps = 0;
     photon_view_set_style(w->photon_view, &none);
-    bench_photons(w, "no photons", false, FRAMES);
+    bench_moving_photons(w, "no photons");
     gtk_window_destroy(w->gtk);
     while (g_main_context_iteration(NULL, FALSE))
         ;

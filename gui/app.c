@@ -1,5 +1,6 @@
 #include "app.h"
 
+#include "renderer.h"
 #include "screenshot.h"
 #include "window.h"
 
@@ -109,6 +110,7 @@ static void startup(GtkApplication *app)
                                     app);
     add_keys(app);
     load_style();
+    renderer_choose(gdk_display_get_default());
 }
 
 /* ---- Command line ---- */

@@ -76,13 +76,16 @@ void gl_painter_clear(gl_painter *p)
     p->program = 0;
 }
 
-void gl_painter_begin(gl_painter *p, const float matrix[16], const float pixels[2],
-                      const float background[3])
+void gl_painter_clear_picture(const float background[3])
 {
-    for (int i = 0; i < 2; i++)
-        p->pixel[i] = 2.0f / fmaxf(pixels[i], 1.0f);
     glClearColor(background[0], background[1], background[2], 1.0f);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void gl_painter_begin(gl_painter *p, const float matrix[16], const int pixels[2])
+{
+    for (int i = 0; i < 2; i++)
+        p->pixel[i] = 2.0f / fmaxf((float)pixels[i], 1.0f);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
     if (epoxy_is_desktop_gl())
@@ -134,7 +137,8 @@ static void set_fade(const gl_painter *p, float fade)
 {
     if (fade < 1.0f) {
         glEnable(GL_BLEND);
-        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE,
+                            GL_ONE_MINUS_SRC_ALPHA); /* the picture stays opaque */
     } else {
         glDisable(GL_BLEND);
     }

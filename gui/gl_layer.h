@@ -21,10 +21,10 @@ typedef struct gl_painter {
 /** @brief Compiles. false with a message in *error. es: for OpenGL ES. */
 bool gl_painter_init(gl_painter *p, bool es, GError **error);
 void gl_painter_clear(gl_painter *p);
-/** @brief Clears the window of so many pixels and begins a picture. column-major matrix
- * to clip space. */
-void gl_painter_begin(gl_painter *p, const float matrix[16], const float pixels[2],
-                      const float background[3]);
+/** @brief Begins to draw on so many pixels. column-major matrix to clip space. */
+void gl_painter_begin(gl_painter *p, const float matrix[16], const int pixels[2]);
+/** @brief Wipes what is there, also the depths. */
+void gl_painter_clear_picture(const float background[3]);
 
 /** @brief Replaces the vertices. */
 void gl_layer_set(gl_layer *layer, const cloud_vertex *vertices, size_t n);

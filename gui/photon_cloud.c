@@ -22,28 +22,37 @@ void photon_cloud_bounce_color(size_t bounces, uint8_t color[4])
     memcpy(color, bounce_colors[MIN(bounces, N_BOUNCE_COLORS - 1)], 4);
 }
 
-/* Linear to the screen's. */
-static uint8_t encode(float x)
+/* Linear, 0..1 in steps fine enough for eight bits, to the screen's: a million photons
+   are coloured while the window waits. */
+enum { CURVE_STEPS = 8192 };
+
+static void fill_curve(uint8_t curve[CURVE_STEPS + 1])
 {
-    float y = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1.0f / 2.4f) - 0.055f;
-    return (uint8_t)(255.0f * fminf(fmaxf(y, 0.0f), 1.0f) + 0.5f);
+    for (int i = 0; i <= CURVE_STEPS; i++) {
+        float x = (float)i / CURVE_STEPS;
+        float y = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1.0f / 2.4f) - 0.055f;
+        curve[i] = (uint8_t)(255.0f * fminf(y, 1.0f) + 0.5f);
+    }
 }
 
-static void flux_color(const float rgb[3], uint8_t color[4])
+static void flux_color(const uint8_t *curve, const float rgb[3], uint8_t color[4])
 {
     float most = fmaxf(fmaxf(rgb[0], rgb[1]), fmaxf(rgb[2], 1e-30f));
     for (int k = 0; k < 3; k++)
-        color[k] = encode(rgb[k] / most);
+        color[k] = curve[(int)(CURVE_STEPS * fmaxf(rgb[k] / most, 0.0f) + 0.5f)];
     color[3] = 255;
 }
 
 void photon_cloud_color(photon_cloud *cloud, cloud_coloring coloring)
 {
+    uint8_t curve[CURVE_STEPS + 1];
+    fill_curve(curve);
+    cloud->coloring = coloring;
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
         for (size_t i = cloud->first[c]; i < cloud->first[c + 1]; i++) {
             uint8_t *color = cloud->vertices[i].color;
             if (coloring == COLOR_FLUX)
-                flux_color(cloud->rgb[i], color);
+                flux_color(curve, cloud->rgb[i], color);
             else if (coloring == COLOR_MAP)
                 photon_cloud_map_color(c, color);
             else

@@ -27,6 +27,7 @@ typedef struct photon_cloud {
     size_t n;
     size_t first[NEPH_N_PHOTON_CLASSES +
                  1]; /**< photons of map c: first[c] .. first[c + 1] */
+    cloud_coloring coloring;
     cloud_vertex *vertices;
     float (*direction)[3]; /**< to where it came from */
     float (*rgb)[3];

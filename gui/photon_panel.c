@@ -250,8 +250,11 @@ char *photon_share_text(const NephStatistics *s, int c)
 char *photon_frame_text(const photon_frame *frame)
 {
     g_autofree char *points = count_text(frame->points);
+    g_autofree char *all = count_text(frame->all);
     if (!(frame->seconds > 0.0))
         return g_strdup("–");
+    if (frame->points < frame->all)
+        return g_strdup_printf("%.1f ms · %s of %s", 1e3 * frame->seconds, points, all);
     return g_strdup_printf("%.1f ms · %s photons", 1e3 * frame->seconds, points);
 }
 

@@ -1,5 +1,6 @@
 #include "photon_view.h"
 
+#include "gl_keep.h"
 #include "gl_layer.h"
 #include "projection.h"
 #include "widgets.h"
@@ -8,15 +9,16 @@
 #include <math.h>
 #include <string.h>
 
-/* Line segments of a wireframe, at most; points that are drawn even where that is slow.
- */
+/* Line segments of a wireframe, at most; points that a frame draws even where that is
+   slow. */
 enum { MOST_EDGES = 200000, LEAST_POINTS = 20000 };
 
 /* Numbers that change faster are not read, ms. */
 enum { TELL_MS = 200 };
 
-/* What a frame may take while the view moves, s: software draws fewer points for it. */
-#define FRAME_GOAL 0.02
+/* How long the main loop may wait, s: software draws a part of the points in it, then the
+   next part. */
+#define PART_GOAL 0.025
 
 /* Width of a path, and of a wireframe's line, pixels. */
 enum { PATH_WIDTH = 3, WIRE_WIDTH = 1 };
@@ -40,13 +42,23 @@ struct photon_view {
     gl_painter painter;
     gl_layer wire_layer, photon_layer, arrow_layer, line_layer, point_layer;
     bool wire_changed, photons_changed, arrows_changed, marks_changed;
-    bool moving; /* more frames will come at once */
+    gl_keep kept;                       /* what has been drawn from here */
+    float drawn_from[16];               /* the matrix that was */
+    bool stale;                         /* something else than the view has changed */
+    size_t done[NEPH_N_PHOTON_CLASSES]; /* points of each map that are in it */
+    double points_a_second;             /* as last measured; 0: not yet */
+    guint drawing; /* the source that draws the next part; 0: all is drawn */
     photon_frame frame;
     guint telling; /* source, 0: nothing to tell */
     void (*drawn)(const photon_frame *frame, void *data);
     void *data;
     GCancellable *wiring; /* NULL: no wireframe is being made */
 };
+
+static double seconds_since(gint64 start)
+{
+    return 1e-6 * (double)(g_get_monotonic_time() - start);
+}
 
 static projection projection_of(const photon_view *v)
 {
@@ -139,6 +151,12 @@ static bool shows_arrows(const photon_view *v)
     return v->cloud && photon_cloud_count(v->cloud, v->style.maps) < MOST_ARROWS;
 }
 
+/* A picked photon's path stands out. */
+static float fade_of(const photon_view *v)
+{
+    return v->n_mark_lines > 0 ? BEHIND_PICK : 1.0f;
+}
+
 static void upload_arrows(photon_view *v)
 {
     size_t n = 0;
@@ -155,8 +173,10 @@ static void upload_photons(photon_view *v)
     gl_layer_set(&v->photon_layer, mixed, v->cloud ? v->cloud->n : 0);
 }
 
-static void upload(photon_view *v)
+/* True if the picture is another now. */
+static bool upload(photon_view *v)
 {
+    bool another = v->wire_changed || v->photons_changed || v->arrows_changed;
     if (v->wire_changed)
         gl_layer_set(&v->wire_layer, v->wire, v->n_wire);
     if (v->photons_changed)
@@ -168,41 +188,76 @@ static void upload(photon_view *v)
         gl_layer_set(&v->point_layer, v->mark_points, v->n_mark_points);
     }
     v->wire_changed = v->photons_changed = v->arrows_changed = v->marks_changed = false;
+    return another;
 }
 
-/* The share of the points that a frame is given: all, but while the view moves so many as
-   the last frame was fast enough for. */
-static double share_of_points(const photon_view *v, size_t n)
+/* ---- Drawing, part by part ---- */
+
+static size_t count_drawn(const photon_view *v)
 {
-    if (!v->moving || v->frame.points == 0 || !(v->frame.seconds > 0.0))
-        return 1.0;
-    double points = FRAME_GOAL * (double)v->frame.points / v->frame.seconds;
-    return fmin(fmax(points, LEAST_POINTS) / (double)MAX(n, 1), 1.0);
+    size_t n = 0;
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
+        n += v->done[c];
+    return n;
 }
 
-/* Any first part of a map's points stands for the whole: they were mixed. */
-static size_t draw_photons(photon_view *v, int scale)
+static size_t count_all(const photon_view *v)
 {
-    bool arrows = shows_arrows(v);
+    return v->cloud ? photon_cloud_count(v->cloud, v->style.maps) : 0;
+}
+
+/* What the picture begins with: the wireframe, and arrows. */
+static void draw_first(photon_view *v, const float matrix[16], int scale)
+{
+    static const float background[3] = {0.10f, 0.10f, 0.11f};
+    memset(v->done, 0, sizeof v->done);
+    memcpy(v->drawn_from, matrix, sizeof v->drawn_from);
+    v->stale = false;
+    gl_painter_clear_picture(background);
+    if (v->style.wireframe)
+        gl_layer_lines(&v->painter, &v->wire_layer, 0.55f, WIRE_WIDTH * scale);
+    if (shows_arrows(v))
+        gl_layer_lines(&v->painter, &v->arrow_layer, fade_of(v), scale);
+}
+
+/* The next points of a map: any run of them is spread over the whole, for they were
+   mixed. */
+static void draw_run(photon_view *v, int c, size_t n, int scale)
+{
     float size = v->style.point_size * (float)scale;
-    float fade = v->n_mark_lines > 0 ? BEHIND_PICK : 1.0f;
-    size_t drawn = 0;
-    if (!v->cloud)
-        return 0;
-    double share = share_of_points(v, photon_cloud_count(v->cloud, v->style.maps));
-    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
-        size_t all = v->cloud->first[c + 1] - v->cloud->first[c];
-        size_t n = (size_t)ceil(share * (double)all);
-        if (!(v->style.maps & (1u << c)))
-            continue;
-        const gl_points points = {v->cloud->first[c], n,
-                                  arrows ? fmaxf(size, ARROW_HEAD) : size, fade};
-        gl_layer_points(&v->painter, &v->photon_layer, &points);
-        drawn += n;
+    const gl_points points = {v->cloud->first[c] + v->done[c], n,
+                              shows_arrows(v) ? fmaxf(size, ARROW_HEAD) : size,
+                              fade_of(v)};
+    gl_layer_points(&v->painter, &v->photon_layer, &points);
+    v->done[c] += n;
+}
+
+/* As many more points as there is time for, of each map its share. */
+static void draw_more(photon_view *v, double allowed, int scale)
+{
+    size_t all = count_all(v), before = count_drawn(v);
+    double n = fmax(allowed * v->points_a_second, LEAST_POINTS);
+    double share = fmin(n / (double)MAX(all - before, 1), 1.0);
+    gint64 start = g_get_monotonic_time();
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES && before < all; c++) {
+        size_t left = v->cloud->first[c + 1] - v->cloud->first[c] - v->done[c];
+        if (v->style.maps & (1u << c))
+            draw_run(v, c, MIN((size_t)ceil(share * (double)left), left), scale);
     }
-    if (arrows)
-        gl_layer_lines(&v->painter, &v->arrow_layer, fade, scale);
-    return drawn;
+    glFinish();
+    double took = seconds_since(start);
+    size_t drawn = count_drawn(v) - before;
+    if (drawn >= MIN((size_t)LEAST_POINTS, all))
+        v->points_a_second = (double)drawn / fmax(took, 1e-6);
+}
+
+/* Over the picture: what is marked. */
+static void draw_marks(photon_view *v, int scale)
+{
+    glDisable(GL_DEPTH_TEST);
+    gl_layer_points(&v->painter, &v->point_layer,
+                    &(gl_points){0, v->point_layer.n, MARK_SIZE * (float)scale, 1.0f});
+    gl_layer_lines(&v->painter, &v->line_layer, 1.0f, PATH_WIDTH * scale);
 }
 
 static gboolean tell_drawn(void *data)
@@ -213,36 +268,67 @@ static gboolean tell_drawn(void *data)
     return G_SOURCE_REMOVE;
 }
 
+/* When the main loop has nothing else to do. To put a frame on the screen takes long,
+   too: it is shown when it has twice the points. */
+static gboolean next_part(void *data)
+{
+    photon_view *v = data;
+    GtkGLArea *area = GTK_GL_AREA(v->area);
+    gint64 start = g_get_monotonic_time();
+    gtk_gl_area_make_current(area);
+    gl_keep_begin(&v->kept, v->kept.width, v->kept.height);
+    const int pixels[2] = {v->kept.width, v->kept.height};
+    gl_painter_begin(&v->painter, v->drawn_from, pixels);
+    draw_more(v, PART_GOAL, gtk_widget_get_scale_factor(v->area));
+    v->frame.seconds = seconds_since(start);
+    bool all = count_drawn(v) == count_all(v);
+    if (all || count_drawn(v) >= 2 * v->frame.points)
+        gtk_gl_area_queue_render(area);
+    if (all)
+        v->drawing = 0;
+    return all ? G_SOURCE_REMOVE : G_SOURCE_CONTINUE;
+}
+
+static void note_frame(photon_view *v, gint64 start)
+{
+    v->frame = (photon_frame){.number = v->frame.number + 1,
+                              .seconds = seconds_since(start),
+                              .points = count_drawn(v),
+                              .all = count_all(v)};
+    if (v->frame.points < v->frame.all && !v->drawing)
+        v->drawing = g_idle_add(next_part, v);
+    if (!v->telling)
+        v->telling = g_timeout_add(TELL_MS, tell_drawn, v);
+}
+
+/* A picture begins with what there is time for; one that is still right is shown as far
+   as it has come. */
 static gboolean render(GtkGLArea *area, GdkGLContext *context, photon_view *v)
 {
     (void)context;
-    static const float background[3] = {0.10f, 0.10f, 0.11f};
     const projection p = projection_of(v);
-    int scale = gtk_widget_get_scale_factor(v->area);
-    const float pixels[2] = {(float)(p.width * scale), (float)(p.height * scale)};
+    int scale = gtk_widget_get_scale_factor(v->area), given = 0;
+    const int pixels[2] = {(int)p.width * scale, (int)p.height * scale};
     float matrix[16];
     if (gtk_gl_area_get_error(area) || !v->painter.program)
         return FALSE;
     gint64 start = g_get_monotonic_time();
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &given);
     want_wire(v);
-    upload(v);
+    v->stale |= upload(v);
     projection_matrix(&p, matrix);
-    gl_painter_begin(&v->painter, matrix, pixels, background);
-    if (v->style.wireframe)
-        gl_layer_lines(&v->painter, &v->wire_layer, 0.55f, WIRE_WIDTH * scale);
-    size_t points = draw_photons(v, scale);
-    glDisable(GL_DEPTH_TEST);
-    gl_layer_points(&v->painter, &v->point_layer,
-                    &(gl_points){0, v->point_layer.n, MARK_SIZE * (float)scale, 1.0f});
-    gl_layer_lines(&v->painter, &v->line_layer, 1.0f, PATH_WIDTH * scale);
+    bool is_right = gl_keep_begin(&v->kept, pixels[0], pixels[1]) && !v->stale &&
+                    memcmp(matrix, v->drawn_from, sizeof matrix) == 0;
+    gl_painter_begin(&v->painter, matrix, pixels);
+    if (!is_right) {
+        draw_first(v, matrix, scale);
+        glFinish();
+        draw_more(v, PART_GOAL - seconds_since(start), scale);
+    }
+    gl_keep_show(&v->kept, (unsigned)given);
+    draw_marks(v, scale);
     glFinish();
-    v->frame =
-        (photon_frame){.number = v->frame.number + 1,
-                       .seconds = 1e-6 * (double)(g_get_monotonic_time() - start),
-                       .points = points,
-                       .all = v->cloud ? photon_cloud_count(v->cloud, v->style.maps) : 0};
-    if (!v->telling)
-        v->telling = g_timeout_add(TELL_MS, tell_drawn, v);
+    note_frame(v, start);
     return TRUE;
 }
 
@@ -262,11 +348,13 @@ static void unrealize(GtkGLArea *area, photon_view *v)
 {
     gl_layer *const layers[] = {&v->wire_layer, &v->photon_layer, &v->arrow_layer,
                                 &v->line_layer, &v->point_layer};
+    g_clear_handle_id(&v->drawing, g_source_remove);
     gtk_gl_area_make_current(area);
     if (gtk_gl_area_get_error(area))
         return;
     for (size_t i = 0; i < G_N_ELEMENTS(layers); i++)
         gl_layer_clear(layers[i]);
+    gl_keep_clear(&v->kept);
     gl_painter_clear(&v->painter);
 }
 
@@ -283,7 +371,6 @@ photon_view *photon_view_new(const viewpoint *view,
     v->style = (photon_style){.maps = 7, .point_size = 2.0f, .wireframe = true};
     v->area =
         g_object_new(GTK_TYPE_GL_AREA, "accessible-role", GTK_ACCESSIBLE_ROLE_IMG, NULL);
-    gtk_gl_area_set_has_depth_buffer(GTK_GL_AREA(v->area), TRUE);
     gtk_gl_area_set_auto_render(GTK_GL_AREA(v->area), FALSE);
     gtk_widget_set_hexpand(v->area, TRUE);
     gtk_widget_set_vexpand(v->area, TRUE);
@@ -315,9 +402,8 @@ GtkWidget *photon_view_widget(photon_view *v)
     return v->area;
 }
 
-void photon_view_redraw(photon_view *v, bool moving)
+void photon_view_redraw(photon_view *v)
 {
-    v->moving = moving;
     gtk_gl_area_queue_render(GTK_GL_AREA(v->area));
 }
 
@@ -335,9 +421,10 @@ void photon_view_set_scene(photon_view *v, held_scene *scene)
 
 void photon_view_set_cloud(photon_view *v, photon_cloud *cloud)
 {
+    g_clear_handle_id(&v->drawing, g_source_remove);
     photon_cloud_free(v->cloud);
     v->cloud = cloud;
-    if (cloud)
+    if (cloud && cloud->coloring != v->style.coloring)
         photon_cloud_color(cloud, v->style.coloring);
     v->photons_changed = true;
     photon_view_set_marks(v, NULL, 0, NULL, 0);
@@ -351,13 +438,14 @@ const photon_cloud *photon_view_cloud(const photon_view *v)
 void photon_view_set_style(photon_view *v, const photon_style *style)
 {
     bool recolor = v->style.coloring != style->coloring;
+    g_clear_handle_id(&v->drawing, g_source_remove);
     v->style = *style;
     if (recolor && v->cloud) {
         photon_cloud_color(v->cloud, style->coloring);
         v->photons_changed = true;
     }
     v->arrows_changed = true;
-    photon_view_redraw(v, false);
+    photon_view_redraw(v);
 }
 
 const photon_style *photon_view_style(const photon_view *v)
@@ -368,6 +456,7 @@ const photon_style *photon_view_style(const photon_view *v)
 void photon_view_set_marks(photon_view *v, const cloud_vertex *lines, size_t n_lines,
                            const cloud_vertex *points, size_t n_points)
 {
+    v->stale |= (n_lines > 0) != (v->n_mark_lines > 0); /* it fades, or does no more */
     g_free(v->mark_lines);
     g_free(v->mark_points);
     v->mark_lines = g_memdup2(lines, n_lines * sizeof *lines);
@@ -375,7 +464,7 @@ void photon_view_set_marks(photon_view *v, const cloud_vertex *lines, size_t n_l
     v->n_mark_lines = n_lines;
     v->n_mark_points = n_points;
     v->marks_changed = true;
-    photon_view_redraw(v, false);
+    photon_view_redraw(v);
 }
 
 const photon_frame *photon_view_frame(const photon_view *v)

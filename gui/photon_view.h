@@ -26,8 +26,8 @@ enum { MOST_ARROWS = 1000 };
 typedef struct photon_frame {
     guint64 number; /**< counted from 1; 0: none yet */
     double seconds; /**< until it was drawn; 0: none yet */
-    size_t points;  /**< photons drawn, */
-    size_t all;     /**< of so many: while the view moves slow graphics draw fewer */
+    size_t points;  /**< photons that can be seen, */
+    size_t all;     /**< of so many: slow graphics draw them in several frames */
 } photon_frame;
 
 /** @brief viewpoint: borrowed, must outlive it. drawn is told a moment after a frame. */
@@ -46,8 +46,8 @@ void photon_view_set_cloud(photon_view *v, photon_cloud *cloud);
 const photon_cloud *photon_view_cloud(const photon_view *v);
 void photon_view_set_style(photon_view *v, const photon_style *style);
 const photon_style *photon_view_style(const photon_view *v);
-/** @brief The viewpoint has moved; moving: and will again at once. */
-void photon_view_redraw(photon_view *v, bool moving);
+/** @brief The viewpoint has moved. */
+void photon_view_redraw(photon_view *v);
 /** @brief Drawn over everything: line ends, and points. Copied. */
 void photon_view_set_marks(photon_view *v, const cloud_vertex *lines, size_t n_lines,
                            const cloud_vertex *points, size_t n_points);

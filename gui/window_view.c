@@ -14,7 +14,7 @@ void window_view_moved(const NephCamera *camera, bool moving, void *data)
     if (!w->scene)
         return;
     session_set_camera(w->session, camera, moving);
-    photon_view_redraw(w->photon_view, moving);
+    photon_view_redraw(w->photon_view);
     camera_panel_show(w->camera_panel, camera);
 }
 
