@@ -9,6 +9,9 @@
  * one. Passes shrink all of them alike, so the estimate converges as with one radius
  * (Knaus & Zwicker 2011). Everything scales with the scene: in millimetres and in metres
  * it gets the same radius in pixels.
+ *
+ * No radius is finer than a pixel, of the place that it is for: a table may stand at a
+ * window, and most pixels be of a landscape where they are metres wide.
  */
 #include "transport/photonmap.h"
 #include "transport/visible.h"
@@ -40,6 +43,7 @@ typedef struct pilot {
     wavelengths w;
     visible_point points[PILOT_POINTS];
     size_t n_points;
+    photon_map *pixels; /* at those points; flux[0] is a pixel's width there */
 } pilot;
 
 static int ascending(const void *a, const void *b)
@@ -66,14 +70,29 @@ static float nearest_distance(const photon_map *map, vec3 p, photon_hits *hits)
     return sqrtf(d2);
 }
 
-/* Bounds of a class' radii, and what turns the pilot's distances into radii. */
+/* A bound of a class' radii, and what turns the pilot's distances into radii. */
 typedef struct radius_rule {
-    double scale, least, largest;
+    double scale, largest;
+    const photon_map *pixels;
 } radius_rule;
 
-static double radius_by(const radius_rule *rule, float distance)
+/* The finest radius of use at p. */
+static double least_radius(const radius_rule *rule, vec3 p, photon_hits *hits)
 {
-    return CLAMP(rule->scale * (double)distance, rule->least, rule->largest);
+    if (!photon_map_nearest(rule->pixels, p, 1, INFINITY, NULL, hits) || hits->n == 0)
+        return 0.0;
+    return (double)(LEAST_PIXELS *
+                    photon_map_store(rule->pixels)->flux[hits->index[0]][0]);
+}
+
+/* By the distance to the k-th nearest photon of the pilot; 0: there are too few. */
+static double radius_by(const radius_rule *rule, vec3 p, float distance,
+                        photon_hits *hits)
+{
+    if (!(distance > 0.0f))
+        return rule->largest;
+    double least = least_radius(rule, p, hits);
+    return fmin(fmax(rule->scale * (double)distance, least), rule->largest);
 }
 
 /* The median over the places where the camera looks or, for caustics, where photons are.
@@ -81,7 +100,7 @@ static double radius_by(const radius_rule *rule, float distance)
 static double typical_radius(const pilot *p, photon_class c, const photon_map *map,
                              const radius_rule *rule)
 {
-    float distances[PILOT_POINTS];
+    float radii[PILOT_POINTS];
     const photon_store *store = photon_map_store(map);
     size_t n = 0, n_probes = c == PHOTON_CAUSTIC ? PILOT_POINTS : p->n_points;
     photon_hits hits = {0};
@@ -90,10 +109,10 @@ static double typical_radius(const pilot *p, photon_class c, const photon_map *m
                                       : p->points[i].p;
         float d = nearest_distance(map, at, &hits);
         if (d > 0.0f)
-            distances[n++] = d;
+            radii[n++] = (float)radius_by(rule, at, d, &hits);
     }
     photon_hits_clear(&hits);
-    return n > 0 ? radius_by(rule, median(distances, n)) : 0.2 * rule->largest;
+    return n > 0 ? (double)median(radii, n) : 0.2 * rule->largest;
 }
 
 /* A radius at each of some of the pilot's photons, evenly chosen. */
@@ -109,20 +128,24 @@ static photon_map *keep_radii(const photon_map *map, const radius_rule *rule,
     for (size_t i = 0; i < n; i++) {
         photon at = photon_store_get(pilots, i * pilots->n / n);
         float d = nearest_distance(map, at.p, &hits);
-        double r = d > 0.0f ? radius_by(rule, d) : rule->largest;
-        at.flux = spectrum_fill((float)r);
+        at.flux = spectrum_fill((float)radius_by(rule, at.p, d, &hits));
         photon_store_put(&places, &at);
     }
     photon_hits_clear(&hits);
     return photon_map_build(MAP_KDTREE, &places, 0.0f, 1, error);
 }
 
-static double least_radius(const pilot *p)
+static photon_map *map_of_pixels(const pilot *p, GError **error)
 {
-    float pixels[PILOT_POINTS];
-    for (size_t i = 0; i < p->n_points; i++)
-        pixels[i] = p->points[i].pixel;
-    return p->n_points > 0 ? (double)(LEAST_PIXELS * median(pixels, p->n_points)) : 0.0;
+    photon_store store = {0};
+    if (!photon_store_reserve(&store, p->n_points, error))
+        return NULL;
+    for (size_t i = 0; i < p->n_points; i++) {
+        const visible_point *seen = &p->points[i];
+        photon at = {.p = seen->p, .wi = {0, 0, 1}, .flux = spectrum_fill(seen->pixel)};
+        photon_store_put(&store, &at);
+    }
+    return photon_map_build(MAP_KDTREE, &store, 0.0f, 1, error);
 }
 
 static photon_map *pilot_map(const pilot *p, photon_class c, const cancel_flag *cancel,
@@ -162,11 +185,10 @@ static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
     double wanted = fmax(photons_wanted[c] / passes, photons_wanted_least[c]);
     int n_slices = scene_time_slices(plan->scene, &plan->how);
     double density = (double)plan->n_photons[c] / n_slices / (double)n_emitted;
-    double largest = 0.1 * (double)plan->scene->radius;
     const radius_rule rule = {
         .scale = sqrt(wanted / PILOT_NEAREST / density),
-        .least = MIN(least_radius(p), largest),
-        .largest = largest,
+        .largest = 0.1 * (double)plan->scene->radius,
+        .pixels = p->pixels,
     };
     plan->radius[c] = typical_radius(p, c, map, &rule);
     plan->radius_map[c] = keep_radii(map, &rule, error);
@@ -178,12 +200,16 @@ bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,
 {
     bool ok = true;
     pilot p = {.plan = plan, .w = wavelengths_at(0.5f)};
-    if (!(plan->how.radius > 0.0))
+    if (!(plan->how.radius > 0.0)) {
         p.n_points = find_visible_points(plan, PILOT_POINTS, p.points);
+        p.pixels = map_of_pixels(&p, error);
+        ok = p.pixels != NULL;
+    }
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
         plan->radius[c] = plan->how.radius;
         if (!(plan->how.radius > 0.0) && plan->n_photons[c] > 0)
             ok = choose_radius(&p, (photon_class)c, cancel, error);
     }
+    photon_map_free(p.pixels);
     return ok;
 }

@@ -4,6 +4,11 @@
 
 enum { MAX_BOUNCES = 16, PIXEL_POINTS = 128 };
 
+/* The nearest of so many points, and how much wider than its pixels those that count may
+   be. */
+enum { NEAR = 20 };
+#define MOST_NEAR 2.0f
+
 /* What all camera rays share. */
 typedef struct lookout {
     const scene *scene;
@@ -70,5 +75,5 @@ float visible_pixel(const transport_plan *plan)
     visible_point points[PIXEL_POINTS];
     size_t n = find_visible_points(plan, PIXEL_POINTS, points);
     qsort(points, n, sizeof *points, by_pixel);
-    return n > 0 ? points[n / 2].pixel : 0.0f;
+    return n > 0 ? minf(points[n / 2].pixel, MOST_NEAR * points[n / NEAR].pixel) : 0.0f;
 }

@@ -14,6 +14,7 @@ typedef struct visible_point {
 /** @brief Up to n points into out. @return how many. */
 size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point *out);
 
-/** @brief The median width of a pixel's footprint on what the camera sees, m; 0 if that
- * is nothing. */
+/** @brief The median width of a pixel's footprint on what the camera sees, m, but not
+ * much more than on what it sees from nearby, before a landscape; 0 if it sees nothing.
+ */
 float visible_pixel(const transport_plan *plan);
