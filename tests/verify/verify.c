@@ -16,9 +16,10 @@ typedef struct recorder {
     const render *render;
     trial *trial;
     bool lamps;                   /* with what is seen of them directly */
+    bool flip;                    /* left for right */
     int per_group;                /* passes */
     int64_t seen;                 /* passes that the last group ended with */
-    double before[VERIFY_BLOCKS]; /* sum over the passes seen */
+    double before[VERIFY_PIXELS]; /* luminance of pixels, sum over the passes seen */
 } recorder;
 
 static size_t block_of(const image *img, size_t pixel)
@@ -27,20 +28,24 @@ static size_t block_of(const image *img, size_t pixel)
     return pixel / w * SIDE / h * SIDE + pixel % w * SIDE / w;
 }
 
-/* Mean luminance by blocks, with or without what the camera sees of lamps. */
-static void measure_blocks(const image *img, bool lamps, double mean[VERIFY_BLOCKS])
+static size_t mirrored(const image *img, size_t pixel)
 {
-    static const double y[3] = {0.2126, 0.7152, 0.0722};
-    double share = (double)VERIFY_BLOCKS / (double)pixels_of(img);
-    for (size_t k = 0; k < VERIFY_BLOCKS; k++)
-        mean[k] = 0;
+    size_t w = (size_t)img->width;
+    return pixel / w * w + w - 1 - pixel % w;
+}
+
+/* Luminance of pixels, with or without what the camera sees of lamps. */
+static void measure(const image *img, bool lamps, double y[VERIFY_PIXELS])
+{
+    static const double share[3] = {0.2126, 0.7152, 0.0722};
+    for (size_t i = 0; i < pixels_of(img); i++)
+        y[i] = 0;
     for (size_t c = 0; c < 3; c++) {
         g_autofree char *all = g_strdup_printf("%c", "RGB"[c]);
         g_autofree char *seen = g_strdup_printf("emission.%c", "RGB"[c]);
         size_t a = channel_of(img, all), b = channel_of(img, seen);
         for (size_t i = 0; i < pixels_of(img); i++)
-            mean[block_of(img, i)] +=
-                share * y[c] * (at(img, i, a) - (lamps ? 0 : at(img, i, b)));
+            y[i] += share[c] * (at(img, i, a) - (lamps ? 0 : at(img, i, b)));
     }
 }
 
@@ -51,13 +56,17 @@ static bool record(double fraction, const render_statistics *st, void *data)
     if (st->passes == r->seen || st->passes % r->per_group != 0)
         return true;
     g_autoptr(image) img = image_of(r->render);
-    double mean[VERIFY_BLOCKS];
-    double *group = r->trial->value[st->passes / r->per_group - 1];
-    measure_blocks(img, r->lamps, mean);
-    for (size_t k = 0; k < VERIFY_BLOCKS; k++) {
-        double sum = mean[k] * (double)st->passes;
-        group[k] = (sum - r->before[k]) / r->per_group;
-        r->before[k] = sum;
+    size_t group = (size_t)(st->passes / r->per_group - 1), n = pixels_of(img);
+    double y[VERIFY_PIXELS];
+    g_assert_cmpuint(n, <=, VERIFY_PIXELS);
+    measure(img, r->lamps, y);
+    r->trial->n_pixels = n;
+    for (size_t i = 0; i < n; i++) {
+        double sum = y[r->flip ? mirrored(img, i) : i] * (double)st->passes;
+        double mean = (sum - r->before[i]) / r->per_group;
+        r->trial->pixel[group][i] = (float)mean;
+        r->trial->value[group][block_of(img, i)] += mean * VERIFY_BLOCKS / (double)n;
+        r->before[i] = sum;
     }
     r->seen = st->passes;
     return true;
@@ -74,38 +83,27 @@ static double group_total(const trial *t, size_t group)
 
 typedef struct moments {
     double mean, error; /* standard error of the mean */
+    double third;       /* central moment */
 } moments;
 
 static moments moments_of(const double *x, size_t n)
 {
-    double sum = 0, square = 0;
+    double sum = 0, square = 0, cube = 0;
     for (size_t i = 0; i < n; i++)
         sum += x[i];
     double mean = sum / (double)n;
-    for (size_t i = 0; i < n; i++)
-        square += (x[i] - mean) * (x[i] - mean);
-    return (moments){mean, sqrt(square / (double)(n * (n - 1)))};
-}
-
-/* Left for right. */
-static void flip_blocks(double blocks[VERIFY_BLOCKS])
-{
-    for (size_t y = 0; y < SIDE; y++) {
-        for (size_t x = 0; x < SIDE / 2; x++) {
-            double *a = &blocks[SIDE * y + x], *b = &blocks[SIDE * y + SIDE - 1 - x];
-            double keep = *a;
-            *a = *b;
-            *b = keep;
-        }
+    for (size_t i = 0; i < n; i++) {
+        double off = x[i] - mean;
+        square += off * off;
+        cube += off * off * off;
     }
+    return (moments){mean, sqrt(square / (double)(n * (n - 1))), cube / (double)n};
 }
 
-static void sum_up(trial *t, bool flip)
+static void sum_up(trial *t)
 {
     double totals[VERIFY_GROUPS];
     for (size_t g = 0; g < VERIFY_GROUPS; g++) {
-        if (flip)
-            flip_blocks(t->value[g]);
         totals[g] = group_total(t, g);
         for (size_t k = 0; k < VERIFY_BLOCKS; k++)
             t->mean[k] += t->value[g][k] / VERIFY_GROUPS;
@@ -125,12 +123,13 @@ trial verify_render(const subject *of, int passes)
     recorder rec = {.render = r,
                     .trial = &t,
                     .lamps = of->lamps,
+                    .flip = of->flip,
                     .per_group = passes / VERIFY_GROUPS};
     render_run(r, record, &rec, &error);
     g_assert_no_error(error);
     g_assert_cmpint(rec.seen, ==, passes);
     g_assert_cmpuint(render_get_statistics(r).n_not_finite, ==, 0);
-    sum_up(&t, of->flip);
+    sum_up(&t);
     return t;
 }
 
@@ -171,10 +170,33 @@ static double block_deviate(const trial *a, const trial *b, size_t block, double
     return verify_normal_of_t(beyond / m.error, VERIFY_GROUPS - 1);
 }
 
+/* Johnson's t, of the third moment over 6 s² n and 3 s⁴, for error² = s² / n. */
+static double skewed_t(const moments *m, size_t n)
+{
+    double variance = m->error * m->error * (double)n;
+    double skew = m->third / variance;
+    double shifted =
+        m->mean + skew / (6 * (double)n) + skew * m->mean * m->mean / (3 * variance);
+    return fabs(shifted) / m->error;
+}
+
+static double pixel_deviate(const trial *a, const trial *b, size_t pixel)
+{
+    double difference[VERIFY_GROUPS], least = 1e-6 * fabs(b->total);
+    for (size_t g = 0; g < VERIFY_GROUPS; g++)
+        difference[g] = (double)a->pixel[g][pixel] - (double)b->pixel[g][pixel];
+    moments m = moments_of(difference, VERIFY_GROUPS);
+    if (fabs(m.mean) <= least)
+        return 0;
+    m.error = fmax(m.error, least);
+    return verify_normal_of_t(skewed_t(&m, VERIFY_GROUPS), VERIFY_GROUPS - 1);
+}
+
 agreement verify_compare(const trial *a, const trial *b, double bias)
 {
     double difference[VERIFY_GROUPS];
-    agreement found = {.limit = verify_sidak(FALSE_ALARM, VERIFY_BLOCKS)};
+    agreement found = {.limit = verify_sidak(FALSE_ALARM, VERIFY_BLOCKS),
+                       .pixel_limit = verify_sidak(FALSE_ALARM, a->n_pixels)};
     for (size_t g = 0; g < VERIFY_GROUPS; g++)
         difference[g] = group_total(a, g) - group_total(b, g);
     moments m = moments_of(difference, VERIFY_GROUPS);
@@ -182,6 +204,8 @@ agreement verify_compare(const trial *a, const trial *b, double bias)
     found.error = m.error / b->total;
     for (size_t k = 0; k < VERIFY_BLOCKS; k++)
         found.z = fmax(found.z, block_deviate(a, b, k, bias));
+    for (size_t i = 0; i < a->n_pixels; i++)
+        found.pixel_z = fmax(found.pixel_z, pixel_deviate(a, b, i));
     return found;
 }
 
@@ -194,6 +218,10 @@ static trial constant(double expected)
         t.mean[k] = expected;
         for (size_t g = 0; g < VERIFY_GROUPS; g++)
             t.value[g][k] = expected;
+    }
+    for (size_t g = 0; g < VERIFY_GROUPS; g++) {
+        for (size_t i = 0; i < VERIFY_PIXELS; i++)
+            t.pixel[g][i] = (float)expected;
     }
     return t;
 }
@@ -223,10 +251,10 @@ void verify_agree(const char *name, const subject *of, yardstick *is, int passes
     for (int level = 0; level < VERIFY_SHORT_LONG(1, VERIFY_LEVELS); level++) {
         const trial *b = rendered(is, level, passes), a = verify_render(of, passes);
         found = verify_compare(&a, b, allowed.block);
-        g_test_message("%s: %g and %g, %+.3f %% (+- %.3f), worst block z = %.1f of %.1f "
-                       "by %d passes",
+        g_test_message("%s: %g and %g, %+.3f %% (+- %.3f), worst block z = %.1f of "
+                       "%.1f, worst pixel %.1f of %.1f by %d passes",
                        name, a.total, b->total, 100 * found.off, 100 * found.error,
-                       found.z, found.limit, passes);
+                       found.z, found.limit, found.pixel_z, found.pixel_limit, passes);
         if (found.error < known)
             break;
         passes *= 4;
@@ -235,6 +263,8 @@ void verify_agree(const char *name, const subject *of, yardstick *is, int passes
     g_assert_cmpfloat(fabs(found.off) - allowed.total, <,
                       found.error * verify_sidak(FALSE_ALARM, 1));
     g_assert_cmpfloat(found.z, <, found.limit);
+    if (allowed.pixels)
+        g_assert_cmpfloat(found.pixel_z, <, found.pixel_limit);
 }
 
 double verify_log_slope(const double *x, const double *y, size_t n)

@@ -9,6 +9,17 @@
  * of one seed. So trials of the same number of passes are compared pass by pass, and what
  * wavelengths do to both is not taken for noise.
  *
+ * Blocks of pixels are held to what a radius may blur, pixels to noise alone: where
+ * nothing blurs (path tracing, connections), or no further than a small part of a pixel.
+ * The latter needs a `radius` that is given and then photons enough, so that a pixel's
+ * mean is known; with radii that the renderer chooses, some pixels wide, that can not be
+ * asked.
+ *
+ * A pixel's passes are few and their distribution has a long tail upward, of which a mean
+ * and a variance know too little: in 32 groups that met no bright path both are small. So
+ * Student's t is taken with its skewness (Johnson, "Modified t Tests and Confidence
+ * Intervals for Asymmetrical Populations", 1978).
+ *
  * The short form runs with all tests. NEPHROID_VERIFY=long takes more samples and allows
  * less.
  */
@@ -16,7 +27,7 @@
 
 #include "render_with.h"
 
-enum { VERIFY_GROUPS = 32, VERIFY_BLOCKS = 64 };
+enum { VERIFY_GROUPS = 32, VERIFY_BLOCKS = 64, VERIFY_PIXELS = 1024 };
 
 /** @brief A render as its passes told it: luminance of what is reflected (all but the
  * lamps as the camera sees them, whose edges make a noise of their own). */
@@ -25,6 +36,8 @@ typedef struct trial {
                                                    groups of passes */
     double mean[VERIFY_BLOCKS], total;          /**< of all passes; of the picture */
     double error;                               /**< standard error of total */
+    size_t n_pixels;                            /**< at most VERIFY_PIXELS */
+    float pixel[VERIFY_GROUPS][VERIFY_PIXELS];  /**< as value, pixel by pixel */
 } trial;
 
 /** @brief What the comparison of two trials found. */
@@ -33,6 +46,7 @@ typedef struct agreement {
     double error; /**< standard error of that */
     double z;     /**< of the worst block, as a normal deviate, beyond the bias allowed */
     double limit; /**< of |z|, so that noise alone passes it once in 10⁶ comparisons */
+    double pixel_z, pixel_limit; /**< of the worst pixel, without any bias */
 } agreement;
 
 /** @brief True if NEPHROID_VERIFY is "long". */
@@ -78,13 +92,14 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(yardstick, yardstick_clear)
 typedef struct allowance {
     double total; /**< relative */
     double block; /**< bias of verify_compare */
+    bool pixels;  /**< each pixel too must be right, to noise */
 } allowance;
 
 /**
  * @brief Renders and compares. Fails if totals differ by more than is allowed and noise,
- * or some block is beyond its limit, or noise is so much that this says little: a total
- * not known to three times what is allowed. The long form takes four times as many passes
- * until it is known to half of that.
+ * or some block (or pixel) is beyond its limit, or noise is so much that this says
+ * little: a total not known to three times what is allowed. The long form takes four
+ * times as many passes until it is known to half of that.
  * @param passes of the short form
  */
 void verify_agree(const char *name, const subject *of, yardstick *is, int passes,

@@ -19,7 +19,7 @@
 static void test_point_light_through_glass(void)
 {
     g_autoptr(scene) s = scene_of(POINT_LIGHT_AND_GLASS);
-    const allowance allowed = {0.005, 0.02};
+    const allowance allowed = {0.005, 0.02, false};
     g_auto(yardstick) sppm = {
         .of = {.scene = s,
                .words = "integrator=sppm spp=8 photons=40000 max_backward_bounces=-1"}};
