@@ -54,8 +54,9 @@ static scene *changed_scene(const char *look, const change *c)
 static const change nothing = {"", "", "", "1"},
                     mirrored_world = {"", "Scale -1 1 1", "", "1"};
 
-/* What is blurred is so in both alike: each pixel must be the same, to noise. */
-static const allowance allowed = {0.005, 0.005, true};
+/* The same random numbers go the same ways but where rounding turns a ray at an edge:
+   what that does to a pixel is next to nothing, but no noise. */
+static const allowance allowed = {0.005, 0.005, false};
 
 static void test_changes(gconstpointer way)
 {
@@ -68,7 +69,8 @@ static void test_changes(gconstpointer way)
     }
 }
 
-/* The world mirrored at x = 0 and the eye with it, but not the picture. */
+/* The world mirrored at x = 0 and the eye with it, but not the picture. Other numbers
+   then go other ways, and blur alike: each pixel must be the same, to noise. */
 static void test_mirror_image(gconstpointer way)
 {
     g_autoptr(scene) plain = changed_scene(LOOK, &nothing);
@@ -76,7 +78,7 @@ static void test_mirror_image(gconstpointer way)
         changed_scene("LookAt -0.4 -3.4 1.2  0 0 0.9  0 0 1 ", &mirrored_world);
     g_auto(yardstick) is = {.of = {.scene = plain, .words = way}};
     verify_agree("mirror image", &(subject){.scene = s, .words = way, .flip = true}, &is,
-                 32, allowed);
+                 32, (allowance){0.005, 0.005, true});
 }
 
 int main(int argc, char **argv)
