@@ -106,9 +106,6 @@ static void test_kinds_and_parameters(void)
            "%s:4:16: unknown parameter 'radious' of shape \"sphere\"");
     refuse(WORLD "Shape \"sphere\" \"texture alpha\" \"leaf\"\n",
            "%s:4:16: parameter 'alpha': there is no float texture 'leaf'");
-    refuse(WORLD "AreaLightSource \"diffuse\"\nShape \"sphere\" \"float alpha\" 0\n",
-           "%s:5:1: a shape of \"alpha\" 0 can not shine; \"bool camera_visible\" false "
-           "hides a lamp from the camera");
     refuse(WORLD "AreaLightSource \"sparkle\"\n",
            "%s:4:17: expected AreaLightSource \"diffuse\", found \"sparkle\"");
     refuse(WORLD "Texture \"t\" \"rgb\" \"constant\"\n",

@@ -335,6 +335,8 @@ static const lighting lightings[] = {
     {"infinite", "LightSource \"infinite\""},
     {"sphere", "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9] Translate -1 -1 2 Shape "
                "\"sphere\" \"float radius\" 0.3"},
+    {"unseen", "AreaLightSource \"diffuse\" \"rgb L\" [9 9 9] Translate -1 -1 2 Shape "
+               "\"sphere\" \"float radius\" 0.3 \"float alpha\" 0"},
     {"hidden-shape",
      "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [-1 -2 2] Translate 0.3 "
      "-1.5 0.9 "

@@ -109,7 +109,7 @@ static bool emit(photon_path *path)
     path->flux = at.flux / (float)task->n_photons;
     path->light = at.light;
     path->lane = ALL_LANES;
-    path->from_delta = scene_light(task->scene, at.light)->kind->is_delta;
+    path->from_delta = scene_light(task->scene, at.light)->is_unmet;
     path->specular_only = true;
     path->share = 1.0f;
     path->primitive = at.primitive;

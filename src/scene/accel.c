@@ -370,6 +370,8 @@ static void attach_shapes(accel *a, accel_group *group)
     group_open(a, group);
     for (unsigned i = 0; i < group->n; i++) {
         shape *s = a->shapes[group->shapes[i]];
+        if (s->is_invisible)
+            continue;
         attach(group, shape_geometry(a, s), i);
         group->bounds = box3_union(group->bounds, s->kind->bounds(s->self));
     }

@@ -72,8 +72,11 @@ light *light_new(const struct scene *s, const char *name, const params *p,
         return NULL;
     }
     light *l = g_new0(light, 1);
-    *l = (light){
-        .kind = kind, .self = self, .place = p->place, .group = g_steal_pointer(&group)};
+    *l = (light){.kind = kind,
+                 .self = self,
+                 .place = p->place,
+                 .is_unmet = kind->is_delta || (on && on->is_invisible),
+                 .group = g_steal_pointer(&group)};
     return l;
 }
 

@@ -44,7 +44,7 @@ typedef struct light_kind {
     /** Tells kinds of one name apart by their parameters, none of which it marks used;
      * NULL: always meant. The first in the table that is meant is made. */
     bool (*is_meant)(const params *p);
-    bool is_delta;       /**< no camera ray can hit it: point, spot, distant */
+    bool is_delta;       /**< without an extent: point, spot, distant */
     bool is_environment; /**< shines from beyond the scene */
     bool is_parallel;    /**< emit_toward is given a direction and leaves the place across
                             the    ray open: distant and infinite lights */
@@ -95,6 +95,7 @@ struct light {
     char *group;     /**< light group's name, NULL: the default one */
     int group_index; /**< in scene->light_groups, if there are any */
     media media;     /**< the solids that it shines in */
+    bool is_unmet;   /**< no ray can meet it: without an extent, or of alpha 0 */
     bool is_apart;   /**< stands outside the sphere around what casts caustics: from it,
                         that sphere is a cone */
 };

@@ -52,7 +52,8 @@ static spectrum shines(const area_light *l, const surface_hit *hit, const wavele
     return l->radiance.scale * spectrum_input_eval(&l->colors, hit, w);
 }
 
-/* L at a place drawn on the shape, less what a cut-out takes of it. */
+/* L at a place drawn on the shape, less what a cut-out takes of it; alpha 0 everywhere
+ * makes a lamp that is not seen but shines (pbrt-v4). */
 static spectrum shines_from(const area_light *l, const shape_sample *at,
                             const wavelengths *w)
 {
@@ -63,7 +64,7 @@ static spectrum shines_from(const area_light *l, const shape_sample *at,
                              .primitive = at->primitive,
                              .mesh = at->mesh,
                              .corners = at->corners};
-    return shines(l, &hit, w) * shape_opacity(l->on, &hit);
+    return shines(l, &hit, w) * (l->on->is_invisible ? 1.0f : shape_opacity(l->on, &hit));
 }
 
 /* Mean over the surface: by points spread evenly (Roberts' sequence) if it
@@ -146,10 +147,6 @@ static void *create(const struct scene *s, const params *p, const transform *to_
     l->on = on;
     if (!(on->area > 0.0f))
         error_at(error, on->place, "a shape that shines must have an area");
-    else if (on->has_alpha && !on->alpha.texture && !(on->alpha.constant > 0.0f))
-        error_at(error, on->place,
-                 "a shape of \"alpha\" 0 can not shine; \"bool camera_visible\" false "
-                 "hides a lamp from the camera");
     else if (params_bool(p, "twosided", &l->two_sided, error) &&
              read_radiance(l, s, p, error))
         return l;

@@ -33,6 +33,11 @@ static const shape_kind *find_kind(const char *name)
     return NULL;
 }
 
+static bool hides_nothing(const float_input *alpha)
+{
+    return alpha && !alpha->texture && !(alpha->constant > 0.0f);
+}
+
 static shape *shape_wrap(const shape_kind *kind, void *self, const shape_place *at,
                          source_place place)
 {
@@ -40,9 +45,10 @@ static shape *shape_wrap(const shape_kind *kind, void *self, const shape_place *
     *s =
         (shape){.kind = kind,
                 .self = self,
-                .material = at->material,
+                .material = hides_nothing(at->alpha) ? NO_INDEX : at->material,
                 .light = NO_INDEX,
                 .camera_hidden = at->camera_hidden,
+                .is_invisible = hides_nothing(at->alpha),
                 .has_alpha = at->alpha && (at->alpha->texture || at->alpha->constant < 1),
                 .alpha = at->alpha ? *at->alpha : (float_input){.constant = 1.0f},
                 .object = NO_INDEX,

@@ -88,6 +88,7 @@ struct shape {
     int light; /**< index in scene->lights or NO_INDEX */
     bool camera_hidden;
     const interior *interior; /**< its material's, once the scene is committed */
+    bool is_invisible; /**< alpha is 0 everywhere: no ray meets it, but it may shine */
     bool has_alpha;
     float_input alpha;
     int object; /**< index in scene->objects it is a part of, or NO_INDEX: the world */

@@ -90,10 +90,10 @@ path_effort path_effort_measure(const transport_plan *plan)
 
 /* ---- What photons are worth ---- */
 
-static bool has_delta_lights(const scene *s)
+static bool has_unmet_lights(const scene *s)
 {
     for (unsigned i = 0; i < s->lights->len; i++) {
-        if (scene_light(s, (int)i)->kind->is_delta)
+        if (scene_light(s, (int)i)->is_unmet)
             return true;
     }
     return false;
@@ -108,7 +108,7 @@ static double gather_rays(const path_effort *paths)
 
 double caustic_least_noise(const transport_plan *plan, const path_effort *paths)
 {
-    if (plan->how.class_photons[PHOTON_CAUSTIC] > 0 || has_delta_lights(plan->scene))
+    if (plan->how.class_photons[PHOTON_CAUSTIC] > 0 || has_unmet_lights(plan->scene))
         return 0.0;
     return paths->noise * gather_rays(paths) / fmax(paths->rays, 1.0);
 }
@@ -147,7 +147,7 @@ void caustic_budget_decide(transport_plan *plan, const aim_result *found,
     if (plan->how.class_photons[PHOTON_CAUSTIC] > 0)
         return;
     double share = best_share(plan, found, paths);
-    if (found->noise > 0.0 && has_delta_lights(plan->scene))
+    if (found->noise > 0.0 && has_unmet_lights(plan->scene))
         share = fmax(share, LEAST_WORTH);
     *n = share > 0.0 ? (uint64_t)MAX(share * (double)*n, 1.0) : 0;
 }

@@ -23,13 +23,13 @@ static float density_of_following(const direct_query *query, vec3 wi)
 
 /* f of one class of lobes, weighed against following where that is done too. */
 static spectrum weighed_lobe(const direct_query *query, const light_sample *to_light,
-                             bool is_delta, unsigned lobe)
+                             bool unmet, unsigned lobe)
 {
     if (!(query->bsdf->lobes & lobe))
         return (spectrum){0};
     spectrum f = bsdf_eval(query->bsdf, query->wo, to_light->wi, lobe | LOBE_ANY_SIDE,
                            TRANSPORT_RADIANCE);
-    bool shared = (query->followed & lobe) && !is_delta && query->shadow_rays;
+    bool shared = (query->followed & lobe) && !unmet && query->shadow_rays;
     if (!shared || spectrum_is_black(f))
         return f;
     float pdf = density_of_following(query, to_light->wi);
@@ -62,9 +62,9 @@ static float glossy_share(const direct_query *query, const light_sample *to_ligh
 static bool radiance_of(const direct_query *query, const light_sample *to_light,
                         bool each, direct_radiance *found, uint64_t *shadow_rays_traced)
 {
-    bool is_delta = scene_light(query->scene, found->light)->kind->is_delta;
-    spectrum diffuse = weighed_lobe(query, to_light, is_delta, LOBE_DIFFUSE);
-    spectrum glossy = weighed_lobe(query, to_light, is_delta, LOBE_GLOSSY);
+    bool unmet = scene_light(query->scene, found->light)->is_unmet;
+    spectrum diffuse = weighed_lobe(query, to_light, unmet, LOBE_DIFFUSE);
+    spectrum glossy = weighed_lobe(query, to_light, unmet, LOBE_GLOSSY);
     if (query->share && !spectrum_is_black(glossy))
         glossy *= glossy_share(query, to_light, found->light, each);
     if (spectrum_is_black(diffuse + glossy))

@@ -204,7 +204,7 @@ static void gather_caustics(path_walk *walk, const camera_path *path,
                             const surface_hit *hit, const bsdf *b)
 {
     const photonmap_pass *photons = walk->pass->caustics;
-    unsigned delta = path->n_diffuse == 0 && photons->has_delta_lights ? LOBE_GLOSSY : 0;
+    unsigned delta = path->n_diffuse == 0 && photons->has_unmet_lights ? LOBE_GLOSSY : 0;
     camera_path seen = *path;
     int64_t limit = walk->how->max_backward_bounces;
     if (!(b->lobes & (LOBE_DIFFUSE | delta)) || is_caustic(path) ||

@@ -73,10 +73,10 @@ static double seconds(void)
     return (double)g_get_monotonic_time() * 1e-6;
 }
 
-static bool has_delta_lights(const scene *s)
+static bool has_unmet_lights(const scene *s)
 {
     for (unsigned i = 0; i < s->lights->len; i++) {
-        if (scene_light(s, (int)i)->kind->is_delta)
+        if (scene_light(s, (int)i)->is_unmet)
             return true;
     }
     return false;
@@ -248,7 +248,7 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
     pass->how = &plan->how;
     pass->w = wavelengths_for_pass((uint64_t)plan->how.seed, index);
     pass->options.deterministic = !plan->how.multiple_samples;
-    pass->has_delta_lights = has_delta_lights(plan->scene);
+    pass->has_unmet_lights = has_unmet_lights(plan->scene);
     pass->n_slices = scene_time_slices(plan->scene, &plan->how);
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         double radius = photonmap_radius(plan->radius[c], plan->how.alpha, index);

@@ -120,9 +120,8 @@ static float lamp_weight(const camera_walk *c, const vcm_vertex *v, int index,
         .pdf = to_light->pdf,
         .cosine = fabsf(dot3(to_light->wi, v->hit->n_geom)),
     };
-    float met = l->kind->is_delta
-                    ? 0.0f
-                    : vcm_pdf(v, to_light->wi, TRANSPORT_RADIANCE) / to_light->pdf;
+    float met =
+        l->is_unmet ? 0.0f : vcm_pdf(v, to_light->wi, TRANSPORT_RADIANCE) / to_light->pdf;
     float reverse = vcm_pdf_reverse(v, to_light->wi, TRANSPORT_RADIANCE);
     float traced =
         weights_connected(&c->walk.weights, light_start_traced_over_connected(&start),

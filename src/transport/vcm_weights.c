@@ -36,9 +36,8 @@ partial_weights weights_from_light(const light_start *start,
                                    const strategy_ratios *ratios)
 {
     float density = traced(start);
-    bool delta = start->light->kind->is_delta;
     partial_weights w = {.vcm = connected(start) / density};
-    w.vc = delta ? 0.0f : light_cosine(start) / density;
+    w.vc = start->light->is_unmet ? 0.0f : light_cosine(start) / density;
     w.vm = w.vc * ratios->connect;
     return w;
 }
