@@ -149,6 +149,87 @@ static void test_symmetry(void)
     }
 }
 
+/* Types B (2) and A (3): where their axes are, as LM-63 defines them, and the lumens in
+   closed form of one candela over half of all directions, and of what grows with an
+   angle. */
+static void test_other_types(void)
+{
+    static const struct {
+        int type;
+        const char *vertical, *horizontal, *values;
+        double lumens;
+        struct {
+            float gamma, c, candela;
+        } at[4];
+    } cases[] = {
+        /* One candela: a hemisphere below, or ahead. */
+        {2,
+         "-90 90",
+         "-90 90",
+         "1 1 1 1",
+         2 * G_PI,
+         {{0, 0, 1}, {80, 123, 1}, {100, 5, 0}, {180, 0, 0}}},
+        {3,
+         "-90 90",
+         "-90 90",
+         "1 1 1 1",
+         2 * G_PI,
+         {{90, 0, 1}, {170, 60, 1}, {90, 120, 0}, {90, 240, 0}}},
+        /* Floodlight: from 0 at the horizon behind to 18 ahead; ∫ (9 + v / 10°) dv = 9π,
+           times ∫ cos h dh = 2. */
+        {2,
+         "-90 90",
+         "0 90",
+         "0 18 0 18",
+         18 * G_PI,
+         {{0, 0, 9}, {60, 0, 15}, {60, 180, 3}, {90, 0, 18}}},
+        /* ... from 0 on C = 90 to 18 on C = 270: clockwise. */
+        {2,
+         "-90 90",
+         "-90 90",
+         "0 0 18 18",
+         18 * G_PI,
+         {{0, 0, 9}, {60, 90, 3}, {60, 270, 15}, {30, 0, 9}}},
+        /* Headlight: from 0 straight down to 18 up; ∫ cos v = 2, times π. */
+        {3,
+         "-90 90",
+         "0 90",
+         "0 18 0 18",
+         18 * G_PI,
+         {{90, 0, 9}, {60, 0, 6}, {120, 30, 12}, {180, 0, 18}}},
+        /* ... from 0 on the left, C = 90, to 18 on the right. */
+        {3,
+         "-90 90",
+         "-90 90",
+         "0 0 18 18",
+         18 * G_PI,
+         {{90, 0, 9}, {90, 60, 3}, {60, 300, 15}, {90, 90, 0}}},
+        /* The middle alone, falling off to its sides: 2 ∫∫ (1 - h / 30°) dh cos v dv. */
+        {3,
+         "-30 30",
+         "0 30",
+         "1 1 0 0",
+         G_PI / 6,
+         {{90, 0, 1}, {90, 15, 0.5f}, {90, 345, 0.5f}, {90, 31, 0}}},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autofree char *text = g_strdup_printf(
+            "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 2 %d 1 0 0 0\n1 1 10\n%s\n%s\n%s\n",
+            cases[i].type, cases[i].vertical, cases[i].horizontal, cases[i].values);
+        ies_profile ies;
+        g_autoptr(GError) error = NULL;
+        ies_read(&ies, text, &error);
+        g_assert_no_error(error);
+        g_assert_cmpfloat(fabs(ies_lumens(&ies) / cases[i].lumens - 1), <, 1e-5);
+        for (int k = 0; k < 4; k++) {
+            float found = ies_candela(&ies, cases[i].at[k].gamma, cases[i].at[k].c);
+            if (fabsf(found - cases[i].at[k].candela) > 1e-3f)
+                g_error("case %zu, place %d: %g cd", i, k, (double)found);
+        }
+        ies_clear(&ies);
+    }
+}
+
 /* LM-63-1986 has no first line; multipliers and tilt factors count. */
 static void test_factors(void)
 {
@@ -169,7 +250,9 @@ static void test_bad_profiles(void)
         {"", "TILT="},
         {"TILT=lamp.tlt\n", "TILT=NONE"},
         {"TILT=NONE\n1 2 3\n", "expected"},
-        {"TILT=NONE\n1 100 1 2 1 3 1 0 0 0\n1 1 10\n0 90\n0\n1 1", "type C"},
+        {"TILT=NONE\n1 100 1 2 1 4 1 0 0 0\n1 1 10\n0 90\n0\n1 1", "2 (B) or 3 (A)"},
+        {"TILT=NONE\n1 100 1 2 1 3 1 0 0 0\n1 1 10\n0 90\n0\n1 1", "-90..90"},
+        {"TILT=NONE\n1 100 1 2 2 2 1 0 0 0\n1 1 10\n0 180\n0 90\n1 1 1 1", "-90..90"},
         {"TILT=NONE\n1 100 1 2 1 1 1 0 0 0\n1 1 10\n90 0\n0\n1 1", "ascending"},
         {"TILT=NONE\n1 100 1 2 2 1 1 0 0 0\n1 1 10\n0 90\n0 33\n1 1 1 1", "horizontal"},
         {"TILT=NONE\n1 100 1 2 1 1 1 0 0 0\n1 1 10\n0 90\n0\n1", "candela"},
@@ -442,6 +525,7 @@ int main(int argc, char **argv)
     g_test_add_func("/directed/ies/published", test_published_lumens);
     g_test_add_func("/directed/ies/kept", test_profile_is_kept);
     g_test_add_func("/directed/ies/symmetry", test_symmetry);
+    g_test_add_func("/directed/ies/other-types", test_other_types);
     g_test_add_func("/directed/ies/factors", test_factors);
     g_test_add_func("/directed/ies/bad", test_bad_profiles);
     g_test_add_func("/directed/emission", test_emission);

@@ -6,6 +6,18 @@
 
 enum { MAX_ANGLES = 4096 };
 
+/** @brief A type of photometry: what the angles of its files mean. */
+typedef struct ies_photometry {
+    int number; /**< in the file */
+    bool (*check)(const ies_profile *ies, GError **error);
+    /** From a direction to angles within those of the file, by its symmetries; false if
+     * it is none of its. */
+    bool (*locate)(const ies_profile *ies, float gamma, float c, float *v, float *h);
+    double (*lumens)(const ies_profile *ies);
+} ies_photometry;
+
+static const ies_photometry *find_type(double number);
+
 /* Numbers being read, separated by white space or commas. */
 typedef struct ies_reader {
     const char *at;
@@ -105,12 +117,11 @@ static bool read_head(ies_reader *r, ies_profile *out, double *scale)
         !skip_numbers(r, 1, "input watts"))
         return false;
     *scale = tilt * multiplier * ballast * lamp;
-    if (fabs(type - 1.0) < 0.5)
+    out->type = find_type(type);
+    if (out->type)
         return true;
-    error_set(
-        r->error, ERROR_INPUT,
-        "expected photometry of type C (1), found type %g: A and B are not supported",
-        type);
+    error_set(r->error, ERROR_INPUT,
+              "expected photometry of type 1 (C), 2 (B) or 3 (A), found %g", type);
     return false;
 }
 
@@ -130,24 +141,6 @@ static bool read_angles(ies_reader *r, int n, const char *what, float **out)
         }
     }
     return true;
-}
-
-static bool check_angles(const ies_profile *ies, GError **error)
-{
-    float top = ies->vertical[ies->n_vertical - 1], first = ies->horizontal[0];
-    float last = ies->horizontal[ies->n_horizontal - 1];
-    bool around = ies->n_horizontal == 1 ||
-                  (fabsf(first) < 0.5f &&
-                   (fabsf(last - 90.0f) < 0.5f || fabsf(last - 180.0f) < 0.5f ||
-                    (last > 270.0f && last < 360.5f))) ||
-                  (fabsf(first - 90.0f) < 0.5f && fabsf(last - 270.0f) < 0.5f);
-    if (ies->vertical[0] > -0.5f && top < 180.5f && around && ies->n_vertical > 1)
-        return true;
-    error_set(error, ERROR_INPUT,
-              "expected vertical angles in 0..180 and horizontal ones to 0, 90, 180 or "
-              "360, found %g..%g and %g..%g",
-              (double)ies->vertical[0], (double)top, (double)first, (double)last);
-    return false;
 }
 
 static bool read_values(ies_reader *r, ies_profile *out, double scale)
@@ -171,7 +164,7 @@ bool ies_read(ies_profile *out, const char *text, GError **error)
     if (read_head(&r, out, &scale) &&
         read_angles(&r, out->n_vertical, "a vertical angle", &out->vertical) &&
         read_angles(&r, out->n_horizontal, "a horizontal angle", &out->horizontal) &&
-        check_angles(out, error) && read_values(&r, out, scale))
+        out->type->check(out, error) && read_values(&r, out, scale))
         return true;
     ies_clear(out);
     return false;
@@ -185,7 +178,7 @@ void ies_clear(ies_profile *ies)
     *ies = (ies_profile){0};
 }
 
-/* ---- Asking ---- */
+/* ---- Between angles ---- */
 
 /* The angle below x, and how far to the next. */
 static int find_angle(const float *angles, int n, float x, float *share)
@@ -197,6 +190,50 @@ static int find_angle(const float *angles, int n, float x, float *share)
     if (n > 1)
         *share = clampf((x - angles[i]) / (angles[i + 1] - angles[i]), 0.0f, 1.0f);
     return i;
+}
+
+static float at(const ies_profile *ies, int i_horizontal, int i_vertical)
+{
+    return ies
+        ->candela[(size_t)i_horizontal * (size_t)ies->n_vertical + (size_t)i_vertical];
+}
+
+static double radians(float degrees)
+{
+    return (double)degrees * G_PI / 180.0;
+}
+
+/* ∫ (a + b (x - x0)) sin x dx, by parts. */
+static double sine_part(float x0, float x1, double a, double a1)
+{
+    double g0 = radians(x0), g1 = radians(x1), b = (a1 - a) / (g1 - g0);
+    return a * (cos(g0) - cos(g1)) + b * (sin(g1) - sin(g0) - (g1 - g0) * cos(g1));
+}
+
+/* The same with cos x, the sine of a right angle more. */
+static double cosine_part(float x0, float x1, double a, double a1)
+{
+    return sine_part(x0 + 90.0f, x1 + 90.0f, a, a1);
+}
+
+/* ---- Type C ---- */
+
+static bool check_c(const ies_profile *ies, GError **error)
+{
+    float top = ies->vertical[ies->n_vertical - 1], first = ies->horizontal[0];
+    float last = ies->horizontal[ies->n_horizontal - 1];
+    bool around = ies->n_horizontal == 1 ||
+                  (fabsf(first) < 0.5f &&
+                   (fabsf(last - 90.0f) < 0.5f || fabsf(last - 180.0f) < 0.5f ||
+                    (last > 270.0f && last < 360.5f))) ||
+                  (fabsf(first - 90.0f) < 0.5f && fabsf(last - 270.0f) < 0.5f);
+    if (ies->vertical[0] > -0.5f && top < 180.5f && around && ies->n_vertical > 1)
+        return true;
+    error_set(error, ERROR_INPUT,
+              "expected vertical angles in 0..180 and horizontal ones to 0, 90, 180 or "
+              "360, found %g..%g and %g..%g",
+              (double)ies->vertical[0], (double)top, (double)first, (double)last);
+    return false;
 }
 
 /* Into the part that the file has, by the symmetry that its last angle tells. */
@@ -213,35 +250,24 @@ static float fold(const ies_profile *ies, float c)
     return last < 135.0f && c > 90.0f ? 180.0f - c : c;
 }
 
-float ies_candela(const ies_profile *ies, float gamma, float c)
+static bool locate_c(const ies_profile *ies, float gamma, float c, float *v, float *h)
 {
-    const float slack = 1e-3f;
-    float s, t;
-    if (gamma < ies->vertical[0] - slack ||
-        gamma > ies->vertical[ies->n_vertical - 1] + slack)
-        return 0.0f;
-    int i = find_angle(ies->horizontal, ies->n_horizontal, fold(ies, c), &s);
-    int j = find_angle(ies->vertical, ies->n_vertical, gamma, &t);
-    const float *near = ies->candela + (size_t)i * (size_t)ies->n_vertical;
-    const float *far = s > 0.0f ? near + ies->n_vertical : near;
-    return lerpf(lerpf(near[j], near[j + 1], t), lerpf(far[j], far[j + 1], t), s);
+    *v = gamma;
+    *h = fold(ies, c);
+    return true;
 }
 
-/* ∫ of one half plane over γ, the values linear between: a cos + b sin by parts. */
+/* ∫ of one half plane over γ, the values linear between. */
 static double zone(const ies_profile *ies, int i)
 {
-    const float *values = ies->candela + (size_t)i * (size_t)ies->n_vertical;
     double sum = 0.0;
-    for (int j = 0; j + 1 < ies->n_vertical; j++) {
-        double g0 = (double)ies->vertical[j] * G_PI / 180.0;
-        double g1 = (double)ies->vertical[j + 1] * G_PI / 180.0;
-        double a = (double)values[j], b = ((double)values[j + 1] - a) / (g1 - g0);
-        sum += a * (cos(g0) - cos(g1)) + b * (sin(g1) - sin(g0) - (g1 - g0) * cos(g1));
-    }
+    for (int j = 0; j + 1 < ies->n_vertical; j++)
+        sum += sine_part(ies->vertical[j], ies->vertical[j + 1], (double)at(ies, i, j),
+                         (double)at(ies, i, j + 1));
     return sum;
 }
 
-double ies_lumens(const ies_profile *ies)
+static double lumens_c(const ies_profile *ies)
 {
     if (ies->n_horizontal == 1)
         return 2.0 * G_PI * zone(ies, 0);
@@ -252,4 +278,118 @@ double ies_lumens(const ies_profile *ies)
         span += width;
     }
     return 2.0 * G_PI * sum / span;
+}
+
+/* ---- Types A and B ---- */
+
+static bool is_mirrored(const ies_profile *ies)
+{
+    return ies->horizontal[0] > -0.5f;
+}
+
+/* Both from -90 or 0 to 90 at most; horizontal ones from 0 are mirrored. */
+static bool check_ab(const ies_profile *ies, GError **error)
+{
+    float low = ies->vertical[0], high = ies->vertical[ies->n_vertical - 1];
+    float first = ies->horizontal[0], last = ies->horizontal[ies->n_horizontal - 1];
+    bool around = fabsf(first) < 0.5f || (first > -90.5f && first < 0.0f);
+    if (low > -90.5f && high < 90.5f && around && last < 90.5f && ies->n_vertical > 1 &&
+        ies->n_horizontal > 1)
+        return true;
+    error_set(error, ERROR_INPUT,
+              "expected vertical angles in -90..90 and horizontal ones from -90 or 0 to "
+              "90, found %g..%g and %g..%g",
+              (double)low, (double)high, (double)first, (double)last);
+    return false;
+}
+
+static bool locate_ab(const ies_profile *ies, float *h)
+{
+    const float slack = 1e-3f;
+    if (is_mirrored(ies))
+        *h = fabsf(*h);
+    return *h >= ies->horizontal[0] - slack &&
+           *h <= ies->horizontal[ies->n_horizontal - 1] + slack;
+}
+
+static bool locate_a(const ies_profile *ies, float gamma, float c, float *v, float *h)
+{
+    *v = gamma - 90.0f;
+    *h = 360.0f * floorf(c / 360.0f + 0.5f) - c;
+    return locate_ab(ies, h);
+}
+
+static bool locate_b(const ies_profile *ies, float gamma, float c, float *v, float *h)
+{
+    const float degrees = 180.0f / PI_F;
+    float down = cosf(gamma / degrees), ahead = sinf(gamma / degrees) * cosf(c / degrees);
+    float side = sinf(gamma / degrees) * sinf(c / degrees);
+    *v = atan2f(ahead, down) * degrees;
+    *h = -asinf(clampf(side, -1.0f, 1.0f)) * degrees;
+    return locate_ab(ies, h);
+}
+
+/* v is the latitude. */
+static double lumens_a(const ies_profile *ies)
+{
+    double sum = 0.0;
+    for (int i = 0; i + 1 < ies->n_horizontal; i++)
+        for (int j = 0; j + 1 < ies->n_vertical; j++) {
+            double width = radians(ies->horizontal[i + 1] - ies->horizontal[i]);
+            double below = 0.5 * (double)(at(ies, i, j) + at(ies, i + 1, j));
+            double above = 0.5 * (double)(at(ies, i, j + 1) + at(ies, i + 1, j + 1));
+            sum +=
+                width * cosine_part(ies->vertical[j], ies->vertical[j + 1], below, above);
+        }
+    return is_mirrored(ies) ? 2.0 * sum : sum;
+}
+
+/* h is the latitude. */
+static double lumens_b(const ies_profile *ies)
+{
+    double sum = 0.0;
+    for (int i = 0; i + 1 < ies->n_horizontal; i++)
+        for (int j = 0; j + 1 < ies->n_vertical; j++) {
+            double width = radians(ies->vertical[j + 1] - ies->vertical[j]);
+            double before = 0.5 * (double)(at(ies, i, j) + at(ies, i, j + 1));
+            double behind = 0.5 * (double)(at(ies, i + 1, j) + at(ies, i + 1, j + 1));
+            sum += width * cosine_part(ies->horizontal[i], ies->horizontal[i + 1], before,
+                                       behind);
+        }
+    return is_mirrored(ies) ? 2.0 * sum : sum;
+}
+
+/* ---- Asking ---- */
+
+static const ies_photometry types[] = {
+    {1, check_c, locate_c, lumens_c},
+    {2, check_ab, locate_b, lumens_b},
+    {3, check_ab, locate_a, lumens_a},
+};
+
+static const ies_photometry *find_type(double number)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(types); i++)
+        if (fabs(number - types[i].number) < 0.5)
+            return &types[i];
+    return NULL;
+}
+
+float ies_candela(const ies_profile *ies, float gamma, float c)
+{
+    const float slack = 1e-3f;
+    float s, t, v, h;
+    if (!ies->type->locate(ies, gamma, c, &v, &h) || v < ies->vertical[0] - slack ||
+        v > ies->vertical[ies->n_vertical - 1] + slack)
+        return 0.0f;
+    int i = find_angle(ies->horizontal, ies->n_horizontal, h, &s);
+    int j = find_angle(ies->vertical, ies->n_vertical, v, &t);
+    int k = s > 0.0f ? i + 1 : i;
+    return lerpf(lerpf(at(ies, i, j), at(ies, i, j + 1), t),
+                 lerpf(at(ies, k, j), at(ies, k, j + 1), t), s);
+}
+
+double ies_lumens(const ies_profile *ies)
+{
+    return ies->type->lumens(ies);
 }

@@ -2,15 +2,24 @@
  * IES photometric files: the luminous intensity of a real luminaire by direction, as
  * laboratories publish it.
  *
- * IESNA LM-63-1986, -1995 and -2002, photometry of type C: γ = 0 is straight down, 180
- * up; C = 0 and C = 90 are the horizontal axes. Angles in the file are degrees, values
- * candela once multiplied by the file's factors.
+ * IESNA LM-63-1986, -1995 and -2002. Directions are asked for as type C has them: γ = 0
+ * is straight down, 180 up; C = 0 and C = 90 are the horizontal axes. Angles in the file
+ * are degrees, values candela once multiplied by the file's factors. Horizontal angles h
+ * and vertical ones v are, by type of photometry:
+ *
+ *   C  v = γ, h = C: planes through the vertical axis. Rooms and streets
+ *   B  planes through the axis C = 90, turned by v from straight down toward C = 0; h is
+ *      the angle out of the plane h = 0, away from C = 90. Floodlights
+ *   A  v = γ - 90, h = -C: as C, seen from the horizontal axis C = 0. Headlights
  */
 #pragma once
 
 #include "base/error.h"
 
+struct ies_photometry;
+
 typedef struct ies_profile {
+    const struct ies_photometry *type;
     int n_vertical, n_horizontal;
     float *vertical, *horizontal; /**< degrees, ascending; owned */
     float *candela;               /**< [horizontal * n_vertical + vertical]; owned */

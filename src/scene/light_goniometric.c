@@ -105,7 +105,8 @@ static bool read_map(goniometric_light *l, const struct scene *s, const params *
     source_place place = params_find(p, "filename")->place;
     g_autofree char *lower = g_ascii_strdown(path, -1);
     if (g_str_has_suffix(lower, ".ies")) {
-        scene_sources_add(s->sources, path);
+        if (s)
+            scene_sources_add(s->sources, path);
         return read_profile(l, path, place, error);
     }
     return picture_read(&pic, s, p, "filename", NULL, error) &&
