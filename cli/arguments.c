@@ -41,7 +41,7 @@ static int check_operands(const usage *how, int n, char **operands)
     if (n < how->n_operands)
         return usage_error("expected %s, found %s", how->operands,
                            n ? "too little" : "nothing");
-    if (n > how->n_operands)
+    if (n > how->n_operands && !how->or_more)
         return usage_error("unexpected argument '%s'", operands[how->n_operands]);
     return EXIT_DONE;
 }

@@ -9,7 +9,8 @@
 typedef struct usage {
     const char *name;        /**< of the command */
     const char *operands;    /**< as shown in the help, e.g. "SCENE" */
-    int n_operands;          /**< exactly so many must be given */
+    int n_operands;          /**< exactly so many must be given, */
+    bool or_more;            /**< or at least */
     const char *summary;     /**< a sentence or two */
     const char *description; /**< shown below the options; NULL if none */
     const GOptionEntry *entries;

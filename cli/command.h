@@ -18,6 +18,7 @@ int command_photons(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_convert(int argc, char **argv);
 int command_compare(int argc, char **argv);
+int command_image(int argc, char **argv);
 int command_settings(int argc, char **argv);
 int command_features(int argc, char **argv);
 int command_bsdf(int argc, char **argv);

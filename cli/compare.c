@@ -6,11 +6,15 @@
 #include <string.h>
 
 static gboolean as_json;
-static char *metric;
+static char *metric, *output;
 
 static const GOptionEntry entries[] = {
     {"metric", 'm', 0, G_OPTION_ARG_STRING, &metric,
      "Only one number: rmse, relmse, psnr or flip", "NAME"},
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &output,
+     "Write where they differ as an image: red is brighter than the reference, blue is "
+     "darker",
+     "FILE"},
     {"json", 0, 0, G_OPTION_ARG_NONE, &as_json, "For programs", NULL},
     G_OPTION_ENTRY_NULL};
 
@@ -24,7 +28,9 @@ static const usage how = {
                    "relmse  mean of (a - b)² / (b² + 0.01), b the reference\n"
                    "psnr    dB, sRGB-encoded and clipped to 0..1\n"
                    "flip    mean error of FLIP (Andersson et al. 2020), 67 pixels a "
-                   "degree\n",
+                   "degree\n\n"
+                   "With -o, half of the reference's luminance off is the end of the "
+                   "scale, white.\n",
     .entries = entries};
 
 static const struct {
@@ -46,11 +52,22 @@ static int find_metric(void)
     return -1;
 }
 
+static bool write_map(const NephImage *image, const NephImage *reference, GError **error)
+{
+    if (!output)
+        return true;
+    g_autoptr(NephImage) map = neph_image_difference_map(image, reference, error);
+    return map && neph_image_write(map, output, 0.0f, error);
+}
+
 static bool compare_files(char *const names[2], NephImageDifference *out, GError **error)
 {
+    if (output && !neph_image_can_write(output, error))
+        return false;
     g_autoptr(NephImage) image = neph_image_read(names[0], error);
     g_autoptr(NephImage) reference = image ? neph_image_read(names[1], error) : NULL;
-    return reference && neph_image_compare(image, reference, out, error);
+    return reference && neph_image_compare(image, reference, out, error) &&
+           write_map(image, reference, error);
 }
 
 static int print_metric(const NephImageDifference *d, int which)

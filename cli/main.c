@@ -17,6 +17,7 @@ static const command commands[] = {
     {"convert", "write any scene as pbrt-v4 text with its meshes and images",
      command_convert},
     {"compare", "measure how far an image is from a reference", command_compare},
+    {"image", "write images in another format or size, or side by side", command_image},
     {"settings", "list all settings", command_settings},
     {"features", "list what of pbrt-v4 is read", command_features},
     {"bsdf", "draw how a material scatters light", command_bsdf},

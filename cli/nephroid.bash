@@ -11,7 +11,7 @@ _nephroid() {
     COMPREPLY=()
     if [ "$COMP_CWORD" = 1 ]; then
         mapfile -t COMPREPLY < <(
-            compgen -W 'render photons info convert compare settings features bsdf view --help --version' -- "$word")
+            compgen -W 'render photons info convert compare image settings features bsdf view --help --version' -- "$word")
         return
     fi
     case $before in

@@ -10,9 +10,9 @@
 static void test_help_everywhere(folder *f, gconstpointer data)
 {
     (void)data;
-    static const char *const commands[] = {"",          "render ",  "photons ",
-                                           "info ",     "compare ", "settings ",
-                                           "features ", "bsdf ",    "view "};
+    static const char *const commands[] = {
+        "",          "render ", "photons ",  "info ", "compare ",
+        "settings ", "image ",  "features ", "bsdf ", "view "};
     for (size_t i = 0; i < G_N_ELEMENTS(commands); i++) {
         g_autofree char *help = g_strconcat(commands[i], "--help", NULL);
         g_autofree char *version = g_strconcat(commands[i], "--version", NULL);
@@ -56,6 +56,10 @@ static void test_bad_usage(folder *f, gconstpointer data)
         {"info", "expected SCENE"},
         {"compare a.exr", "expected IMAGE REFERENCE"},
         {"compare a.exr b.exr --metric ssim", "expected rmse, relmse, psnr or flip"},
+        {"image", "expected IMAGE..."},
+        {"image a.exr b.exr", "-o FILE is missing"},
+        {"image a.exr -o b.png --size 3", "--size"},
+        {"image a.exr -o b.png --columns 0", "--columns"},
         {"settings --json --markdown", "exclude each other"},
         {"settings box.pbrt", "unexpected argument 'box.pbrt'"},
         {"bsdf", "expected MATERIAL"},

@@ -263,6 +263,31 @@ static void test_compare(folder *f, gconstpointer data)
     g_assert_cmpint(size.code, ==, 1);
 }
 
+/* The map of a picture against a darker one is red, of equal ones black; sheets have room
+   for all; a scaled image has the mean. */
+static void test_image(folder *f, gconstpointer data)
+{
+    (void)data;
+    run_well(f, "render box.pbrt -q -o a.exr --size 12x8");
+    run_well(f, "compare a.exr a.exr -o map.pfm");
+    run_well(f, "image a.exr -o small.exr --size 3x2");
+    run_well(f, "image small.exr -o back.exr --size 12x8");
+    g_auto(result) means = run(f, "compare back.exr a.exr --json");
+    double a = json_find_number(means.out, "mean_a");
+    g_assert_cmpfloat_with_epsilon(a, json_find_number(means.out, "mean_b"), 1e-5 * a);
+    run_well(f, "image a.exr small.exr a.exr -o sheet.pfm --columns 2");
+    g_autofree char *sheet = folder_read(f, "sheet.pfm");
+    g_assert_true(g_str_has_prefix(sheet, "PF\n27 28\n"));
+    g_autofree char *map = folder_read(f, "map.pfm");
+    g_assert_true(g_str_has_prefix(map, "PF\n12 8\n"));
+    g_auto(result) none = run(f, "image nowhere.exr -o b.png");
+    g_assert_cmpint(none.code, ==, 1);
+    g_auto(result) wrong = run(f, "compare a.exr small.exr -o other.png");
+    g_assert_cmpint(wrong.code, ==, 1);
+    g_autofree char *other = g_build_filename(f->path, "other.png", NULL);
+    g_assert_false(g_file_test(other, G_FILE_TEST_EXISTS));
+}
+
 static void test_photons(folder *f, gconstpointer data)
 {
     (void)data;
@@ -300,6 +325,7 @@ int main(int argc, char **argv)
     g_test_add("/cli/terminate", folder, GINT_TO_POINTER(SIGTERM), folder_set_up,
                test_ctrl_c_writes, folder_tear_down);
     folder_add_test("/cli/compare", test_compare);
+    folder_add_test("/cli/image", test_image);
     folder_add_test("/cli/photons", test_photons);
     return g_test_run();
 }

@@ -1,7 +1,9 @@
 /*
  * compare: errors that can be worked out by hand, and FLIP against a naive twin that
- * filters with whole two-dimensional kernels, as the paper writes them.
+ * filters with whole two-dimensional kernels, as the paper writes them. Images made of
+ * images: against counting.
  */
+#include "image/arrange.h"
 #include "image/compare.h"
 #include "image/flip.h"
 
@@ -381,6 +383,71 @@ static void test_flip_of_one_pixel(void)
                                    1e-9);
 }
 
+/* ---- Images of images ---- */
+
+static void test_map(void)
+{
+    g_autoptr(image) a = uniform(4, 2, 0.5f, 0.5f, 0.5f),
+                     b = uniform(4, 2, 0.5f, 0.5f, 0.5f);
+    float *at = a->pixels;
+    for (int c = 0; c < 3; c++) {
+        at[c] = 0.625f;    /* a quarter brighter: half of the scale */
+        at[3 + c] = 0.25f; /* half darker: all of it */
+        at[9 + c] = 9.0f;
+    }
+    at[6] = NAN;
+    g_autoptr(image) map = image_difference_map(a, b, NULL);
+    static const float expected[5][3] = {
+        {1.0f, 0.25f, 0.0f}, {1, 1, 1}, {0, 1, 0}, {1, 1, 1}, {0, 0, 0}};
+    for (int i = 0; i < 15; i++)
+        g_assert_cmpfloat_with_epsilon(map->pixels[i], expected[i / 3][i % 3], 1e-5f);
+    g_autoptr(image) darker = image_difference_map(b, a, NULL);
+    g_assert_cmpfloat_with_epsilon(darker->pixels[2], 0.8f, 1e-5f); /* 0.125 of 0.3125 */
+    g_assert_cmpfloat(darker->pixels[0], ==, 0.0f);
+    g_autoptr(image) small = uniform(4, 3, 1, 1, 1);
+    g_assert_null(image_difference_map(a, small, NULL));
+}
+
+/* Every pixel is cut into as many as make both sizes' grids one. */
+static void test_scaled(void)
+{
+    enum { W = 5, H = 3, TO_W = 7, TO_H = 2 };
+    g_autoptr(image) img = noise(W, H, 3);
+    g_autoptr(image) scaled = image_scaled(img, TO_W, TO_H, NULL);
+    double sums[TO_W * TO_H] = {0};
+    for (int y = 0; y < H * TO_H; y++)
+        for (int x = 0; x < W * TO_W; x++)
+            sums[y / H * TO_W + x / W] +=
+                (double)img->pixels[3 * (y / TO_H * W + x / TO_W) + 1];
+    for (int i = 0; i < TO_W * TO_H; i++)
+        g_assert_cmpfloat_with_epsilon((double)scaled->pixels[3 * i + 1],
+                                       sums[i] / (W * H), 1e-6);
+    g_autoptr(image) same = image_scaled(img, W, H, NULL);
+    for (int i = 0; i < 3 * W * H; i++)
+        g_assert_cmpfloat_with_epsilon(same->pixels[i], img->pixels[i], 1e-6f);
+}
+
+static void test_sheet(void)
+{
+    g_autoptr(image) a = uniform(3, 2, 1, 0, 0), b = uniform(1, 4, 0, 1, 0);
+    const image *const three[] = {a, b, a};
+    g_autoptr(image) sheet = image_sheet(three, 3, 2, NULL);
+    double sums[3] = {0};
+    g_assert_cmpint(sheet->width, ==, 4 + 3 + 4 + 1 + 4);
+    g_assert_cmpint(sheet->height, ==, 4 + 4 + 4 + 2 + 4);
+    for (int i = 0; i < 3 * sheet->width * sheet->height; i++)
+        sums[i % 3] += sheet->pixels[i] > 0.5f;
+    g_assert_cmpfloat(sums[0], ==, 12);
+    g_assert_cmpfloat(sums[1], ==, 4);
+    g_assert_cmpfloat(sums[2], ==, 0);
+    const char *const grey[] = {"Y"};
+    g_autoptr(image) other = image_new(2, 2, 1, grey, NULL);
+    const image *const two[] = {a, other};
+    g_autoptr(GError) error = NULL;
+    g_assert_null(image_sheet(two, 2, 2, &error));
+    g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -393,5 +460,8 @@ int main(int argc, char **argv)
     g_test_add_func("/compare/flip-symmetric", test_flip_is_symmetric_and_grows);
     g_test_add_func("/compare/flip-naive", test_flip_equals_naive_twin);
     g_test_add_func("/compare/flip-pixel", test_flip_of_one_pixel);
+    g_test_add_func("/compare/map", test_map);
+    g_test_add_func("/compare/scaled", test_scaled);
+    g_test_add_func("/compare/sheet", test_sheet);
     return g_test_run();
 }

@@ -30,7 +30,7 @@ block() {
 
 # options_of_program: long options in the help of all commands
 options_of_program() {
-    for command in render photons info convert compare settings bsdf; do
+    for command in render photons info convert compare image settings bsdf; do
         "$nephroid" "$command" --help
     done | grep -o -E '^ +(-[a-zA-Z], )?--[a-z-]+' | grep -o -E '\-\-[a-z-]+' | sort -u
 }

@@ -212,6 +212,15 @@ NEPH_API const char *neph_image_channel_name(const NephImage *image, int channel
  * image. */
 NEPH_API const float *neph_image_pixels(const NephImage *image);
 
+/** @brief All channels in another size, each pixel the mean over the area it covers.
+ * Owned by caller. */
+NEPH_API NephImage *neph_image_scale(const NephImage *image, int width, int height,
+                                     GError **error);
+/** @brief A contact sheet of R, G and B: n images row by row in so many columns (at least
+ * 1), on dark grey. Owned by caller. */
+NEPH_API NephImage *neph_image_sheet(const NephImage *const *images, size_t n,
+                                     size_t columns, GError **error);
+
 typedef struct NephImageDifference {
     double mean_a, mean_b; /**< mean luminance */
     double rmse, relmse, psnr, flip;
@@ -220,6 +229,11 @@ typedef struct NephImageDifference {
 /** @brief Compares image with reference over R, G, B. */
 NEPH_API bool neph_image_compare(const NephImage *image, const NephImage *reference,
                                  NephImageDifference *out, GError **error);
+/** @brief Where the image is brighter (red, then white) or darker (blue, then white) than
+ * the reference; the end of the scale is half of its luminance, or, in the dark, of a
+ * tenth of its mean. Black: alike; green: not finite. Owned by caller. */
+NEPH_API NephImage *neph_image_difference_map(const NephImage *image,
+                                              const NephImage *reference, GError **error);
 /** @brief A comparison as a table for people (json false) or for programs. Owned by
  * caller. */
 NEPH_API char *neph_image_difference_text(const NephImageDifference *difference,

@@ -1,6 +1,7 @@
 #include "api/objects.h"
 
 #include "base/json.h"
+#include "image/arrange.h"
 #include "image/compare.h"
 
 NephImage *neph_image_wrap(image *img)
@@ -69,6 +70,34 @@ bool neph_image_compare(const NephImage *img, const NephImage *reference,
                                  .flip = found.flip,
                                  .n_not_finite = found.n_not_finite};
     return true;
+}
+
+NephImage *neph_image_difference_map(const NephImage *img, const NephImage *reference,
+                                     GError **error)
+{
+    return neph_image_wrap(image_difference_map(img->image, reference->image, error));
+}
+
+NephImage *neph_image_scale(const NephImage *img, int width, int height, GError **error)
+{
+    if (width >= 1 && height >= 1)
+        return neph_image_wrap(image_scaled(img->image, width, height, error));
+    error_set(error, ERROR_USAGE, "size %dx%d: expected at least one pixel a side", width,
+              height);
+    return NULL;
+}
+
+NephImage *neph_image_sheet(const NephImage *const *images, size_t n, size_t columns,
+                            GError **error)
+{
+    if (n == 0 || columns == 0) {
+        error_set(error, ERROR_USAGE, "a sheet has an image and a column at least");
+        return NULL;
+    }
+    g_autofree const image **inner = g_new(const image *, n);
+    for (size_t i = 0; i < n; i++)
+        inner[i] = images[i]->image;
+    return neph_image_wrap(image_sheet(inner, n, columns, error));
 }
 
 static char *difference_json(const NephImageDifference *d)

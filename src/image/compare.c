@@ -4,6 +4,7 @@
 #include "image/flip.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Both images as doubles, three numbers a pixel, and which pixels count. */
 typedef struct pair {
@@ -152,4 +153,51 @@ bool image_compare(const image *a, const image *b, image_difference *out, GError
     }
     pair_clear(&p);
     return done;
+}
+
+/* ---- As a picture ---- */
+
+/* Of the luminance: this much off is the end of the scale; below this share of its mean
+   the scale shrinks no more. */
+#define SCALE 0.5
+#define DARK 0.1
+
+/* Linear, for the eye: 0 is black, then a hue, then white. */
+static void signed_colour(double off, float rgb[3])
+{
+    double size = fmin(fabs(off), 1.0), pale = fmax(2.0 * size - 1.0, 0.0);
+    double full = fmin(2.0 * size, 1.0);
+    rgb[0] = (float)(off > 0.0 ? full : pale);
+    rgb[1] = (float)(0.25 * full * full + 0.75 * pale);
+    rgb[2] = (float)(off > 0.0 ? pale : full);
+}
+
+static void fill_map(const pair *p, image *out)
+{
+    static const float bad[3] = {0.0f, 1.0f, 0.0f};
+    double mean = 0.0;
+    for (size_t i = 0; i < p->n; i++)
+        mean += luminance(p->b + 3 * i) / (double)MAX(p->n_finite, 1);
+    for (size_t i = 0; i < p->n; i++) {
+        double a = luminance(p->a + 3 * i), b = luminance(p->b + 3 * i);
+        double whole = SCALE * fmax(b, DARK * mean);
+        if (!p->finite[i])
+            memcpy(out->pixels + 3 * i, bad, sizeof bad);
+        else if (whole > 0.0)
+            signed_colour((a - b) / whole, out->pixels + 3 * i);
+        else
+            signed_colour(a > b ? 1.0 : 0.0, out->pixels + 3 * i);
+    }
+}
+
+image *image_difference_map(const image *a, const image *b, GError **error)
+{
+    pair p = {0};
+    image *out = NULL;
+    if (comparable(a, b, error) && pair_init(&p, a, b, error))
+        out = image_new(a->width, a->height, 3, rgb_names, error);
+    if (out)
+        fill_map(&p, out);
+    pair_clear(&p);
+    return out;
 }

@@ -18,3 +18,9 @@ typedef struct image_difference {
 /** @brief Compares a with the reference b. ERROR_INPUT if sizes differ or R, G, B are
  * missing. */
 bool image_compare(const image *a, const image *b, image_difference *out, GError **error);
+
+/** @brief Where a differs from the reference b, as colours: black where they agree, from
+ * red to white where a is brighter, from blue to white where it is darker. The whole
+ * scale is half of b's luminance, or where b is darker than a tenth of its mean, half of
+ * that; green is not finite. Errors as above. */
+image *image_difference_map(const image *a, const image *b, GError **error);
