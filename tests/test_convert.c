@@ -43,17 +43,17 @@ static void check_same(const char *in)
     remove_tree(folder);
 }
 
-static void check_text(const char *world)
+static void check_text_with(const char *options, const char *world)
 {
     g_autofree char *text = g_strdup_printf(
-        "LookAt 0 -5 3  0 0 0.5  0 0 1 Film \"rgb\" \"float iso\" 150 \"string "
+        "%s LookAt 0 -5 3  0 0 0.5  0 0 1 Film \"rgb\" \"float iso\" 150 \"string "
         "filename\" "
         "\"x.exr\" PixelFilter \"triangle\" \"float xradius\" 1.5\n"
         "Sampler \"independent\" \"integer seed\" 7\n"
         "Camera \"perspective\" \"float fov\" 42 \"float lensradius\" 0.01 \"float "
         "focaldistance\" 5\nWorldBegin\nLightSource \"point\" \"rgb I\" [9 8 7] \"point3 "
         "from\" [1 -2 4]\n%s",
-        world);
+        options, world);
     scene_folder f = folder_new(text);
     static const char *const names[] = {"R", "G", "B"};
     g_autoptr(image) img = image_new(4, 4, 3, names, NULL);
@@ -64,6 +64,11 @@ static void check_text(const char *world)
     check_same(f.main);
     g_ptr_array_add(f.files, g_steal_pointer(&picture));
     folder_remove(&f);
+}
+
+static void check_text(const char *world)
+{
+    check_text_with("", world);
 }
 
 static void test_shapes(void)
@@ -92,6 +97,18 @@ static void test_materials(void)
         "Shape \"sphere\" \"float radius\" .6 Material \"interface\" Shape \"disk\"\n"
         "ColorSpace \"rec2020\" Material \"diffuse\" \"rgb reflectance\" [.2 .5 .1] "
         "Translate 0 0 -1 Shape \"disk\" \"float radius\" 5\n");
+}
+
+/* Each option changes the image, so that the same image tells that it was kept. */
+static void test_options(void)
+{
+    check_text_with("Option \"bool disablepixeljitter\" true Option \"bool "
+                    "disablewavelengthjitter\" true Option \"bool "
+                    "disabletexturefiltering\" true",
+                    "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" "
+                    "\"p.png\" \"string filter\" \"trilinear\" \"float uscale\" 9\n"
+                    "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
+                    "Shape \"disk\" \"float radius\" 3\n");
 }
 
 static void test_textures_and_lights(void)
@@ -212,6 +229,7 @@ int main(int argc, char **argv)
     g_test_add_func("/convert/shapes", test_shapes);
     g_test_add_func("/convert/materials", test_materials);
     g_test_add_func("/convert/textures-and-lights", test_textures_and_lights);
+    g_test_add_func("/convert/options", test_options);
     g_test_add_func("/convert/objects-and-motion", test_objects_and_motion);
     g_test_add_func("/convert/media", test_media);
     g_test_add_func("/convert/files", test_files);

@@ -156,6 +156,9 @@ static char *text_of(const char *directive, const char *kind, const char *given)
     bool plain_look = strcmp(directive, "Texture") == 0;
     put(out, "Material", directive, text,
         plain_look ? ""
+        : option   ? "Texture 'soft' 'spectrum' 'imagemap' 'string filename' 'map.png' "
+                     "'string filter' 'trilinear' 'float uscale' 20 'float vscale' 20\n"
+                     "Material 'diffuse' 'texture reflectance' 'soft'"
                    : "Material 'conductor' 'texture reflectance' 'check' 'float "
                      "uroughness' 0.05 'float vroughness' 0.4");
     put(out, "Shape", directive, text, "Shape 'sphere'");

@@ -12,86 +12,26 @@
 #include "format/convert.h"
 
 #include "base/output.h"
+#include "format/convert_files.h"
 #include "format/format.h"
 #include "format/pbrt_text.h"
 #include "format/ply_write.h"
 
-#include <glib/gstdio.h>
 #include <string.h>
 
 typedef struct converter {
-    scene *scene;             /**< being built; its tables name textures */
-    char *directory, *folder; /**< of the files, and its name beside the scene */
+    scene *scene; /**< being built; its tables name textures */
+    converted_files files;
     GString *world, *film, *filter, *camera;
     GPtrArray *objects;   /**< names by index, owned */
     GPtrArray *materials; /**< names by index, owned */
-    GHashTable *files;    /**< absolute path -> name below the scene's folder */
     unsigned n_meshes;
-    GError *error; /**< the first one */
 } converter;
 
 static bool is_identity(const transform *t)
 {
     const transform identity = transform_identity();
     return transform_equal(t, &identity);
-}
-
-/* ---- Files beside the scene ---- */
-
-static bool make_folder(converter *c)
-{
-    if (c->error || g_mkdir_with_parents(c->directory, 0777) == 0)
-        return !c->error;
-    error_set(&c->error, ERROR_INPUT, "%s: cannot make this folder: %s", c->directory,
-              g_strerror(errno));
-    return false;
-}
-
-/* A name that no other file here has. */
-static char *free_name(converter *c, const char *path)
-{
-    g_autofree char *base = g_path_get_basename(path);
-    char *name = g_strdup_printf("%s/%s", c->folder, base);
-    GHashTableIter iter;
-    gpointer value;
-    g_hash_table_iter_init(&iter, c->files);
-    while (g_hash_table_iter_next(&iter, NULL, &value))
-        if (strcmp(value, name) == 0) {
-            g_free(name);
-            return g_strdup_printf("%s/%u-%s", c->folder, g_hash_table_size(c->files),
-                                   base);
-        }
-    return name;
-}
-
-static GBytes *bytes_of(converter *c, const char *path)
-{
-    char *data;
-    gsize size;
-    GBytes *inside = g_hash_table_lookup(c->scene->files, path);
-    if (inside)
-        return g_bytes_ref(inside);
-    return g_file_get_contents(path, &data, &size, NULL) ? g_bytes_new_take(data, size)
-                                                         : NULL;
-}
-
-/* Where a file now is, relative to the scene; NULL if there is no such file. */
-static const char *copy_file(converter *c, const char *path)
-{
-    const char *known = g_hash_table_lookup(c->files, path);
-    g_autoptr(GBytes) bytes = known ? NULL : bytes_of(c, path);
-    if (!bytes || !make_folder(c))
-        return known;
-    char *name = free_name(c, path);
-    g_autofree char *base = g_path_get_basename(name);
-    g_autofree char *to = g_build_filename(c->directory, base, NULL);
-    g_autoptr(GError) inner = NULL;
-    if (!g_file_set_contents_full(to, g_bytes_get_data(bytes, NULL),
-                                  (gssize)g_bytes_get_size(bytes),
-                                  G_FILE_SET_CONTENTS_CONSISTENT, 0666, &inner))
-        error_set(&c->error, ERROR_FAILED, "%s", inner->message);
-    g_hash_table_insert(c->files, g_strdup(path), name);
-    return name;
 }
 
 /* ---- Parameters ---- */
@@ -114,7 +54,7 @@ static void append_params(converter *c, GString *out, const params *p,
         if (names_file(q)) {
             g_autofree char *path =
                 g_canonicalize_filename(q->strings[0], p->base_directory);
-            moved = copy_file(c, path);
+            moved = converted_files_copy(&c->files, path);
         }
         char *strings[] = {(char *)moved, NULL};
         pbrt_text_param(out, q, moved ? strings : NULL);
@@ -253,13 +193,13 @@ static void on_mesh(void *data, const mesh *m, const shape_place *at)
 {
     converter *c = data;
     begin_shape(c, at, NULL);
-    if (make_folder(c)) {
+    if (converted_files_folder(&c->files)) {
         g_autofree char *name = g_strdup_printf("mesh-%u.ply", ++c->n_meshes);
-        g_autofree char *path = g_build_filename(c->directory, name, NULL);
-        g_autofree char *shown = g_strdup_printf("%s/%s", c->folder, name);
+        g_autofree char *path = g_build_filename(c->files.directory, name, NULL);
+        g_autofree char *shown = g_strdup_printf("%s/%s", c->files.folder, name);
         GError *error = NULL;
         if (!ply_write(path, m, &error))
-            c->error = error;
+            c->files.error = error;
         g_string_append(c->world, "Shape \"plymesh\" \"string filename\" ");
         pbrt_text_string(c->world, shown);
     }
@@ -404,6 +344,17 @@ static void append_settings(GString *out, const settings *s)
     g_string_append_c(out, '\n');
 }
 
+/* What pbrt's options have switched. */
+static void append_switches(GString *out, const scene_switches *on)
+{
+    if (on->fixed_pixels)
+        g_string_append(out, "Option \"bool disablepixeljitter\" true\n");
+    if (on->fixed_wavelengths)
+        g_string_append(out, "Option \"bool disablewavelengthjitter\" true\n");
+    if (on->sharp_textures)
+        g_string_append(out, "Option \"bool disabletexturefiltering\" true\n");
+}
+
 /* ---- All of it ---- */
 
 static bool write_scene(converter *c, const char *in, const char *path, GError **error)
@@ -413,6 +364,7 @@ static bool write_scene(converter *c, const char *in, const char *path, GError *
     g_string_append_printf(text, "# %s\n", g_strdelimit(base, "\r\n", ' '));
     g_string_append_len(text, c->film->str, (gssize)c->film->len);
     g_string_append(text, c->filter->str);
+    append_switches(text, &c->scene->switches);
     append_settings(text, &c->scene->settings);
     g_string_append(text, c->camera->str);
     g_string_append(text, "WorldBegin\n");
@@ -422,31 +374,24 @@ static bool write_scene(converter *c, const char *in, const char *path, GError *
 
 static void converter_init(converter *c, const char *out)
 {
-    const char *dot = strrchr(out, '.');
-    g_autofree char *stem = g_strndup(out, dot ? (size_t)(dot - out) : strlen(out));
-    *c = (converter){.directory = g_strconcat(stem, "-files", NULL),
-                     .world = g_string_new(NULL),
+    *c = (converter){.world = g_string_new(NULL),
                      .film = g_string_new(NULL),
                      .filter = g_string_new(NULL),
                      .camera = g_string_new(NULL),
                      .objects = g_ptr_array_new_with_free_func(g_free),
                      .materials = g_ptr_array_new_with_free_func(g_free)};
-    c->folder = g_path_get_basename(c->directory);
-    c->files = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+    converted_files_init(&c->files, out);
 }
 
 static void converter_clear(converter *c)
 {
-    g_free(c->directory);
-    g_free(c->folder);
     g_string_free(c->world, TRUE);
     g_string_free(c->film, TRUE);
     g_string_free(c->filter, TRUE);
     g_string_free(c->camera, TRUE);
     g_ptr_array_unref(c->objects);
     g_ptr_array_unref(c->materials);
-    g_hash_table_unref(c->files);
-    g_clear_error(&c->error);
+    converted_files_clear(&c->files);
 }
 
 bool format_convert(const char *in, const char *out, const load_options *options,
@@ -478,9 +423,10 @@ bool format_convert(const char *in, const char *out, const load_options *options
         s->sources = scene_sources_new(options->source, options->source_data);
     s->listener = &listener;
     c.scene = s;
+    c.files.scene = s;
     bool done = output_possible(out, error) && format_read(s, in, error);
-    if (done && c.error) {
-        g_propagate_error(error, g_steal_pointer(&c.error));
+    if (done && c.files.error) {
+        g_propagate_error(error, g_steal_pointer(&c.files.error));
         done = false;
     }
     done = done && write_scene(&c, in, out, error);

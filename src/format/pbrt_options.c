@@ -102,11 +102,6 @@ bool pbrt_accelerator(pbrt_parser *parser, source_place place)
 
 /* An option acts, or is accepted because the image is the same with it and without; those
  * in neither list are refused, or must be off if they say so. */
-#define SWITCH(name)                                                                     \
-    {                                                                                    \
-        name, "", "", "refused", "`false` is accepted"                                   \
-    }
-
 static const directive_kind options[] = {
     {"seed", "seed", "", NULL, NULL},
     {"displacementedgescale", "", "displacementedgescale", "accepted",
@@ -115,10 +110,11 @@ static const directive_kind options[] = {
     {"pixelstats", "", "pixelstats", "accepted", NULL},
     {"rendercoordsys", "", "rendercoordsys", "accepted", NULL},
     {"wavefront", "", "wavefront", "accepted", NULL},
-    SWITCH("disablepixeljitter"),
-    SWITCH("disabletexturefiltering"),
-    SWITCH("disablewavelengthjitter"),
-    SWITCH("forcediffuse"),
+    {"disablepixeljitter", "disablepixeljitter", "", NULL,
+     "of what the camera sees; `vcm`'s light that finds the camera is filtered as ever"},
+    {"disabletexturefiltering", "disabletexturefiltering", "", NULL, NULL},
+    {"disablewavelengthjitter", "disablewavelengthjitter", "", NULL, NULL},
+    {"forcediffuse", "", "", "refused", "`false` is accepted"},
     {"msereferenceimage", "", "", "refused", NULL},
     {"msereferenceout", "", "", "refused", NULL},
 };
@@ -143,12 +139,34 @@ static void apply_seed(pbrt_parser *parser, const params *p, const param *q)
     }
 }
 
+/* What a boolean option switches; NULL: it is none of these. */
+static bool *switch_of(scene *s, const char *name)
+{
+    if (strcmp(name, "disablepixeljitter") == 0)
+        return &s->switches.fixed_pixels;
+    if (strcmp(name, "disabletexturefiltering") == 0)
+        return &s->switches.sharp_textures;
+    if (strcmp(name, "disablewavelengthjitter") == 0)
+        return &s->switches.fixed_wavelengths;
+    return NULL;
+}
+
+static void apply_acting(pbrt_parser *parser, const params *p, const param *q)
+{
+    GError *error = NULL;
+    bool *is_on = switch_of(parser->scene, q->name);
+    if (!is_on)
+        apply_seed(parser, p, q);
+    else if (!params_bool(p, q->name, is_on, &error))
+        pbrt_report(parser, error);
+}
+
 static void apply_option(pbrt_parser *parser, const params *p, const param *q)
 {
     const directive_kind *option = find_kind(options, G_N_ELEMENTS(options), q->name);
     bool is_off = q->type == PARAM_BOOL && q->n == 1 && !q->integers[0];
     if (option && *option->parameters)
-        apply_seed(parser, p, q);
+        apply_acting(parser, p, q);
     else if (option && *option->idle)
         log_message(&parser->scene->log, LOG_NOTE,
                     "%s:%d:%d: option '%s' does not change the image", q->place.file,

@@ -48,7 +48,7 @@ static trace_task task_for(const transport_plan *plan, photon_class c)
     return (trace_task){
         .scene = plan->scene,
         .how = &plan->how,
-        .w = wavelengths_for_pass((uint64_t)plan->how.seed, 0),
+        .w = scene_wavelengths(plan->scene, &plan->how, 0),
         .photon_class = c,
         .guide = plan->guide,
         .n_photons = plan->n_photons[c],
@@ -85,7 +85,7 @@ render_photons *render_trace_photons(const scene *s, const settings *how,
                                      const cancel_flag *cancel, GError **error)
 {
     g_autoptr(render_photons) p = g_aligned_alloc0(1, sizeof *p, 64);
-    p->w = wavelengths_for_pass((uint64_t)how->seed, 0);
+    p->w = scene_wavelengths(s, how, 0);
     bool ok = make_plan(&p->plan, s, how, cancel, error);
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++)
         ok = trace_class(p, (photon_class)c, cancel, error);

@@ -151,17 +151,33 @@ typedef struct pixel_sums {
     surface_sum surface;
 } pixel_sums;
 
+/* Where in the pixel and on the lens, and when, a sample looks. */
+typedef struct pixel_look {
+    vec2 offset, u_lens;
+    float time, weight;
+} pixel_look;
+
+static pixel_look look_at(const scene *s, sampler *random)
+{
+    pixel_look look;
+    look.offset = filter_sample(&s->filter, sampler_2d(random), &look.weight);
+    look.u_lens = sampler_2d(random);
+    look.time = sampler_1d(random);
+    if (s->switches.fixed_pixels)
+        look = (pixel_look){{0.0f, 0.0f}, {0.5f, 0.5f}, 0.5f, 1.0f};
+    return look;
+}
+
 /* One camera sample of a pixel, random already told which. */
 static void render_sample(camera_loop *loop, vec2 pixel, sampler *random, unsigned thread,
                           pixel_sums *sums, const group_sums *groups)
 {
     render *r = loop->render;
     const scene *s = r->plan.scene;
-    float weight;
-    vec2 offset = filter_sample(&s->filter, sampler_2d(random), &weight);
-    vec2 raster = {pixel.x + 0.5f + offset.x, pixel.y + 0.5f + offset.y};
-    vec2 u_lens = sampler_2d(random);
-    ray from_eye = camera_ray(&s->camera, raster, u_lens, sampler_1d(random));
+    pixel_look look = look_at(s, random);
+    float weight = look.weight;
+    vec2 raster = {pixel.x + 0.5f + look.offset.x, pixel.y + 0.5f + look.offset.y};
+    ray from_eye = camera_ray(&s->camera, raster, look.u_lens, look.time);
     radiance_sample sample = {.groups = groups->sample};
     for (size_t k = 0; k < groups->n; k++)
         groups->sample[k] = (spectrum){0};
@@ -169,7 +185,7 @@ static void render_sample(camera_loop *loop, vec2 pixel, sampler *random, unsign
                            &sample);
     gbuffer_turn(s, from_eye.time, &sample);
     float dimmed = film_add(&sums->film, &loop->film_pass, &sample, weight);
-    const gbuffer_view view = {raster, u_lens, from_eye, weight, dimmed};
+    const gbuffer_view view = {raster, look.u_lens, from_eye, weight, dimmed};
     gbuffer_add(&sums->surface, &r->film, s, &loop->film_pass, &view, &sample);
     for (size_t k = 0; k < groups->n; k++)
         groups->sum[k] += weight * dimmed * groups->sample[k];

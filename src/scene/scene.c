@@ -432,6 +432,13 @@ void scene_resize(scene *s, int width, int height)
         find_pixel_width(s);
 }
 
+wavelengths scene_wavelengths(const scene *s, const settings *how, uint32_t pass)
+{
+    return s->switches.fixed_wavelengths
+               ? wavelengths_at(0.5f)
+               : wavelengths_for_pass((uint64_t)how->seed, pass);
+}
+
 bool scene_see(const scene *s, const ray *r, surface_hit *hit)
 {
     ray left = *r;
@@ -439,7 +446,9 @@ bool scene_see(const scene *s, const ray *r, surface_hit *hit)
         const shape *on = s->shapes->pdata[hit->shape];
         if (!on->camera_hidden) {
             hit->t = length3(hit->p - r->origin);
-            hit->footprint = s->pixel_width + hit->t * s->pixel_spread;
+            hit->footprint = s->switches.sharp_textures
+                                 ? 0.0f
+                                 : s->pixel_width + hit->t * s->pixel_spread;
             return true;
         }
         left = hit_ray(hit, r->direction);

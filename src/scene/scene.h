@@ -52,6 +52,14 @@ typedef struct caustic_caster {
     int instance; /**< or NO_INDEX */
 } caustic_caster;
 
+/** @brief What pbrt's options switch off: for debugging, since the image is worse. */
+typedef struct scene_switches {
+    bool fixed_pixels; /**< the eye sees pixels' middles, through the lens's middle, at
+                          half time, unfiltered; light that finds the eye does not */
+    bool fixed_wavelengths; /**< all passes have the same eight */
+    bool sharp_textures;    /**< footprints are points */
+} scene_switches;
+
 typedef struct scene {
     GPtrArray *shapes;                              /**< shape* */
     GPtrArray *materials;                           /**< material* */
@@ -67,6 +75,7 @@ typedef struct scene {
     bool has_camera;
     film_settings film;
     pixel_filter filter;
+    scene_switches switches;
     settings settings; /**< defaults, then what the file asks for */
     log_sink log;
     bool lenient;    /**< what can not be rendered is replaced (lenient.h); set by the
@@ -99,6 +108,9 @@ typedef struct scene {
     distribution caustic_power; /**< over lights, by the power that may meet that sphere:
                                    which one a caustic photon starts from */
 } scene;
+
+/** @brief Those of a pass. */
+wavelengths scene_wavelengths(const scene *s, const settings *how, uint32_t pass);
 
 scene *scene_new(const log_sink *log);
 void scene_free(scene *s);

@@ -319,7 +319,7 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
     (void)error;
     path_pass *pass = g_aligned_alloc0(1, sizeof *pass, 64);
     pass->plan = plan;
-    pass->w = wavelengths_for_pass((uint64_t)plan->how.seed, index);
+    pass->w = scene_wavelengths(plan->scene, &plan->how, index);
     pass->options.deterministic = !plan->how.multiple_samples;
     return pass;
 }

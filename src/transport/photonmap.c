@@ -246,7 +246,7 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
     pass->plan = plan;
     pass->scene = plan->scene;
     pass->how = &plan->how;
-    pass->w = wavelengths_for_pass((uint64_t)plan->how.seed, index);
+    pass->w = scene_wavelengths(plan->scene, &plan->how, index);
     pass->options.deterministic = !plan->how.multiple_samples;
     pass->has_unmet_lights = has_unmet_lights(plan->scene);
     pass->n_slices = scene_time_slices(plan->scene, &plan->how);

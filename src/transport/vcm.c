@@ -129,7 +129,7 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
     *pass = (vcm_pass){
         .plan = plan,
         .scene = plan->scene,
-        .w = wavelengths_for_pass((uint64_t)how->seed, index),
+        .w = scene_wavelengths(plan->scene, how, index),
         .index = index,
         .strategies = vcm_strategies_of(how->vcm_strategies),
         .camera_per_light = (float)((double)how->spp / n),
