@@ -85,12 +85,14 @@ static spectrum weigh_bsdf(const gather *g, size_t begin, size_t end)
     const estimate_options *options = g->options;
     spectrum sum = {0};
     for (size_t i = begin; i < end; i++) {
-        photon p = photon_store_get(g->probe.store, g->index[i]);
-        bool delta = p.flags & PHOTON_FROM_DELTA;
+        const photon_store *store = g->probe.store;
+        uint32_t packed = store->wi[g->index[i]];
+        vec3 wi = direction_unpack(packed);
+        bool delta = direction_flags(packed) & PHOTON_FROM_DELTA;
         unsigned lobes = options->lobes | (delta ? options->delta_lobes : 0);
-        spectrum f = bsdf_eval(g->b, g->wo, p.wi, lobes, TRANSPORT_RADIANCE);
+        spectrum f = bsdf_eval(g->b, g->wo, wi, lobes, TRANSPORT_RADIANCE);
         if (!spectrum_is_black(f))
-            sum += g->weight[i] * cosine_ratio(g->b, p.wi) * f * p.flux;
+            sum += g->weight[i] * cosine_ratio(g->b, wi) * f * store->flux[g->index[i]];
     }
     return sum;
 }

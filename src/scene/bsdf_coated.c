@@ -30,6 +30,7 @@ typedef struct coated {
     ggx roughness;
     bool grey_eta; /* eta is the same in all lanes */
     const coat_table *table;
+    coat_response coat; /* in lane 0 */
 } coated;
 
 _Static_assert(sizeof(coated) <= BSDF_DATA_SIZE, "a coated base must fit");
@@ -38,6 +39,7 @@ _Static_assert(sizeof(coated) <= BSDF_DATA_SIZE, "a coated base must fit");
 typedef struct choice {
     bool coat, base;
     float p_coat;
+    spectrum in; /* share of light from wo that reaches the base, if that is wanted */
 } choice;
 
 static const coated *data_of(const bsdf *b)
@@ -50,33 +52,38 @@ static unsigned coat_lobe(const coated *c)
     return ggx_class(c->roughness) | LOBE_REFLECTION;
 }
 
-typedef float (*coat_function)(const coat_table *table, float alpha, float eta, float mu);
+typedef float (*coat_function)(const coat_response *c, float mu);
 
 static spectrum over_lanes(const coated *c, coat_function f, vec3 w)
 {
-    float alpha = c->roughness.alpha_x;
     if (c->grey_eta)
-        return spectrum_fill(f(c->table, alpha, c->eta[0], w[2]));
+        return spectrum_fill(f(&c->coat, w[2]));
     spectrum out;
-    for (int i = 0; i < N_LANES; i++)
-        out[i] = f(c->table, alpha, c->eta[i], w[2]);
+    for (int i = 0; i < N_LANES; i++) {
+        const coat_response at = coat_find(c->table, c->roughness.alpha_x, c->eta[i]);
+        out[i] = f(&at, w[2]);
+    }
     return out;
 }
 
-static choice choose(const bsdf *b, vec3 wo, unsigned lobes)
+static choice wanted_of(const coated *c, vec3 o, unsigned lobes)
+{
+    choice out = {.coat = lobe_wanted(lobes, coat_lobe(c)),
+                  .base = lobe_wanted(lobes, BASE)};
+    if (out.base)
+        out.in = over_lanes(c, coat_crossing, o);
+    return out;
+}
+
+static choice choose(const bsdf *b, vec3 o, unsigned lobes)
 {
     const coated *c = data_of(b);
-    choice out = {.coat = lobe_wanted(lobes, coat_lobe(c)),
-                  .base = lobe_wanted(lobes, BASE),
-                  .p_coat = 1.0f};
-    if (!out.base)
+    choice out = wanted_of(c, o, lobes);
+    out.p_coat = out.coat ? 1.0f : 0.0f;
+    if (!out.coat || !out.base)
         return out;
-    if (!out.coat) {
-        out.p_coat = 0.0f;
-        return out;
-    }
-    float coat = lane_mean(b, over_lanes(c, coat_reflected, wo));
-    float base = lane_mean(b, c->albedo * over_lanes(c, coat_crossing, wo));
+    float coat = lane_mean(b, over_lanes(c, coat_reflected, o));
+    float base = lane_mean(b, c->albedo * out.in);
     if (base > 0.0f)
         out.p_coat = coat / (coat + base);
     return out;
@@ -87,40 +94,47 @@ static bool has_facets(const coated *c, const choice *wanted)
     return wanted->coat && !ggx_is_smooth(c->roughness);
 }
 
-static spectrum facets_eval(const coated *c, vec3 o, vec3 i)
+/* Facets that send light from i to o, up to Fresnel's share: by G2 and by G1. */
+typedef struct facets {
+    float cosine; /* of o at them */
+    float density, pdf;
+} facets;
+
+static facets facets_between(const coated *c, vec3 o, vec3 i)
 {
     vec3 m = normalize3(o + i);
     float so = ggx_stretched(c->roughness, o), si = ggx_stretched(c->roughness, i);
-    return fresnel_dielectric_lanes(dot3(o, m), c->eta) *
-           (ggx_density(c->roughness, m) / (2.0f * (o[2] * si + i[2] * so)));
+    float half = 0.5f * ggx_density(c->roughness, m);
+    return (facets){.cosine = dot3(o, m),
+                    .density = half / (o[2] * si + i[2] * so),
+                    .pdf = half / (o[2] + so)};
 }
 
-static float facets_pdf(const coated *c, vec3 o, vec3 i)
-{
-    vec3 m = normalize3(o + i);
-    return ggx_density(c->roughness, m) /
-           (2.0f * (o[2] + ggx_stretched(c->roughness, o)));
-}
-
-/* For o and i above. */
-static spectrum eval_above(const coated *c, const choice *wanted, vec3 o, vec3 i)
+/* For o and i above; met is only looked at where there are facets. */
+static spectrum eval_above(const coated *c, const choice *wanted, const facets *met,
+                           vec3 i)
 {
     spectrum f = {0};
     if (has_facets(c, wanted))
-        f += facets_eval(c, o, i);
+        f += fresnel_dielectric_lanes(met->cosine, c->eta) * met->density;
     if (wanted->base)
-        f += c->base * over_lanes(c, coat_crossing, o) * over_lanes(c, coat_crossing, i);
+        f += c->base * wanted->in * over_lanes(c, coat_crossing, i);
     return f;
 }
 
-static float pdf_above(const coated *c, const choice *wanted, vec3 o, vec3 i)
+static float pdf_above(const coated *c, const choice *wanted, const facets *met, vec3 i)
 {
     float pdf = 0.0f;
     if (has_facets(c, wanted))
-        pdf += wanted->p_coat * facets_pdf(c, o, i);
+        pdf += wanted->p_coat * met->pdf;
     if (wanted->base)
         pdf += (1.0f - wanted->p_coat) * i[2] * INV_PI_F;
     return pdf;
+}
+
+static facets facets_if(const coated *c, const choice *wanted, vec3 o, vec3 i)
+{
+    return has_facets(c, wanted) ? facets_between(c, o, i) : (facets){0};
 }
 
 static spectrum coated_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
@@ -131,9 +145,10 @@ static spectrum coated_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
         return (spectrum){0};
     const coated *c = data_of(b);
     bool flip = wo[2] < 0.0f;
-    choice wanted = {.coat = lobe_wanted(lobes, coat_lobe(c)),
-                     .base = lobe_wanted(lobes, BASE)};
-    return eval_above(c, &wanted, flip_z(wo, flip), flip_z(wi, flip));
+    vec3 o = flip_z(wo, flip), i = flip_z(wi, flip);
+    choice wanted = wanted_of(c, o, lobes);
+    facets met = facets_if(c, &wanted, o, i);
+    return eval_above(c, &wanted, &met, i);
 }
 
 static float coated_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
@@ -142,10 +157,12 @@ static float coated_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
     (void)mode;
     if (!(wo[2] * wi[2] > 0.0f))
         return 0.0f;
+    const coated *c = data_of(b);
     bool flip = wo[2] < 0.0f;
-    vec3 o = flip_z(wo, flip);
+    vec3 o = flip_z(wo, flip), i = flip_z(wi, flip);
     choice wanted = choose(b, o, lobes);
-    return pdf_above(data_of(b), &wanted, o, flip_z(wi, flip));
+    facets met = facets_if(c, &wanted, o, i);
+    return pdf_above(c, &wanted, &met, i);
 }
 
 static void mirror(const coated *c, const choice *wanted, vec3 o, bsdf_sample *out)
@@ -174,9 +191,10 @@ static bool coated_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned
                       : warp_cosine_hemisphere(u);
         if (!(i[2] > 0.0f))
             return false;
+        facets met = facets_if(c, &wanted, o, i);
         out->wi = i;
-        out->pdf = pdf_above(c, &wanted, o, i);
-        out->weight = eval_above(c, &wanted, o, i) * (i[2] / out->pdf);
+        out->pdf = pdf_above(c, &wanted, &met, i);
+        out->weight = eval_above(c, &wanted, &met, i) * (i[2] / out->pdf);
         out->lobe = coat ? coat_lobe(c) : (unsigned)BASE;
     }
     out->wi = flip_z(out->wi, flip);
@@ -195,11 +213,19 @@ static spectrum coated_albedo(const bsdf *b, vec3 wo, unsigned lobes)
     return sum;
 }
 
-/* 1 + x + ... + x^(n-1) for 0 <= x < 1. */
-static float series(float x, int n)
+/* 1 + x + ... + x^(n-1), by halves: the sum of 2n terms is that of n times 1 + x^n. */
+static spectrum series(spectrum x, int n)
 {
-    return x < 0.999f ? (1.0f - powf(x, (float)n)) / (1.0f - x)
-                      : minf((float)n, 1.0f / maxf(1.0f - x, 1e-6f));
+    spectrum sum = {0}, power = spectrum_fill(1.0f); /* of the top bits of n */
+    for (int bit = 31 - __builtin_clz((unsigned)n | 1u); bit >= 0; bit--) {
+        sum += sum * power;
+        power *= power;
+        if (n >> bit & 1) {
+            sum += power;
+            power *= x;
+        }
+    }
+    return sum;
 }
 
 static bool same_in_all_lanes(spectrum s)
@@ -224,14 +250,16 @@ void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, float alpha,
     *c = (coated){.eta = eta,
                   .roughness = ggx_make(alpha, alpha),
                   .grey_eta = same_in_all_lanes(eta),
-                  .table = table};
-    spectrum internal, escape, sum;
-    for (int i = 0; i < N_LANES; i++) {
-        bool known = i && c->grey_eta;
-        internal[i] = known ? internal[0] : coat_internal(table, alpha, eta[i]);
-        escape[i] = known ? escape[0] : coat_escape(table, alpha, eta[i]);
-        sum[i] = series(rho[i] * internal[i], bounces);
+                  .table = table,
+                  .coat = coat_find(table, alpha, eta[0])};
+    spectrum internal = spectrum_fill(coat_internal(&c->coat));
+    spectrum escape = spectrum_fill(coat_escape(&c->coat));
+    for (int i = 1; i < N_LANES && !c->grey_eta; i++) {
+        const coat_response at = coat_find(table, alpha, eta[i]);
+        internal[i] = coat_internal(&at);
+        escape[i] = coat_escape(&at);
     }
+    spectrum sum = series(rho * internal, bounces);
     c->base = rho * sum * INV_PI_F / (eta * eta);
     c->albedo = rho * sum * escape;
     b->ops = &ops;

@@ -14,15 +14,15 @@ typedef struct axis {
 } axis;
 
 /* The numbers at one node of alpha and eta. */
-typedef struct node {
+typedef struct coat_node {
     float reflected[COSINES], crossing[COSINES];
     float internal, escape;
-} node;
+} coat_node;
 
 struct coat_table {
     axis alpha, eta;
     float thickness;
-    node *nodes; /* eta runs fastest */
+    coat_node *nodes; /* eta runs fastest */
 };
 
 /* Light that meets the boundary. */
@@ -67,7 +67,7 @@ static float cosine_of(int i)
 }
 
 /* ∫ of shares from within, for Lambert's law: 2 ∫ share(μ) exp(-thickness/μ) μ dμ. */
-static void fill_internal(node *out, const boundary *at)
+static void fill_internal(coat_node *out, const boundary *at)
 {
     boundary below = *at;
     below.eta = 1.0f / at->eta;
@@ -85,7 +85,7 @@ static void fill_internal(node *out, const boundary *at)
     out->escape = (float)escape;
 }
 
-static void fill_node(node *out, const boundary *at)
+static void fill_node(coat_node *out, const boundary *at)
 {
     for (int i = 0; i < COSINES; i++) {
         double back, through;
@@ -109,7 +109,7 @@ coat_table *coat_table_new(const coat_range *range)
     table->alpha = make_axis(range->alpha_min, range->alpha_max, ALPHAS);
     table->eta = make_axis(range->eta_min, range->eta_max, ETAS);
     table->thickness = range->thickness;
-    table->nodes = g_new(node, (gsize)table->alpha.n * (gsize)table->eta.n);
+    table->nodes = g_new(coat_node, (gsize)table->alpha.n * (gsize)table->eta.n);
     for (int i = 0; i < table->alpha.n; i++)
         for (int j = 0; j < table->eta.n; j++) {
             float alpha = table->alpha.first + (float)i * table->alpha.step;
@@ -141,18 +141,12 @@ static int find(const axis *a, float x, float *rest)
     return i;
 }
 
-/* Up to four nodes around (alpha, eta) with their weights. */
-typedef struct corners {
-    const node *nodes[4];
-    float weights[4];
-    int n;
-} corners;
-
-static corners find_corners(const coat_table *table, float alpha, float eta)
+coat_response coat_find(const coat_table *table, float alpha, float eta)
 {
     float a, e;
     int i = find(&table->alpha, alpha, &a), j = find(&table->eta, eta, &e);
-    corners c = {.n = 0};
+    coat_response c = {
+        .smooth = alpha < SMOOTH_ALPHA, .eta = eta, .thickness = table->thickness};
     for (int k = 0; k < 4; k++) {
         float weight = (k & 2 ? a : 1.0f - a) * (k & 1 ? e : 1.0f - e);
         if (!(weight > 0.0f))
@@ -163,52 +157,57 @@ static corners find_corners(const coat_table *table, float alpha, float eta)
     return c;
 }
 
-/* Values of one array of the nodes at cosine mu. */
-static float at_cosine(const corners *c, size_t offset, float mu)
+/* The interval of the cosines that mu is in, and how far it is on the way to its end. */
+static int find_cosine(float mu, float *rest)
 {
     float place = sqrtf(clampf(mu, 0.0f, 1.0f)) * (COSINES - 1);
     int i = MIN((int)place, COSINES - 2);
-    float low = cosine_of(i), rest = (mu - low) / (cosine_of(i + 1) - low), sum = 0.0f;
+    float low = cosine_of(i);
+    *rest = (mu - low) / (cosine_of(i + 1) - low);
+    return i;
+}
+
+float coat_reflected(const coat_response *c, float mu)
+{
+    if (c->smooth)
+        return fresnel_dielectric(mu, c->eta);
+    float rest, sum = 0.0f;
+    int i = find_cosine(mu, &rest);
     for (int k = 0; k < c->n; k++) {
-        const float *values = (const void *)((const char *)c->nodes[k] + offset);
-        sum += c->weights[k] * lerpf(values[i], values[i + 1], rest);
+        const float *values = &c->nodes[k]->reflected[i];
+        sum += c->weights[k] * lerpf(values[0], values[1], rest);
     }
     return sum;
 }
 
-float coat_reflected(const coat_table *table, float alpha, float eta, float mu)
+float coat_crossing(const coat_response *c, float mu)
 {
-    if (alpha < SMOOTH_ALPHA)
-        return fresnel_dielectric(mu, eta);
-    corners c = find_corners(table, alpha, eta);
-    return at_cosine(&c, offsetof(node, reflected), mu);
-}
-
-float coat_crossing(const coat_table *table, float alpha, float eta, float mu)
-{
-    if (alpha < SMOOTH_ALPHA) {
-        float cos_t2 = 1.0f - (1.0f - mu * mu) / (eta * eta);
-        return (1.0f - fresnel_dielectric(mu, eta)) *
-               attenuation(table->thickness, sqrtf(maxf(cos_t2, 0.0f)));
+    if (c->smooth) {
+        float cos_t2 = 1.0f - (1.0f - mu * mu) / (c->eta * c->eta);
+        return (1.0f - fresnel_dielectric(mu, c->eta)) *
+               attenuation(c->thickness, sqrtf(maxf(cos_t2, 0.0f)));
     }
-    corners c = find_corners(table, alpha, eta);
-    return at_cosine(&c, offsetof(node, crossing), mu);
-}
-
-float coat_internal(const coat_table *table, float alpha, float eta)
-{
-    corners c = find_corners(table, alpha, eta);
-    float sum = 0.0f;
-    for (int k = 0; k < c.n; k++)
-        sum += c.weights[k] * c.nodes[k]->internal;
+    float rest, sum = 0.0f;
+    int i = find_cosine(mu, &rest);
+    for (int k = 0; k < c->n; k++) {
+        const float *values = &c->nodes[k]->crossing[i];
+        sum += c->weights[k] * lerpf(values[0], values[1], rest);
+    }
     return sum;
 }
 
-float coat_escape(const coat_table *table, float alpha, float eta)
+float coat_internal(const coat_response *c)
 {
-    corners c = find_corners(table, alpha, eta);
     float sum = 0.0f;
-    for (int k = 0; k < c.n; k++)
-        sum += c.weights[k] * c.nodes[k]->escape;
+    for (int k = 0; k < c->n; k++)
+        sum += c->weights[k] * c->nodes[k]->internal;
+    return sum;
+}
+
+float coat_escape(const coat_response *c)
+{
+    float sum = 0.0f;
+    for (int k = 0; k < c->n; k++)
+        sum += c->weights[k] * c->nodes[k]->escape;
     return sum;
 }

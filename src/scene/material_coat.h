@@ -13,7 +13,7 @@
 
 #include "scene/microfacet.h"
 
-#include <stddef.h>
+#include <stdbool.h>
 
 /** @brief Ranges of the coat's numbers; min = max if constant. */
 typedef struct coat_range {
@@ -27,12 +27,25 @@ typedef struct coat_table coat_table;
 coat_table *coat_table_new(const coat_range *range);
 void coat_table_free(coat_table *table);
 
+/** @brief A coat of one roughness and index: the table's nodes around it, to be looked up
+ * once and asked often. */
+typedef struct coat_response {
+    const struct coat_node *nodes[4];
+    float weights[4];
+    int n;
+    bool smooth;
+    float eta, thickness;
+} coat_response;
+
+/** @brief @param alpha,eta within the table's ranges @return borrows from the table */
+coat_response coat_find(const coat_table *table, float alpha, float eta);
+
 /** @brief Share of light from cosine mu reflected by the coat's facets. */
-float coat_reflected(const coat_table *table, float alpha, float eta, float mu);
+float coat_reflected(const coat_response *c, float mu);
 /** @brief Share of light from cosine mu that reaches the base. By reciprocity it is also
  * η² times the radiance that leaves towards mu for unit radiance leaving the base. */
-float coat_crossing(const coat_table *table, float alpha, float eta, float mu);
+float coat_crossing(const coat_response *c, float mu);
 /** @brief Share of light leaving the base that the coat sends back to it. */
-float coat_internal(const coat_table *table, float alpha, float eta);
+float coat_internal(const coat_response *c);
 /** @brief Share of light leaving the base that gets out. */
-float coat_escape(const coat_table *table, float alpha, float eta);
+float coat_escape(const coat_response *c);
