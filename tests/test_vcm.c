@@ -467,6 +467,27 @@ static void test_same_bits_on_any_number_of_threads(void)
     assert_same_bits(one, two);
 }
 
+/* Light subpaths of a pass. */
+static uint64_t light_paths_with(const scene *s, const char *words)
+{
+    g_autoptr(render) r = render_of(s, words);
+    g_assert_true(render_run(r, NULL, NULL, NULL));
+    return render_get_statistics(r).emitted[PHOTON_INDIRECT];
+}
+
+static void test_as_many_paths_from_lamps_as_from_the_eye(void)
+{
+    g_autofree char *text = g_strconcat(ROOM, furnishings[3].text, NULL);
+    g_autoptr(scene) s = scene_of(text);
+    uint64_t pixels = (uint64_t)s->film.width * (uint64_t)s->film.height;
+    g_assert_cmpuint(light_paths_with(s, "integrator=vcm passes=1 spp=2"), ==,
+                     2 * pixels);
+    g_assert_cmpuint(light_paths_with(s, "integrator=vcm passes=1 photons=777"), ==, 777);
+    g_assert_cmpuint(
+        light_paths_with(s, "integrator=vcm passes=1 spp=1 vcm_strategies=light"), ==,
+        400000);
+}
+
 enum { N_RENDERS = 24 };
 
 /* Adds N_RENDERS independent renders' green to sum and squares, pixel by pixel. */
@@ -535,6 +556,7 @@ int main(int argc, char **argv)
     g_test_add_func("/vcm/filters", test_splats_follow_the_filter);
     g_test_add_func("/vcm/caustic", test_point_light_through_glass);
     g_test_add_func("/vcm/layers", test_layers_agree_with_path_tracing);
+    g_test_add_func("/vcm/light-paths", test_as_many_paths_from_lamps_as_from_the_eye);
     g_test_add_func("/vcm/threads", test_same_bits_on_any_number_of_threads);
     g_test_add_func("/vcm/pixels", test_every_pixel_agrees);
     return g_test_run();

@@ -76,7 +76,7 @@ static size_t estimate_memory(const scene *s, const summary *all)
     size_t triangles = 0;
     for (guint i = 0; i < all->shapes->len; i++)
         triangles += g_array_index(all->shapes, tally, i).n_triangles;
-    return all->geometry_bytes + 90 * triangles + 104 * (size_t)s->settings.photons +
+    return all->geometry_bytes + 90 * triangles + 104 * (size_t)settings_photons(&s->settings) +
            200 * (size_t)s->film.width * (size_t)s->film.height;
 }
 

@@ -30,7 +30,7 @@ static uint64_t budget(const scene *s, const settings *how, photon_class c)
     for (int i = 0; i < N_PHOTON_CLASSES; i++)
         n_sharing +=
             i != (int)c && is_possible(s, (photon_class)i) && how->class_photons[i] == 0;
-    return (uint64_t)MAX(how->photons / n_sharing, 1);
+    return (uint64_t)MAX(settings_photons(how) / n_sharing, 1);
 }
 
 /* What a render would plan, without the radii. */

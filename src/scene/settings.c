@@ -21,7 +21,7 @@ static const char *const roulette_words[] = {"mean", "max", NULL};
 static const char *const emission_words[] = {"uniform", "specular-area", "guided", NULL};
 static const char *const vcm_words[] = {"all", "bpt", "bpm", "ppm", "light", NULL};
 
-enum { MOST_PASSES = 1000000000, USUAL_PASSES = 16 };
+enum { MOST_PASSES = 1000000000, USUAL_PASSES = 16, USUAL_PHOTONS = 400000 };
 
 #define AT(field) offsetof(settings, field)
 
@@ -67,10 +67,10 @@ static const setting_row table[] = {
     {"shadow_rays", SETTING_BOOL, AT(shadow_rays), "", 0, 1, 1, NULL, "",
      "photonmap path",
      "Tests whether sampled lights are hidden; off: direct light casts no shadows."},
-    {"photons", SETTING_COUNT, AT(photons), "photons/pass", 1, 1e12, 400000, NULL,
-     "numEmitted photonsperiteration photons_per_pass", "photonmap vcm",
-     "Photons emitted a pass, shared among the classes that have no number of their "
-     "own."},
+    {"photons", SETTING_COUNT, AT(photons), "photons/pass", 0, 1e12, 0, NULL,
+     "numEmitted photonsperiteration photons_per_pass", "photonmap auto vcm",
+     "Photons emitted a pass, shared among the classes that have no number of their own; "
+     "0: 400000, but no more than camera paths where vcm connects them."},
     {"direct_photons", SETTING_COUNT, AT(class_photons[0]), "photons/pass", 0, 1e12, 0,
      NULL, "DIRECT_PHOTONS_PER_LIGHT directphotons", "photonmap",
      "Photons emitted a pass for the direct map, over all lights; 0: a share of "
@@ -223,6 +223,11 @@ int64_t settings_most_passes(const settings *s)
 int64_t settings_planned_passes(const settings *s)
 {
     return s->passes > 0 ? s->passes : USUAL_PASSES;
+}
+
+int64_t settings_photons(const settings *s)
+{
+    return s->photons > 0 ? s->photons : USUAL_PHOTONS;
 }
 
 /** pbrt's name, which sets two settings at once. */

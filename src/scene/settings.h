@@ -50,7 +50,8 @@ typedef struct settings {
     bool precompute_radiance;
     bool direct_illumination;
     bool shadow_rays;
-    int64_t photons; /**< emitted a pass, shared among the classes left at 0 */
+    int64_t photons; /**< emitted a pass, shared among the classes left at 0; 0:
+                        automatic, see settings_photons */
     int64_t class_photons[N_CLASSES]; /**< 0: a share of photons */
     int64_t class_nearest[N_CLASSES]; /**< 0: fixed radius */
     double radius;                    /**< m; 0: automatic */
@@ -100,6 +101,8 @@ int64_t settings_most_passes(const settings *s);
 /** @brief Passes that decisions taken before the first one count on. It does not depend
  * on `time` and `noise`, so neither does what a pass renders. */
 int64_t settings_planned_passes(const settings *s);
+/** @brief Photons emitted a pass, at most where that is automatic. */
+int64_t settings_photons(const settings *s);
 /** @brief Sets from text, checked against type and range. ERROR_USAGE naming setting,
  * what was expected and what was found. */
 bool settings_set(settings *s, const char *name, const char *value, GError **error);

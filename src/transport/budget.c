@@ -40,7 +40,7 @@ uint64_t caustic_budget(const transport_plan *plan)
     int64_t most = MAX(PHOTONS_PER_SAMPLE * samples, LEAST_PHOTONS);
     if (plan->scene->n_casters == 0)
         return 0;
-    return (uint64_t)(own > 0 ? own : MIN(how->photons, most));
+    return (uint64_t)(own > 0 ? own : MIN(settings_photons(how), most));
 }
 
 /* ---- What paths do ---- */

@@ -48,13 +48,14 @@ static bool class_needed(const transport_plan *plan, photon_class c)
 static void share_photons(transport_plan *plan)
 {
     unsigned n_sharing = 0;
+    int64_t shared = settings_photons(&plan->how);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         n_sharing +=
             class_needed(plan, (photon_class)c) && plan->how.class_photons[c] == 0;
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         int64_t own = plan->how.class_photons[c];
         bool needed = class_needed(plan, (photon_class)c);
-        int64_t n = own > 0 ? own : n_sharing > 0 ? plan->how.photons / n_sharing : 0;
+        int64_t n = own > 0 ? own : n_sharing > 0 ? shared / n_sharing : 0;
         plan->n_photons[c] = needed ? (uint64_t)MAX(n, 1) : 0;
     }
 }

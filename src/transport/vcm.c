@@ -39,9 +39,22 @@ static bool choose_radius(transport_plan *plan, const cancel_flag *cancel, GErro
     return ok;
 }
 
+/* Where subpaths are connected, one for each of the camera's (Georgiev et al.); merging
+   and light tracing alone live on many of them. */
+static uint64_t count_light_paths(const transport_plan *plan)
+{
+    const settings *how = &plan->how;
+    const film_settings *film = &plan->scene->film;
+    int64_t camera_paths = (int64_t)film->width * film->height * how->spp;
+    int64_t n = settings_photons(how);
+    if (how->photons == 0 && vcm_strategies_of(how->vcm_strategies).connect)
+        n = MIN(n, camera_paths);
+    return (uint64_t)MAX(n, 1);
+}
+
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
-    plan->n_photons[PHOTON_INDIRECT] = (uint64_t)MAX(plan->how.photons, 1);
+    plan->n_photons[PHOTON_INDIRECT] = count_light_paths(plan);
     if (plan->how.vcm_strategies == VCM_LIGHT && !camera_connects(&plan->scene->camera)) {
         error_set(error, ERROR_INPUT,
                   "light can not be traced to camera \"%s\": expected other "
