@@ -37,11 +37,12 @@ held_picture *held_picture_new(NephImage *image, int width, int height, bool coa
     return held;
 }
 
-held_photons *held_photons_new(NephPhotons *photons, held_scene *scene)
+held_photons *held_photons_new(NephPhotons *photons, NephScene *seen, held_scene *scene)
 {
     held_photons *held = g_new0(held_photons, 1);
     atomic_init(&held->holders, 1);
     held->photons = photons;
+    held->seen = seen;
     held->scene = held_scene_ref(scene);
     return held;
 }
@@ -82,6 +83,7 @@ void held_photons_unref(held_photons *photons)
     if (!let_go(photons))
         return;
     neph_photons_free(photons->photons);
+    neph_scene_free(photons->seen);
     held_scene_unref(photons->scene);
     g_free(photons);
 }

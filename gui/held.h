@@ -2,8 +2,8 @@
  * Library objects that several threads hold: counted, freed with the last holder.
  *
  * The worker makes scenes, pictures and photons and hands them to the window; both may
- * look at them as long as they hold them. What is held is not changed any more (the size
- * and the camera of a scene apart, which only the worker touches).
+ * look at them as long as they hold them. What is held is not changed any more: who wants
+ * a scene in another size, or from elsewhere, shares it (neph_scene_share).
  */
 #pragma once
 
@@ -28,13 +28,14 @@ typedef struct held_picture {
 typedef struct held_photons {
     atomic_int holders;
     NephPhotons *photons;
+    NephScene *seen;   /**< as they were traced for */
     held_scene *scene; /**< kept alive with them */
 } held_photons;
 
 /** @brief Each takes what it is given, and is held once. */
 held_scene *held_scene_new(NephScene *scene);
 held_picture *held_picture_new(NephImage *image, int width, int height, bool coarse);
-held_photons *held_photons_new(NephPhotons *photons, held_scene *scene);
+held_photons *held_photons_new(NephPhotons *photons, NephScene *seen, held_scene *scene);
 
 /** @brief One holder more. NULL gives NULL. */
 held_scene *held_scene_ref(held_scene *scene);

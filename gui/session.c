@@ -49,6 +49,7 @@ struct session {
     /* The worker's own. */
     session_order order; /* its copy of wanted */
     held_scene *scene;
+    NephScene *seen;    /* it, in the size and from where it is rendered */
     NephRender *render; /* of order.version; NULL: to be made */
     double extent;      /* of the scene, m */
     preview_pace pace;
@@ -105,6 +106,7 @@ static void free_session(session *s)
     neph_settings_free(s->wanted.settings);
     neph_settings_free(s->order.settings);
     neph_settings_free(s->rendered);
+    neph_scene_free(s->seen);
     held_scene_unref(s->scene);
     pthread_mutex_destroy(&s->lock);
     pthread_cond_destroy(&s->wake);
@@ -224,8 +226,8 @@ static bool quick_look(session *s, double allowed)
     preview_size(&s->pace, allowed, whole, size);
     s->look_was_whole = size[0] == whole[0] && size[1] == whole[1];
     g_autoptr(NephSettings) settings = preview_settings(s->order.settings, s->extent);
-    neph_scene_resize(s->scene->scene, size[0], size[1], NULL);
-    g_autoptr(NephRender) render = neph_render_new(s->scene->scene, settings, NULL);
+    neph_scene_resize(s->seen, size[0], size[1], NULL);
+    g_autoptr(NephRender) render = neph_render_new(s->seen, settings, NULL);
     NephImage *image = NULL;
     if (render) {
         set_running(s, render);
@@ -275,8 +277,8 @@ static bool begin_render(session *s, GError **error)
     bool going = quick_look(s, LOOK_MOVING);
     for (size_t i = 0; i < G_N_ELEMENTS(looks_still) && going; i++)
         going = !s->look_was_whole && quick_look(s, looks_still[i]);
-    neph_scene_resize(s->scene->scene, s->order.width, s->order.height, NULL);
-    s->render = neph_render_new(s->scene->scene, s->order.settings, error);
+    neph_scene_resize(s->seen, s->order.width, s->order.height, NULL);
+    s->render = neph_render_new(s->seen, s->order.settings, error);
     pthread_mutex_lock(&s->lock);
     neph_settings_free(s->rendered);
     s->rendered = neph_settings_copy(s->order.settings);
@@ -350,8 +352,10 @@ static void load(session *s, const char *path)
         return;
     }
     g_clear_pointer(&s->render, neph_render_free);
+    g_clear_pointer(&s->seen, neph_scene_free);
     held_scene_unref(s->scene);
     s->scene = held_scene_new(scene);
+    s->seen = neph_scene_share(scene);
     s->complete = s->failed = false;
     s->pace = (preview_pace){0};
     measure(s);
@@ -392,7 +396,7 @@ static void renew(session *s)
 {
     g_clear_pointer(&s->render, neph_render_free);
     s->complete = s->failed = false;
-    neph_scene_set_camera(s->scene->scene, &s->order.camera, NULL);
+    neph_scene_set_camera(s->seen, &s->order.camera, NULL);
 }
 
 static void *work(void *data)

@@ -118,7 +118,10 @@ static void settings_changed(const NephSettings *settings, void *data)
 static void size_changed(int width, int height, void *data)
 {
     window *w = data;
+    w->size[0] = width;
+    w->size[1] = height;
     session_set_size(w->session, width, height);
+    window_photons_settings_changed(w);
 }
 
 /* ---- Building ---- */

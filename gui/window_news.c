@@ -81,6 +81,8 @@ static void scene_loaded(window *w, held_scene *scene)
         session_set_settings(w->session, fresh);
     settings_panel_show(w->settings, fresh, of_scene);
     settings_panel_show_size(w->settings, scene->width, scene->height);
+    w->size[0] = scene->width;
+    w->size[1] = scene->height;
     neph_settings_free(w->of_scene);
     w->of_scene = of_scene;
     take_view(w, scene);

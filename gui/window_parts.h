@@ -58,6 +58,7 @@ struct window {
     held_scene *scene;      /* NULL: none yet */
     NephSettings *of_scene; /* settings as the file has them */
     viewpoint view;
+    int size[2]; /* of the picture, pixels */
     session_state state;
     NephStatistics statistics; /* of the render, as last told */
     double fraction;

@@ -74,7 +74,9 @@ void window_trace_photons(window *w)
     window_stop_tracing(w);
     w->tracing = g_cancellable_new();
     photon_panel_show_tracing(w->photon_panel, true);
-    photon_job_start(w->scene, settings_panel_values(w->settings), w->tracing, traced, w);
+    const photon_wish wish = {w->scene, settings_panel_values(w->settings),
+                              &w->view.camera, w->size[0], w->size[1]};
+    photon_job_start(&wish, w->tracing, traced, w);
 }
 
 static bool photons_in_view(window *w)

@@ -357,6 +357,36 @@ static void test_photons(void)
     neph_scene_free(scene);
 }
 
+/* Two sizes and places of one scene at once, and the first as it was. */
+static void test_shared(void)
+{
+    NephScene *scene = load();
+    NephScene *other = neph_scene_share(scene);
+    NephCamera before, moved;
+    int width, height;
+    neph_scene_camera(scene, &before);
+    moved = before;
+    moved.position[0] += 0.5;
+    g_assert_true(neph_scene_resize(other, 8, 8, NULL));
+    g_assert_true(neph_scene_set_camera(other, &moved, NULL));
+    neph_scene_size(scene, &width, &height);
+    g_assert_cmpint(width, ==, 16);
+    g_assert_cmpint(height, ==, 12);
+    neph_scene_camera(scene, &moved);
+    g_assert_cmpmem(before.position, sizeof before.position, moved.position,
+                    sizeof moved.position);
+    g_autoptr(NephSettings) settings = neph_scene_settings(other);
+    g_autoptr(NephRender) render = neph_render_new(other, settings, NULL);
+    g_assert_true(neph_render_run(render, NULL, NULL, NULL));
+    g_autoptr(NephImage) image = neph_render_image(render, NULL);
+    int n;
+    neph_image_size(image, &width, &height, &n);
+    g_assert_cmpint(width, ==, 8);
+    g_clear_pointer(&render, neph_render_free);
+    neph_scene_free(other);
+    neph_scene_free(scene);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -368,6 +398,7 @@ int main(int argc, char **argv)
     g_test_add_func("/api/settings/described", test_settings_described);
     g_test_add_func("/api/statistics", test_statistics_text);
     g_test_add_func("/api/scene", test_scene);
+    g_test_add_func("/api/scene/shared", test_shared);
     g_test_add_func("/api/scene/errors", test_scene_errors);
     g_test_add_func("/api/scene/power", test_described_power_scales);
     g_test_add_func("/api/render/lives", test_render_lives);

@@ -85,6 +85,26 @@ static void test_trace(void)
 }
 
 /* The number beside the button is the setting itself, and photons follow it. */
+/* What photons are traced for is the picture's size and view, whatever coarse look the
+   render is at. */
+static void test_same_photons(void)
+{
+    window *w = trace_photons("same.pbrt");
+    double radius[3] = {0.0};
+    for (int i = 0; i < 4; i++) {
+        NephStatistics statistics;
+        view_activate(w, i % 2 ? "win.stop" : "win.restart");
+        view_activate(w, "win.trace-photons");
+        while (w->tracing)
+            g_main_context_iteration(NULL, TRUE);
+        neph_photons_statistics(w->photons->photons, &statistics);
+        for (int c = 0; c < 3; c++)
+            g_assert_true(i == 0 || !(fabs(radius[c] - statistics.radius[c]) > 0.0));
+        memcpy(radius, statistics.radius, sizeof radius);
+    }
+    view_close(w);
+}
+
 static void test_number(void)
 {
     window *w = trace_photons("number.pbrt");
@@ -330,6 +350,7 @@ int main(int argc, char **argv)
 {
     view_init(&argc, &argv);
     view_add_test("/view-panels/trace", test_trace);
+    view_add_test("/view-panels/same-photons", test_same_photons);
     view_add_test("/view-panels/number", test_number);
     view_add_test("/view-panels/style", test_style);
     view_add_test("/view-panels/pick", test_pick);

@@ -30,6 +30,7 @@ field() {
 size_of() {
     awk -v w="$(field "$1" width)" -v h="$(field "$1" height)" -v most="$side" 'BEGIN {
         longer = w > h ? w : h
+        most = longer < most ? longer : most
         printf "%dx%d\n", w * most / longer + 0.5, h * most / longer + 0.5 }'
 }
 

@@ -100,7 +100,7 @@ NEPH_API char *neph_features_describe(void);
 
 /* ---- Scenes ---- */
 
-/** @brief A loaded scene; immutable but for its size. */
+/** @brief A loaded scene; immutable but for its size and camera. */
 typedef struct NephScene NephScene;
 /** @brief Loads a scene (pbrt, glTF, OBJ ...). log may be NULL. threads 0 = all. On
  * failure the error holds up to 20 messages, one a line. */
@@ -126,6 +126,10 @@ typedef struct NephLoadOptions {
 NEPH_API NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options,
                                          GError **error);
 NEPH_API void neph_scene_free(NephScene *scene);
+/** @brief The same scene with a size and a camera of its own, so that what renders it
+ * need not wait for who looks at it otherwise. Cheap: all else is the given scene's,
+ * which must outlive it. */
+NEPH_API NephScene *neph_scene_share(const NephScene *scene);
 /** @brief The settings that the file asks for (defaults where it does not); owned by
  * caller. */
 NEPH_API NephSettings *neph_scene_settings(const NephScene *scene);

@@ -64,8 +64,21 @@ void neph_scene_free(NephScene *s)
 {
     if (!s)
         return;
-    g_clear_pointer(&s->scene, scene_free);
+    if (s->shares)
+        g_free(s->scene);
+    else
+        scene_free(s->scene);
     g_free(s);
+}
+
+NephScene *neph_scene_share(const NephScene *s)
+{
+    NephScene *other = g_new(NephScene, 1);
+    *other = (NephScene){.scene = scene_share(s->scene),
+                         .shares = true,
+                         .log = s->log,
+                         .log_data = s->log_data};
+    return other;
 }
 
 NephSettings *neph_scene_settings(const NephScene *s)

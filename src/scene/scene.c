@@ -62,6 +62,11 @@ scene *scene_new(const log_sink *log)
     return s;
 }
 
+scene *scene_share(const scene *s)
+{
+    return g_memdup2(s, sizeof *s); /* size and camera are plain values in it */
+}
+
 void scene_free(scene *s)
 {
     if (!s)

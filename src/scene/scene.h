@@ -112,6 +112,9 @@ typedef struct scene {
 /** @brief Those of a pass. */
 wavelengths scene_wavelengths(const scene *s, const settings *how, uint32_t pass);
 
+/** @brief The same committed scene with a size and a camera of its own; all else stays
+ * the first one's, which must outlive it. Freed by g_free. */
+scene *scene_share(const scene *s);
 scene *scene_new(const log_sink *log);
 void scene_free(scene *s);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(scene, scene_free)
