@@ -33,6 +33,37 @@ static void test_furnace_by_final_gather(void)
                   "gather_rays=16");
 }
 
+/* Above the lamp and behind the ball it is dark, with hardly a photon. */
+#define DARK_PLACES(motion)                                                              \
+    ROOM_CAMERA SIZE(8) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS                          \
+        "ActiveTransform EndTime Translate " motion                                      \
+        " 0 0 ActiveTransform All Translate 0 "                                          \
+        "0 0.6 Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7] Shape \"sphere\" " \
+        "\"float radius\" 0.4\n"
+
+/* Irradiance that is kept is what the maps say. */
+static void test_kept_irradiance(void)
+{
+    static const struct {
+        const char *text, *words;
+    } rooms[] = {{DARK_PLACES("0"), "photons=5000"}, {DARK_PLACES("1"), "photons=20000"}};
+    for (size_t i = 0; i < G_N_ELEMENTS(rooms); i++) {
+        g_autoptr(scene) s = scene_of(rooms[i].text);
+        double sum[2];
+        for (int k = 0; k < 2; k++) {
+            g_autofree char *words =
+                g_strdup_printf("passes=12 spp=4 radius=0.2 alpha=1 final_gather=on "
+                                "gather_rays=16 precompute_radiance=%s %s",
+                                k ? "on" : "off", rooms[i].words);
+            g_autoptr(image) img = render_with(s, words);
+            sum[k] = mean_of(img, "indirect");
+        }
+        g_test_message("kept %g, asked %g (%+.2f %%)", sum[1], sum[0],
+                       100 * (sum[1] / sum[0] - 1));
+        g_assert_cmpfloat(fabs(sum[1] / sum[0] - 1), <, 0.006);
+    }
+}
+
 static void test_furnace_by_path(void)
 {
     check_furnace("integrator=path passes=8 spp=16 max_backward_bounces=-1");
@@ -185,6 +216,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/transport/furnace/map", test_furnace_by_the_map);
     g_test_add_func("/transport/furnace/final-gather", test_furnace_by_final_gather);
+    g_test_add_func("/transport/kept-irradiance", test_kept_irradiance);
     g_test_add_func("/transport/furnace/path", test_furnace_by_path);
     for (size_t i = 0; i < G_N_ELEMENTS(furnishings); i++) {
         g_autofree char *name =

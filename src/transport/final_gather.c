@@ -5,6 +5,11 @@
  *
  * A gather ray never counts lamps it meets: light → here is the direct layer's, and light
  * → specular → here the caustic map's.
+ *
+ * Kept irradiance is looked up nearby only. Where light falls off to nothing, as on a
+ * wall above its lamp, there are no photons, and the nearest place with any is far and in
+ * the light: what is dark would shine. There the maps are asked, which is quick, for few
+ * photons are in reach.
  */
 #include "transport/direct.h"
 #include "transport/photonmap.h"
@@ -17,6 +22,9 @@
 #define NORMAL_AGREEMENT 0.9f
 enum { NEAREST_KEPT = 4 };
 
+/* How far off a kept irradiance may be, over the radius it was estimated with. */
+#define KEPT_REACH 0.5f
+
 typedef struct irradiance_loop {
     const photonmap_pass *pass;
     const photon_store *points;
@@ -27,20 +35,35 @@ typedef struct irradiance_loop {
     bool *failed;
 } irradiance_loop;
 
-/* groups, if there are any, get their parts of it. */
-static spectrum irradiance_at(const irradiance_loop *loop, vec3 p, vec3 n,
-                              estimate_scratch *scratch, spectrum *groups)
+/* A place where the maps of a slice are asked. */
+typedef struct map_place {
+    const photonmap_pass *pass;
+    int slice;
+    vec3 p, n;
+} map_place;
+
+/* By the photons of one class; scratch->groups are its parts. */
+static spectrum class_irradiance(const map_place *at, int c, estimate_scratch *scratch)
 {
-    const photonmap_pass *pass = loop->pass;
-    photon_map *const *maps = pass->maps[loop->slice];
+    const photonmap_pass *pass = at->pass;
+    const photon_map *map = pass->maps[at->slice][c];
+    estimate_options options = pass->estimates[c];
+    options.scene = pass->how->edges ? pass->scene : NULL;
+    options.time = photonmap_slice_time(pass, at->slice);
+    if (map)
+        return photon_irradiance(map, at->p, at->n, &options, scratch, NULL);
+    for (size_t i = 0; i < scratch->n_groups; i++)
+        scratch->groups[i] = (spectrum){0};
+    return (spectrum){0};
+}
+
+/* groups, if there are any, get their parts of it. */
+static spectrum irradiance_at(const map_place *at, estimate_scratch *scratch,
+                              spectrum *groups)
+{
     spectrum sum = {0};
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        estimate_options options = pass->estimates[c];
-        options.scene = pass->how->edges ? pass->scene : NULL;
-        options.time = photonmap_slice_time(pass, loop->slice);
-        if (!maps[c])
-            continue;
-        sum += photon_irradiance(maps[c], p, n, &options, scratch, NULL);
+        sum += class_irradiance(at, c, scratch);
         for (size_t i = 0; i < scratch->n_groups; i++)
             groups[i] += scratch->groups[i];
     }
@@ -64,7 +87,8 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
         if (n_groups)
             loop->out->tag[at] = (uint32_t)at;
         spectrum *groups = n_groups > 0 ? loop->groups + at * n_groups : NULL;
-        loop->out->flux[at] = irradiance_at(loop, p.p, p.n, &scratch, groups);
+        const map_place place = {loop->pass, loop->slice, p.p, p.n};
+        loop->out->flux[at] = irradiance_at(&place, &scratch, groups);
     }
     if (scratch.failed || !ready)
         loop->failed[begin / 256] = true;
@@ -119,40 +143,55 @@ bool irradiance_map_build(photonmap_pass *pass, int slice, const trace_result *p
     return pass->irradiance[slice] != NULL;
 }
 
-/* The nearest kept irradiance of a surface that lies alike, among the few nearest of all.
- * What moves is looked up where its photons are kept. */
-static spectrum kept_irradiance(const photonmap_pass *pass, const shading_point *at,
-                                estimate_scratch *scratch, const spectrum **groups)
+/* What moves is looked up where its photons are kept. */
+static map_place place_of(const photonmap_pass *pass, const shading_point *at)
 {
-    int slice = time_slice(at->hit->time, pass->n_slices);
-    vec3 p = at->hit->p, n = face_forward(at->hit->n_geom, at->wo);
+    map_place place = {pass, time_slice(at->hit->time, pass->n_slices), at->hit->p,
+                       face_forward(at->hit->n_geom, at->wo)};
     if (scene_hit_moves(pass->scene, at->hit)) {
-        transform by =
-            scene_motion_to(pass->scene, at->hit, photonmap_slice_time(pass, slice));
-        p = transform_point(&by, p);
-        n = normalize3(transform_normal(&by, n));
+        transform by = scene_motion_to(pass->scene, at->hit,
+                                       photonmap_slice_time(pass, place.slice));
+        place.p = transform_point(&by, place.p);
+        place.n = normalize3(transform_normal(&by, place.n));
     }
-    const photon_filter filter = {.n = n, .one_sided = true, .flatten = 1.0f};
+    return place;
+}
+
+static float kept_reach(const photonmap_pass *pass)
+{
+    float least = INFINITY;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        if (c != PHOTON_CAUSTIC && pass->plan->n_photons[c] > 0)
+            least = minf(least, pass->estimates[c].radius);
+    }
+    return KEPT_REACH * least;
+}
+
+/* The nearest kept irradiance of a surface that lies alike, among the few nearest of all.
+   @return false: there is none within reach */
+static bool kept_irradiance(const map_place *at, estimate_scratch *scratch,
+                            spectrum *irradiance, const spectrum **groups)
+{
+    const photonmap_pass *pass = at->pass;
+    const photon_filter filter = {.n = at->n, .one_sided = true, .flatten = 1.0f};
     photon_hits *hits = &scratch->hits;
-    const photon_map *kept = pass->irradiance[slice];
+    const photon_map *kept = pass->irradiance[at->slice];
     const photon_store *store = photon_map_store(kept);
-    if (!photon_map_nearest(kept, p, NEAREST_KEPT, INFINITY, &filter, hits))
-        scratch->failed = true;
     float best = INFINITY;
-    spectrum irradiance = {0};
+    if (!photon_map_nearest(kept, at->p, NEAREST_KEPT, kept_reach(pass), &filter, hits))
+        scratch->failed = true;
     for (size_t i = 0; i < hits->n; i++) {
-        vec3 kept_n = direction_unpack(store->wi[hits->index[i]]);
-        float penalty = dot3(kept_n, n) < NORMAL_AGREEMENT ? 1e6f : 1.0f;
-        if (hits->distance2[i] * penalty < best) {
-            best = hits->distance2[i] * penalty;
-            irradiance = store->flux[hits->index[i]];
-            if (store->tagged)
-                *groups =
-                    pass->irradiance_groups[slice] +
-                    (size_t)pass->scene->n_light_groups * store->tag[hits->index[i]];
-        }
+        size_t k = hits->index[i];
+        bool alike = dot3(direction_unpack(store->wi[k]), at->n) >= NORMAL_AGREEMENT;
+        if (!alike || hits->distance2[i] >= best)
+            continue;
+        best = hits->distance2[i];
+        *irradiance = store->flux[k];
+        if (store->tagged)
+            *groups = pass->irradiance_groups[at->slice] +
+                      (size_t)pass->scene->n_light_groups * store->tag[k];
     }
-    return irradiance;
+    return isfinite(best);
 }
 
 /* ---- Gather rays ---- */
@@ -171,17 +210,32 @@ static void collect(const photonmap_pass *pass, transport_scratch *scratch,
         scratch->gathered[i] += factor * parts[i];
 }
 
+/* What a Lambertian surface sends out by all maps, kept or asked; beta times its parts by
+   light groups are collected. */
+static spectrum outgoing_by_maps(const photonmap_pass *pass, const shading_point *at,
+                                 spectrum beta, transport_scratch *scratch)
+{
+    const map_place place = place_of(pass, at);
+    const spectrum f = at->bsdf->rho * INV_PI_F, *parts = NULL;
+    spectrum irradiance = {0};
+    if (kept_irradiance(&place, &scratch->estimate, &irradiance, &parts)) {
+        collect(pass, scratch, beta * f, parts);
+        return irradiance * f;
+    }
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        irradiance += class_irradiance(&place, c, &scratch->estimate);
+        collect(pass, scratch, beta * f, scratch->estimate.groups);
+    }
+    return irradiance * f;
+}
+
 /* Outgoing radiance of the diffuse lobes at a point, from all that light does there; beta
    times its parts by light groups are collected. */
 static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
                          spectrum beta, sampler *random, transport_scratch *scratch)
 {
-    const spectrum *parts = NULL;
-    if (pass->irradiance[0] && at->bsdf->lambertian) {
-        spectrum e = kept_irradiance(pass, at, &scratch->estimate, &parts);
-        collect(pass, scratch, beta * at->bsdf->rho * INV_PI_F, parts);
-        return e * at->bsdf->rho * INV_PI_F;
-    }
+    if (pass->irradiance[0] && at->bsdf->lambertian)
+        return outgoing_by_maps(pass, at, beta, scratch);
     spectrum radiance = {0};
     if (pass->how->direct_illumination) {
         const direct_query query = {
