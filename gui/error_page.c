@@ -180,6 +180,11 @@ error_page *error_page_new(void)
     gtk_box_append(GTK_BOX(box), p->title);
     gtk_box_append(GTK_BOX(box), p->list);
     gtk_box_append(GTK_BOX(box), buttons_make(p));
+    GtkWidget *hint =
+        gtk_label_new("It is read again as soon as one of its files is saved.");
+    gtk_widget_add_css_class(hint, "dim-label");
+    gtk_label_set_wrap(GTK_LABEL(hint), TRUE);
+    gtk_box_append(GTK_BOX(box), hint);
     gtk_widget_set_valign(box, GTK_ALIGN_CENTER);
     gtk_widget_add_css_class(p->list, "group");
     gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(p->root), box);

@@ -47,6 +47,7 @@ struct photon_view {
     bool stale;                         /* something else than the view has changed */
     size_t done[NEPH_N_PHOTON_CLASSES]; /* points of each map that are in it */
     double points_a_second;             /* as last measured; 0: not yet */
+    double spent;                       /* on drawing it, s */
     guint drawing; /* the source that draws the next part; 0: all is drawn */
     photon_frame frame;
     guint telling; /* source, 0: nothing to tell */
@@ -280,7 +281,7 @@ static gboolean next_part(void *data)
     const int pixels[2] = {v->kept.width, v->kept.height};
     gl_painter_begin(&v->painter, v->drawn_from, pixels);
     draw_more(v, PART_GOAL, gtk_widget_get_scale_factor(v->area));
-    v->frame.seconds = seconds_since(start);
+    v->spent += seconds_since(start);
     bool all = count_drawn(v) == count_all(v);
     if (all || count_drawn(v) >= 2 * v->frame.points)
         gtk_gl_area_queue_render(area);
@@ -289,16 +290,25 @@ static gboolean next_part(void *data)
     return all ? G_SOURCE_REMOVE : G_SOURCE_CONTINUE;
 }
 
-static void note_frame(photon_view *v, gint64 start)
+static void note_frame(photon_view *v)
 {
     v->frame = (photon_frame){.number = v->frame.number + 1,
-                              .seconds = seconds_since(start),
+                              .seconds = v->spent,
                               .points = count_drawn(v),
                               .all = count_all(v)};
     if (v->frame.points < v->frame.all && !v->drawing)
         v->drawing = g_idle_add(next_part, v);
     if (!v->telling)
         v->telling = g_timeout_add(TELL_MS, tell_drawn, v);
+}
+
+/* The first frame with something new is not like those after it: drivers make ready for
+   it. What a frame takes is told of another, if that is quick. */
+static void draw_again(photon_view *v)
+{
+    v->stale = true;
+    if (!v->drawing)
+        v->drawing = g_idle_add(next_part, v);
 }
 
 /* A picture begins with what there is time for; one that is still right is shown as far
@@ -312,23 +322,27 @@ static gboolean render(GtkGLArea *area, GdkGLContext *context, photon_view *v)
     float matrix[16];
     if (gtk_gl_area_get_error(area) || !v->painter.program)
         return FALSE;
-    gint64 start = g_get_monotonic_time();
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &given);
     want_wire(v);
-    v->stale |= upload(v);
+    bool uploaded = upload(v);
+    v->stale |= uploaded;
     projection_matrix(&p, matrix);
     bool is_right = gl_keep_begin(&v->kept, pixels[0], pixels[1]) && !v->stale &&
                     memcmp(matrix, v->drawn_from, sizeof matrix) == 0;
     gl_painter_begin(&v->painter, matrix, pixels);
     if (!is_right) {
+        gint64 start = g_get_monotonic_time();
         draw_first(v, matrix, scale);
         glFinish();
         draw_more(v, PART_GOAL - seconds_since(start), scale);
+        v->spent = seconds_since(start);
     }
     gl_keep_show(&v->kept, (unsigned)given);
     draw_marks(v, scale);
     glFinish();
-    note_frame(v, start);
+    note_frame(v);
+    if (uploaded && v->frame.points == v->frame.all)
+        draw_again(v);
     return TRUE;
 }
 

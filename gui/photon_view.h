@@ -25,7 +25,7 @@ enum { MOST_ARROWS = 1000 };
 /** @brief What the last frame was. */
 typedef struct photon_frame {
     guint64 number; /**< counted from 1; 0: none yet */
-    double seconds; /**< until it was drawn; 0: none yet */
+    double seconds; /**< that drawing what can be seen took; 0: none yet */
     size_t points;  /**< photons that can be seen, */
     size_t all;     /**< of so many: slow graphics draw them in several frames */
 } photon_frame;
