@@ -299,6 +299,123 @@ static void test_refused_memory_is_an_error(void)
     }
 }
 
+/* ---- What each photon is and does ---- */
+
+typedef struct first_scatter {
+    double emitted, mirrored; /* flux */
+    bool met;                 /* a surface */
+} first_scatter;
+
+static void note_mirrored(const photon_event *event, void *data)
+{
+    first_scatter *f = data;
+    double flux = (double)spectrum_mean(event->flux);
+    if (event->kind == PHOTON_EMITTED) {
+        f->emitted += flux;
+        f->met = false;
+    } else if (event->kind == PHOTON_SCATTERED && !f->met) {
+        f->met = true;
+        f->mirrored += event->lobe & LOBE_SPECULAR ? flux : 0;
+    }
+}
+
+/* Indirect photons are mirrored by what is smooth: straight onto plastic of index 1.5,
+   one in 25 of their flux. */
+static void test_indirect_photons_take_mirrors(void)
+{
+    settings how = quick_settings();
+    g_autoptr(scene) s = scene_of(
+        CAMERA "WorldBegin LightSource \"point\" \"rgb I\" [1 1 1]\n"
+               "Material \"coateddiffuse\" \"rgb reflectance\" [0.5 0.5 0.5] \"float "
+               "roughness\" 0 \"float eta\" 1.5 Shape \"sphere\" \"float radius\" 3\n");
+    enum { PHOTONS = 100000 };
+    trace_task task = task_for(s, &how, PHOTON_INDIRECT, PHOTONS);
+    first_scatter sum = {0};
+    for (uint64_t i = 0; i < PHOTONS; i++)
+        photon_tell(&task, i, note_mirrored, &sum);
+    g_test_message("mirrored %g of the flux", sum.mirrored / sum.emitted);
+    g_assert_cmpfloat(fabs(sum.mirrored / sum.emitted / 0.04 - 1), <, 0.08);
+}
+
+#define SUN_ON_DISK(motion)                                                              \
+    CAMERA "WorldBegin LightSource \"distant\" \"point3 from\" [0 0 2] "                 \
+           "\"rgb L\" [1 1 1] " motion " Shape \"disk\" \"float radius\" 1\n"
+
+static double direct_flux(const char *text)
+{
+    settings how = quick_settings();
+    g_autoptr(scene) s = scene_of(text);
+    trace_task task = task_for(s, &how, PHOTON_DIRECT, 200000);
+    task.n_slices = 1;
+    trace_result result;
+    double sum = 0;
+    g_assert_true(photon_trace(&task, false, &result, NULL));
+    for (size_t i = 0; i < result.photons.n; i++)
+        sum += (double)spectrum_mean(result.photons.flux[i]);
+    trace_result_clear(&result);
+    return sum;
+}
+
+/* A disk that grows threefold is kept as it is at half time, when it is twice as large:
+   light falls on it as on one that always is. */
+static void test_photons_on_what_grows(void)
+{
+    double grows = direct_flux(
+        SUN_ON_DISK("ActiveTransform EndTime Scale 3 3 1 ActiveTransform All"));
+    double stays = direct_flux(SUN_ON_DISK("Scale 2 2 1"));
+    g_test_message("flux %g, on a disk that stays %g", grows, stays);
+    g_assert_cmpfloat(fabs(grows / stays - 1), <, 0.015);
+}
+
+static void note_direction(const photon_event *event, void *data)
+{
+    if (event->kind == PHOTON_EMITTED)
+        *(vec3 *)data = event->direction;
+}
+
+/* What a guide learns from is where the photon of that index starts, however large. */
+static void test_start_points_are_the_photons_own(void)
+{
+    static const uint64_t indices[] = {5, 300, 70005, ((uint64_t)1 << 32) + 5};
+    settings how = quick_settings();
+    g_autoptr(scene) s =
+        scene_of(CAMERA "WorldBegin LightSource \"point\" \"rgb I\" [1 1 1]\n"
+                        "Shape \"sphere\" \"float radius\" 3\n");
+    trace_task task = task_for(s, &how, PHOTON_DIRECT, (uint64_t)1 << 34);
+    for (size_t i = 0; i < G_N_ELEMENTS(indices); i++) {
+        float u[EMISSION_DIMENSIONS];
+        vec3 direction = {0};
+        light_emission e;
+        const light *lamp = scene_light(s, 0);
+        g_assert_cmpfloat(fabsf(photon_start_point(&task, indices[i], u) - 1), <, 1e-6f);
+        photon_tell(&task, indices[i], note_direction, &direction);
+        g_assert_true(lamp->kind->emit(lamp->self, &task.w, u[1], (vec2){u[2], u[3]},
+                                       (vec2){u[4], u[5]}, &e));
+        g_assert_cmpfloat(length3(e.ray.direction - direction), <, 1e-6f);
+    }
+}
+
+/* A lamp apart from the glass sends into the cone that it sees it in: flux over density
+   is its intensity, for each photon. */
+static void test_flux_into_the_cone(void)
+{
+    settings how = quick_settings();
+    g_autoptr(scene) s =
+        scene_of(CAMERA "WorldBegin LightSource \"point\" \"rgb I\" [1 1 1] \"point3 "
+                        "from\" [0 0 5]\n"
+                        "Material \"dielectric\" Shape \"sphere\" \"float radius\" 1\n");
+    trace_task task = task_for(s, &how, PHOTON_CAUSTIC, 1);
+    double intensity = (double)spectrum_mean(power_of_lights(s, &task.w)) / (4 * G_PI);
+    for (uint64_t i = 0; i < 100; i++) {
+        sampler random = sampler_make(7, i);
+        photon_start at = {0};
+        g_assert_true(photon_emit_caustic(s, &task.w, NULL, &random, &at));
+        double found =
+            (double)spectrum_mean(at.flux) * (double)photon_cone_pdf(s, at.ray.origin);
+        g_assert_cmpfloat(fabs(found / intensity - 1), <, 1e-4);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -308,6 +425,10 @@ int main(int argc, char **argv)
     g_test_add_func("/trace/bounce-limit", test_bounce_limit_counts_scattering);
     g_test_add_func("/trace/aimed-flux", test_aimed_emission_has_the_same_flux);
     g_test_add_func("/trace/integrating-sphere", test_integrating_sphere);
+    g_test_add_func("/trace/mirrors", test_indirect_photons_take_mirrors);
+    g_test_add_func("/trace/growing", test_photons_on_what_grows);
+    g_test_add_func("/trace/start-points", test_start_points_are_the_photons_own);
+    g_test_add_func("/trace/cone-flux", test_flux_into_the_cone);
     g_test_add_func("/trace/threads", test_trace_is_the_same_on_any_number_of_threads);
     g_test_add_func("/trace/memory", test_refused_memory_is_an_error);
     return g_test_run();
