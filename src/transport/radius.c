@@ -14,6 +14,7 @@
  * window, and most pixels be of a landscape where they are metres wide.
  */
 #include "transport/photonmap.h"
+#include "transport/places.h"
 #include "transport/visible.h"
 
 #include <stdlib.h>
@@ -21,8 +22,6 @@
 enum {
     PILOT_PHOTONS = 20000,
     PILOT_POINTS = 512,
-    PILOT_NEAREST = 16,
-    PLACES = 8192, /* at which a radius is kept, at most */
 };
 
 /* Photons wanted within the radius, summed over all passes: what they are shared among
@@ -58,18 +57,6 @@ static float median(float *values, size_t n)
     return values[n / 2];
 }
 
-/* Distance from p to the k-th nearest photon; 0 if there are not so many. */
-static float nearest_distance(const photon_map *map, vec3 p, photon_hits *hits)
-{
-    if (!photon_map_nearest(map, p, PILOT_NEAREST, INFINITY, NULL, hits) ||
-        hits->n < PILOT_NEAREST)
-        return 0.0f;
-    float d2 = 0.0f;
-    for (size_t i = 0; i < hits->n; i++)
-        d2 = maxf(d2, hits->distance2[i]);
-    return sqrtf(d2);
-}
-
 /* A bound of a class' radii, and what turns the pilot's distances into radii. */
 typedef struct radius_rule {
     double scale, largest;
@@ -79,20 +66,17 @@ typedef struct radius_rule {
 /* The finest radius of use at p. */
 static double least_radius(const radius_rule *rule, vec3 p, photon_hits *hits)
 {
-    if (!photon_map_nearest(rule->pixels, p, 1, INFINITY, NULL, hits) || hits->n == 0)
-        return 0.0;
-    return (double)(LEAST_PIXELS *
-                    photon_map_store(rule->pixels)->flux[hits->index[0]][0]);
+    return (double)(LEAST_PIXELS * places_at(rule->pixels, p, 0.0f, hits));
 }
 
 /* By the distance to the k-th nearest photon of the pilot; 0: there are too few. */
-static double radius_by(const radius_rule *rule, vec3 p, float distance,
-                        photon_hits *hits)
+static float radius_by(const void *data, vec3 p, float distance, photon_hits *hits)
 {
+    const radius_rule *rule = data;
     if (!(distance > 0.0f))
-        return rule->largest;
+        return (float)rule->largest;
     double least = least_radius(rule, p, hits);
-    return fmin(fmax(rule->scale * (double)distance, least), rule->largest);
+    return (float)fmin(fmax(rule->scale * (double)distance, least), rule->largest);
 }
 
 /* The median over the places where the camera looks or, for caustics, where photons are.
@@ -104,35 +88,15 @@ static double typical_radius(const pilot *p, photon_class c, const photon_map *m
     const photon_store *store = photon_map_store(map);
     size_t n = 0, n_probes = c == PHOTON_CAUSTIC ? PILOT_POINTS : p->n_points;
     photon_hits hits = {0};
-    for (size_t i = 0; i < n_probes && store->n >= PILOT_NEAREST; i++) {
+    for (size_t i = 0; i < n_probes && store->n >= PLACES_NEAREST; i++) {
         vec3 at = c == PHOTON_CAUSTIC ? photon_store_get(store, i * store->n / n_probes).p
                                       : p->points[i].p;
-        float d = nearest_distance(map, at, &hits);
+        float d = places_distance(map, at, &hits);
         if (d > 0.0f)
-            radii[n++] = (float)radius_by(rule, at, d, &hits);
+            radii[n++] = radius_by(rule, at, d, &hits);
     }
     photon_hits_clear(&hits);
     return n > 0 ? (double)median(radii, n) : 0.2 * rule->largest;
-}
-
-/* A radius at each of some of the pilot's photons, evenly chosen. */
-static photon_map *keep_radii(const photon_map *map, const radius_rule *rule,
-                              GError **error)
-{
-    const photon_store *pilots = photon_map_store(map);
-    size_t n = MIN(pilots->n, PLACES);
-    photon_store places = {0};
-    photon_hits hits = {0};
-    if (!photon_store_reserve(&places, n, error))
-        return NULL;
-    for (size_t i = 0; i < n; i++) {
-        photon at = photon_store_get(pilots, i * pilots->n / n);
-        float d = nearest_distance(map, at.p, &hits);
-        at.flux = spectrum_fill((float)radius_by(rule, at.p, d, &hits));
-        photon_store_put(&places, &at);
-    }
-    photon_hits_clear(&hits);
-    return photon_map_build(MAP_KDTREE, &places, 0.0f, 1, error);
 }
 
 static photon_map *map_of_pixels(const pilot *p, GError **error)
@@ -186,12 +150,13 @@ static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
     int n_slices = scene_time_slices(plan->scene, &plan->how);
     double density = (double)plan->n_photons[c] / n_slices / (double)n_emitted;
     const radius_rule rule = {
-        .scale = sqrt(wanted / PILOT_NEAREST / density),
+        .scale = sqrt(wanted / PLACES_NEAREST / density),
         .largest = 0.1 * (double)plan->scene->radius,
         .pixels = p->pixels,
     };
     plan->radius[c] = typical_radius(p, c, map, &rule);
-    plan->radius_map[c] = keep_radii(map, &rule, error);
+    plan->radius_map[c] =
+        places_keep(map, (unsigned)plan->how.threads, radius_by, &rule, error);
     return plan->radius_map[c] != NULL;
 }
 
