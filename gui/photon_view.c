@@ -248,7 +248,7 @@ static void draw_more(photon_view *v, double allowed, int scale)
     glFinish();
     double took = seconds_since(start);
     size_t drawn = count_drawn(v) - before;
-    if (drawn >= MIN((size_t)LEAST_POINTS, all))
+    if (drawn >= LEAST_POINTS) /* of fewer, the time says little */
         v->points_a_second = (double)drawn / fmax(took, 1e-6);
 }
 
