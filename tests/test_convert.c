@@ -111,6 +111,20 @@ static void test_options(void)
                     "Shape \"disk\" \"float radius\" 3\n");
 }
 
+/* Attributes may say what a kind does not know. */
+static void test_attributes(void)
+{
+    check_text("Attribute \"shape\" \"float alpha\" 0.5\n"
+               "Attribute \"material\" \"bool remaproughness\" false\n"
+               "Attribute \"light\" \"float scale\" 0.5\n"
+               "Material \"diffuse\"\nShape \"disk\" \"float radius\" 3\n"
+               "LightSource \"point\" \"point3 from\" [1 0 3]\n"
+               "AttributeBegin\nAreaLightSource \"diffuse\"\nTranslate 0 0 3\n"
+               "Shape \"sphere\" \"float radius\" 0.2\nAttributeEnd\n"
+               "Material \"conductor\" \"float roughness\" 0.3\n"
+               "Shape \"sphere\" \"float alpha\" 1\n");
+}
+
 static void test_textures_and_lights(void)
 {
     check_text(
@@ -230,6 +244,7 @@ int main(int argc, char **argv)
     g_test_add_func("/convert/materials", test_materials);
     g_test_add_func("/convert/textures-and-lights", test_textures_and_lights);
     g_test_add_func("/convert/options", test_options);
+    g_test_add_func("/convert/attributes", test_attributes);
     g_test_add_func("/convert/objects-and-motion", test_objects_and_motion);
     g_test_add_func("/convert/media", test_media);
     g_test_add_func("/convert/files", test_files);

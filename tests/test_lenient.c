@@ -100,10 +100,47 @@ static void test_lights_of_objects(void)
     g_assert_cmpuint(moving->lights->len, ==, s->lights->len + 1);
 }
 
+static void test_films(void)
+{
+    g_autoptr(scene) sensor = refused_or_replaced(
+        "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 5 \"string "
+        "sensor\" \"canon_eos_100d\"\nCamera \"perspective\"\nWorldBegin\n"
+        "LightSource \"point\"\nShape \"sphere\"\n",
+        "sensor \"canon_eos_100d\" is not supported, \"cie1931\" is; --lenient takes "
+        "that",
+        "1:60: sensor \"canon_eos_100d\" becomes \"cie1931\"");
+    g_assert_cmpint(sensor->film.height, ==, 5);
+    g_autoptr(scene) spectral = refused_or_replaced(
+        "Film \"spectral\" \"integer xresolution\" 4 \"integer yresolution\" 5 \"integer "
+        "nbuckets\" 16\nCamera \"perspective\"\nWorldBegin\n"
+        "LightSource \"point\"\nShape \"sphere\"\n",
+        "scene.pbrt:1:1: film \"spectral\" is not supported; --lenient takes \"rgb\"",
+        "1:1: film \"spectral\" becomes \"rgb\"");
+    g_assert_cmpint(spectral->film.height, ==, 5);
+}
+
+static void test_textures(void)
+{
+    static const char *const types[] = {"spectrum", "float"};
+    for (int i = 0; i < 2; i++) {
+        g_autofree char *text = g_strdup_printf(
+            HEAD "Texture \"t\" \"%s\" \"ptex\" \"string filename\" \"a.ptx\"\n"
+                 "Material \"diffuse\" %s\nShape \"sphere\"\n",
+            types[i],
+            i ? "\"texture displacement\" \"t\"" : "\"texture reflectance\" \"t\"");
+        g_autoptr(scene) s = refused_or_replaced(
+            text, "scene.pbrt:5:1: texture \"ptex\" is not supported; --lenient takes",
+            "5:1: texture \"ptex\" becomes a constant of 0.5");
+        g_assert_nonnull(s);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/lenient/materials", test_materials);
+    g_test_add_func("/lenient/films", test_films);
+    g_test_add_func("/lenient/textures", test_textures);
     g_test_add_func("/lenient/media", test_media);
     g_test_add_func("/lenient/lights", test_lights_of_objects);
     return g_test_run();

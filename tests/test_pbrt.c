@@ -434,9 +434,32 @@ static void test_own_scenes_load(void)
     }
 }
 
+/* As pbrt-v4 has them, a name and a value, and as parameters. */
+static void test_options(void)
+{
+    static const char *const texts[] = {
+        "Option \"disable-pixel-jitter\" true\nOption \"seed\" 5\n",
+        "Option \"bool disablepixeljitter\" true \"integer seed\" 5\n",
+        "Option \"disablePixelJitter\" true Option \"disablewavelengthjitter\" false\n"
+        "Option \"rendercoordsys\" \"world\" Option \"displacementedgescale\" 1.5\n"
+        "Option \"seed\" 5\n"};
+    for (size_t i = 0; i < G_N_ELEMENTS(texts); i++) {
+        g_autofree char *text = g_strconcat(
+            texts[i],
+            "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\nShape "
+            "\"sphere\"\n",
+            NULL);
+        g_autoptr(scene) s = scene_of(text);
+        g_assert_true(s->switches.fixed_pixels);
+        g_assert_false(s->switches.fixed_wavelengths);
+        g_assert_cmpint(s->settings.seed, ==, 5);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/pbrt/options", test_options);
     g_test_add_func("/pbrt/each-transform", test_each_transform);
     g_test_add_func("/pbrt/transforms-compose", test_transforms_compose);
     g_test_add_func("/pbrt/camera", test_camera_stands_at_its_directive);

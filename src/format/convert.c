@@ -43,23 +43,43 @@ static bool names_file(const param *q)
     return q->type == PARAM_STRING && q->n == 1 && g_strv_contains(names, q->name);
 }
 
+static void append_param(converter *c, GString *out, const params *p, const param *q)
+{
+    const char *moved = NULL;
+    if (names_file(q)) {
+        g_autofree char *path = g_canonicalize_filename(q->strings[0], p->base_directory);
+        moved = converted_files_copy(&c->files, path);
+    }
+    char *strings[] = {(char *)moved, NULL};
+    pbrt_text_param(out, q, moved ? strings : NULL);
+}
+
 static void append_params(converter *c, GString *out, const params *p,
                           const char *without)
 {
     for (guint i = 0; i < p->list->len; i++) {
         const param *q = p->list->pdata[i];
-        const char *moved = NULL;
-        if (without && strcmp(q->name, without) == 0)
-            continue;
-        if (names_file(q)) {
-            g_autofree char *path =
-                g_canonicalize_filename(q->strings[0], p->base_directory);
-            moved = converted_files_copy(&c->files, path);
-        }
-        char *strings[] = {(char *)moved, NULL};
-        pbrt_text_param(out, q, moved ? strings : NULL);
+        if (!q->is_default && !(without && strcmp(q->name, without) == 0))
+            append_param(c, out, p, q);
     }
     g_string_append_c(out, '\n');
+}
+
+/* What an Attribute has said of directives of this sort: they need not know it. */
+static void append_defaults(converter *c, GString *out, const params *p, const char *sort)
+{
+    bool any = false;
+    for (guint i = 0; i < p->list->len; i++) {
+        const param *q = p->list->pdata[i];
+        if (!q->is_default)
+            continue;
+        if (!any)
+            g_string_append_printf(out, "Attribute \"%s\"", sort);
+        any = true;
+        append_param(c, out, p, q);
+    }
+    if (any)
+        g_string_append_c(out, '\n');
 }
 
 static bool is_srgb(const params *p)
@@ -68,11 +88,14 @@ static bool is_srgb(const params *p)
 }
 
 /* A directive that stands in a space of its own, as all those here. */
-static void begin(GString *out, const params *p, const transform *to_world)
+static void begin(converter *c, const params *p, const char *sort,
+                  const transform *to_world)
 {
+    GString *out = c->world;
     g_string_append(out, "AttributeBegin\n");
     if (!is_srgb(p))
         g_string_append_printf(out, "ColorSpace \"%s\"\n", color_space_name(p->space));
+    append_defaults(c, out, p, sort);
     if (!is_identity(to_world))
         pbrt_text_transform(out, to_world->m);
 }
@@ -88,7 +111,7 @@ static void on_texture(void *data, const char *name, const char *kind, bool is_s
                        const params *p)
 {
     converter *c = data;
-    begin(c->world, p, &p->to_world);
+    begin(c, p, "texture", &p->to_world);
     g_string_append(c->world, "Texture ");
     pbrt_text_string(c->world, name);
     g_string_append_printf(c->world, " \"%s\" \"%s\"", is_spectrum ? "spectrum" : "float",
@@ -106,7 +129,7 @@ static void on_material(void *data, int index, const char *name, const char *kin
     g_ptr_array_set_size(c->materials, MAX((int)c->materials->len, index + 1));
     g_free(c->materials->pdata[index]);
     c->materials->pdata[index] = known;
-    begin(c->world, p, &identity);
+    begin(c, p, "material", &identity);
     g_string_append(c->world, "MakeNamedMaterial ");
     pbrt_text_string(c->world, known);
     g_string_append_printf(c->world, " \"string type\" \"%s\"", kind);
@@ -118,7 +141,7 @@ static void on_light(void *data, const char *kind, const params *p,
                      const transform *to_world)
 {
     converter *c = data;
-    begin(c->world, p, to_world);
+    begin(c, p, "light", to_world);
     g_string_append_printf(c->world, "LightSource \"%s\"", kind);
     append_params(c, c->world, p, NULL);
     end(c->world);
@@ -138,13 +161,17 @@ static void begin_shape(converter *c, const shape_place *at, const params *p)
     }
     if (light_is) {
         g_string_append_printf(
-            c->world, "ColorSpace \"%s\"\nAreaLightSource \"diffuse\"",
+            c->world, "ColorSpace \"%s\"\n",
             color_space_name(light_is->space ? light_is->space : color_space_srgb()));
+        append_defaults(c, c->world, light_is, "light");
+        g_string_append(c->world, "AreaLightSource \"diffuse\"");
         append_params(c, c->world, light_is, NULL);
     }
     if (p && p->space)
         g_string_append_printf(c->world, "ColorSpace \"%s\"\n",
                                color_space_name(p->space));
+    if (p)
+        append_defaults(c, c->world, p, "shape");
     if (at->reverse_orientation)
         g_string_append(c->world, "ReverseOrientation\n");
     if (!is_identity(&at->to_world))

@@ -175,9 +175,72 @@ static void apply_option(pbrt_parser *parser, const params *p, const param *q)
         pbrt_error(parser, q->place, "option '%s' is not supported", q->name);
 }
 
+/* Names of options may be written with capitals, '-' and '_'. */
+static const char *option_name(const char *text)
+{
+    g_autoptr(GString) name = g_string_new(NULL);
+    for (; *text; text++)
+        if (*text != '-' && *text != '_')
+            g_string_append_c(name, g_ascii_tolower(*text));
+    return g_intern_string(name->str);
+}
+
+/* A word as the value that it looks like. */
+static bool add_word(params *p, source_place at, const char *name, const char *word,
+                     GError **error)
+{
+    char *end;
+    int is_true = strcmp(word, "true") == 0;
+    gint64 whole = g_ascii_strtoll(word, &end, 10);
+    int integer = (int)CLAMP(whole, G_MININT, G_MAXINT);
+    if (is_true || strcmp(word, "false") == 0)
+        return params_add_integers(p, at, PARAM_BOOL, name, &is_true, 1, error);
+    if (end != word && !*end)
+        return params_add_integers(p, at, PARAM_INTEGER, name, &integer, 1, error);
+    float number = (float)g_ascii_strtod(word, &end);
+    if (end != word && !*end)
+        return params_add_numbers(p, at, PARAM_FLOAT, name, &number, 1, error);
+    error_at(error, at, "expected a value for option '%s', found '%s'", name, word);
+    return false;
+}
+
+/* pbrt-v4 itself has a name and one value, Option "seed" 5. */
+static params *read_bare_option(pbrt_parser *parser, source_place place)
+{
+    g_autoptr(params) p = params_new(place, parser->base_directory, parser->state.space);
+    source_place at = place;
+    GError *error = NULL;
+    g_autofree char *text = pbrt_read_string(parser, "an option", &at);
+    const char *name = option_name(text);
+    token value = lexer_peek(parser->words);
+    if (value.kind != TOKEN_WORD && value.kind != TOKEN_STRING) {
+        pbrt_expected(parser, "a value", &value);
+        return NULL;
+    }
+    lexer_next(parser->words);
+    g_autofree char *word = value.kind == TOKEN_STRING
+                                ? token_string(&value)
+                                : g_strndup(value.text, value.length);
+    const char *strings[] = {word};
+    bool done = value.kind == TOKEN_STRING
+                    ? params_add_strings(p, at, PARAM_STRING, name, strings, 1, &error)
+                    : add_word(p, at, name, word, &error);
+    if (done)
+        return g_steal_pointer(&p);
+    pbrt_report(parser, error);
+    return NULL;
+}
+
+static bool is_bare_option(pbrt_parser *parser)
+{
+    token t = lexer_peek(parser->words);
+    return t.kind == TOKEN_STRING && !memchr(t.text, ' ', t.length);
+}
+
 bool pbrt_option(pbrt_parser *parser, source_place place)
 {
-    g_autoptr(params) p = pbrt_read_params(parser, place);
+    g_autoptr(params) p = is_bare_option(parser) ? read_bare_option(parser, place)
+                                                 : pbrt_read_params(parser, place);
     if (!p)
         return false;
     for (guint i = 0; i < p->list->len; i++)

@@ -281,7 +281,11 @@ static bool copy_default(params *p, const params *from, const param *q, GError *
             params_add_integers(p, q->place, q->type, q->name, q->integers, q->n, error);
     else
         done = params_add_numbers(p, q->place, q->type, q->name, q->numbers, q->n, error);
-    return done && params_find(p, q->name);
+    if (!done)
+        return false;
+    param *copy = p->list->pdata[p->list->len - 1];
+    copy->used = copy->is_default = true;
+    return true;
 }
 
 params *pbrt_read_params_for(pbrt_parser *parser, source_place place,

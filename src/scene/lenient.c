@@ -30,6 +30,9 @@ static const substitute substitutes[] = {
      "coateddiffuse",
      {"reflectance", "eta", "roughness", "uroughness", "vroughness", "remaproughness"}},
     {"measured", "diffuse", {NULL}},
+    {"fourier", "diffuse", {NULL}},
+    {"disney", "diffuse", {NULL}},
+    {"kdsubsurface", "coateddiffuse", {"eta", "roughness", "remaproughness"}},
 };
 
 static const substitute *find_substitute(const char *kind)
@@ -98,5 +101,78 @@ params *lenient_material(const scene *s, const char **kind, const params *p,
     scene_is_lenient(s, p->place, "material \"%s\" becomes \"%s\"%s", *kind, sub->becomes,
                      dropped->str);
     *kind = sub->becomes;
+    return kept;
+}
+
+/* ---- Films ---- */
+
+/* A sensor of a camera, whose sensitivities are not here. */
+static const param *strange_sensor(const params *p)
+{
+    const param *q = params_find(p, "sensor");
+    bool known = !q || q->type != PARAM_STRING || q->n != 1 ||
+                 strcmp(q->strings[0], "cie1931") == 0;
+    return known ? NULL : q;
+}
+
+static bool is_of_spectra(const char *name)
+{
+    static const char *const names[] = {"nbuckets", "lambdamin", "lambdamax", NULL};
+    return g_strv_contains(names, name);
+}
+
+params *lenient_film(const scene *s, const char **kind, const params *p, GError **error)
+{
+    const param *sensor = strange_sensor(p);
+    bool is_spectral = strcmp(*kind, "spectral") == 0;
+    if (!s->lenient && is_spectral)
+        error_at(error, p->place,
+                 "film \"spectral\" is not supported; --lenient takes \"rgb\" for it");
+    else if (!s->lenient && sensor)
+        error_at(error, sensor->place,
+                 "sensor \"%s\" is not supported, \"cie1931\" is; --lenient takes that "
+                 "for it",
+                 sensor->strings[0]);
+    if (!s->lenient || !(is_spectral || sensor))
+        return NULL;
+    g_autoptr(params) kept = params_new(p->place, p->base_directory, p->space);
+    kept->to_world = p->to_world;
+    for (guint i = 0; i < p->list->len; i++) {
+        param *q = p->list->pdata[i];
+        bool leaves = q == sensor || (is_spectral && is_of_spectra(q->name));
+        q->used = true;
+        if (!leaves && !copy_param(kept, q, error))
+            return NULL;
+    }
+    if (sensor)
+        scene_is_lenient(s, sensor->place, "sensor \"%s\" becomes \"cie1931\"",
+                         sensor->strings[0]);
+    if (is_spectral)
+        scene_is_lenient(s, p->place, "film \"spectral\" becomes \"rgb\"");
+    *kind = is_spectral ? "rgb" : *kind;
+    return g_steal_pointer(&kept);
+}
+
+/* ---- Textures ---- */
+
+params *lenient_texture(const scene *s, const char **kind, bool is_spectrum,
+                        const params *p, GError **error)
+{
+    if (strcmp(*kind, "ptex") != 0)
+        return NULL;
+    if (!s->lenient) {
+        error_at(error, p->place,
+                 "texture \"ptex\" is not supported; --lenient takes a constant of 0.5 "
+                 "for it");
+        return NULL;
+    }
+    const float half[] = {0.5f, 0.5f, 0.5f};
+    params *kept = params_new(p->place, p->base_directory, p->space);
+    for (guint i = 0; i < p->list->len; i++)
+        ((param *)p->list->pdata[i])->used = true;
+    scene_is_lenient(s, p->place, "texture \"ptex\" becomes a constant of 0.5");
+    params_add_numbers(kept, p->place, is_spectrum ? PARAM_RGB : PARAM_FLOAT, "value",
+                       half, is_spectrum ? 3 : 1, NULL);
+    *kind = "constant";
     return kept;
 }

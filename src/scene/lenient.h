@@ -14,9 +14,16 @@ bool scene_is_lenient(const struct scene *s, source_place place, const char *for
     G_GNUC_PRINTF(3, 4);
 
 /** @brief The material that is taken for one of a kind that can not be rendered (hair,
- * subsurface, measured), with the parameters that it shares with it; owned by the caller.
+ * subsurface, measured, v3's fourier and others), with the parameters that it shares with
+ * it; owned by the caller.
  * @param kind becomes that of the substitute
  * @return NULL: nothing is to be replaced (kind is as it was), or, with ERROR_INPUT, the
  * scene is not read leniently */
 params *lenient_material(const struct scene *s, const char **kind, const params *p,
                          GError **error);
+/** @brief The same for films: of spectra, or with the sensor of a camera. */
+params *lenient_film(const struct scene *s, const char **kind, const params *p,
+                     GError **error);
+/** @brief The same for textures: ptex. */
+params *lenient_texture(const struct scene *s, const char **kind, bool is_spectrum,
+                        const params *p, GError **error);

@@ -40,6 +40,7 @@ typedef struct param {
     int *integers;      /**< INTEGER, BOOL */
     char **strings;     /**< STRING, SPECTRUM_NAME, TEXTURE */
     bool used;          /**< asked for by its consumer */
+    bool is_default;    /**< of an Attribute: for whichever kind wants it */
 } param;
 
 /** @brief A list of parameters with the context they were read in. */

@@ -129,8 +129,15 @@ bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spe
         error_at(error, p->place, "texture \"%s\" is there already", name);
         return false;
     }
-    LISTENER_TELL(s, texture, name, kind, is_spectrum, p);
-    texture *t = texture_new(s, kind, is_spectrum, p, error);
+    GError *inner = NULL;
+    g_autoptr(params) replaced = lenient_texture(s, &kind, is_spectrum, p, &inner);
+    if (inner) {
+        g_propagate_error(error, inner);
+        return false;
+    }
+    const params *given = replaced ? replaced : p;
+    LISTENER_TELL(s, texture, name, kind, is_spectrum, given);
+    texture *t = texture_new(s, kind, is_spectrum, given, error);
     if (t)
         g_hash_table_insert(table, g_strdup(name), t);
     return t != NULL;
@@ -245,11 +252,18 @@ bool scene_add_mesh(scene *s, mesh *m, const shape_place *at, source_place place
 bool scene_set_film(scene *s, const char *kind, const params *p, GError **error)
 {
     film_settings film;
-    if (!is_open(s, error) || !film_init(&film, kind, p, error))
+    GError *inner = NULL;
+    g_autoptr(params) replaced = lenient_film(s, &kind, p, &inner);
+    if (inner) {
+        g_propagate_error(error, inner);
+        return false;
+    }
+    const params *given = replaced ? replaced : p;
+    if (!is_open(s, error) || !film_init(&film, kind, given, error))
         return false;
     g_free(s->film.filename);
     s->film = film;
-    LISTENER_TELL(s, film, kind, p);
+    LISTENER_TELL(s, film, kind, given);
     return true;
 }
 
