@@ -261,6 +261,19 @@ static void test_poses_of_one_mesh(void)
     g_assert_cmpfloat(fabsf(s->bounds.high[2] - 25.0f), <, 1e-4f);
 }
 
+/* A node without thickness is a plane; one without any size is not there. */
+static void test_flat_node(void)
+{
+    g_autoptr(scene) s =
+        load(MESH(PRIMITIVE("")) "\"nodes\":[{\"mesh\":0,\"scale\":[2,3,0]}]");
+    g_assert_cmpfloat(fabsf(s->bounds.high[0] - 2.0f), <, 1e-5f);
+    g_assert_cmpfloat(fabsf(s->bounds.high[1] - 3.0f), <, 1e-5f);
+    g_assert_cmpfloat(s->bounds.high[2], <, 1e-5f);
+    g_autoptr(GError) error = NULL;
+    g_assert_null(try_load(
+        MESH(PRIMITIVE("")) "\"nodes\":[{\"mesh\":0,\"scale\":[0,0,0]}]", &error));
+}
+
 /* ---- What is refused ---- */
 
 static void test_refused(void)
@@ -356,6 +369,7 @@ int main(int argc, char **argv)
     g_test_add_func("/gltf-pose/morph", test_morph);
     g_test_add_func("/gltf-pose/morph-then-skin", test_morph_then_skin);
     g_test_add_func("/gltf-pose/poses-of-one-mesh", test_poses_of_one_mesh);
+    g_test_add_func("/gltf-pose/flat-node", test_flat_node);
     g_test_add_func("/gltf-pose/refused", test_refused);
     g_test_add_func("/gltf-pose/deep", test_deep);
     g_test_add_func("/gltf-pose/models", test_models);

@@ -10,6 +10,10 @@
 
 typedef double matrix[4][4];
 
+/* What is flattened along an axis, as planes often are, keeps this share of its
+ * thickness, so that it can be seen. */
+#define FLAT 1e-6
+
 static void multiply(const matrix a, const matrix b, matrix out)
 {
     matrix product;
@@ -33,10 +37,11 @@ static void compose(const double t[3], const double q[4], const double s[3], mat
         {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
         {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)},
     };
+    double most = fmax(fabs(s[0]), fmax(fabs(s[1]), fabs(s[2])));
     memset(out, 0, sizeof(matrix));
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
-            out[i][j] = turn[i][j] * s[j];
+            out[i][j] = turn[i][j] * (fabs(s[j]) > 0.0 ? s[j] : FLAT * most);
         out[i][3] = t[i];
     }
     out[3][3] = 1.0;
