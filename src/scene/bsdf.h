@@ -8,7 +8,8 @@
  *
  * Lobes have one of three classes, by what can be done with them:
  *   SPECULAR  a delta: only sampling finds it
- *   GLOSSY    so narrow that camera paths follow it by sampling (alpha < GLOSSY_ALPHA)
+ *   GLOSSY    so narrow that camera paths follow it by sampling (alpha < GLOSSY_ALPHA),
+ *             or rough glass
  *   DIFFUSE   wide: photons are stored here and the radiance estimate is made with it
  * A material may have several: plastic is a specular or glossy coat over a diffuse base.
  *

@@ -133,7 +133,7 @@ static void make(bsdf *b, const dielectric *d)
 {
     *(dielectric *)(void *)b->data = *d;
     b->ops = ggx_is_smooth(d->roughness) ? &dielectric_smooth_ops : &dielectric_rough_ops;
-    b->lobes = ggx_class(d->roughness) | LOBE_ANY_SIDE;
+    b->lobes = ggx_glass_class(d->roughness) | LOBE_ANY_SIDE;
     b->lambertian = false;
 }
 

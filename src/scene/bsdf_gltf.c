@@ -189,7 +189,7 @@ static unsigned layer_lobe(const gltf_surface *s, int layer)
     case LAYER_FACETS:
         return ggx_class(s->roughness) | LOBE_REFLECTION;
     case LAYER_PANE:
-        return ggx_class(s->roughness) | LOBE_TRANSMISSION;
+        return ggx_glass_class(s->roughness) | LOBE_TRANSMISSION;
     case LAYER_LEAF:
         return LOBE_DIFFUSE | LOBE_TRANSMISSION;
     default:

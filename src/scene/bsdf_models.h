@@ -25,6 +25,14 @@ static inline unsigned ggx_class(ggx g)
     return maxf(g.alpha_x, g.alpha_y) < GLOSSY_ALPHA ? LOBE_GLOSSY : LOBE_DIFFUSE;
 }
 
+/** @brief The class of a lobe that passes light on: however rough, it is to be followed.
+ * What comes through turns with the facets' slope, so that on glass that bends, light
+ * gathered a little way off points elsewhere, and an estimate of it is far too bright. */
+static inline unsigned ggx_glass_class(ggx g)
+{
+    return ggx_is_smooth(g) ? LOBE_SPECULAR : LOBE_GLOSSY;
+}
+
 /** @brief The value that decides in random choices: of the lane kept, or the mean. */
 static inline float lane_mean(const bsdf *b, spectrum s)
 {

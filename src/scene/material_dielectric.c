@@ -56,7 +56,9 @@ static void glass_bsdf(const void *self, const surface_hit *hit, const wavelengt
 static unsigned glass_lobes(const void *self)
 {
     const glass *g = self;
-    return roughness_input_classes(&g->roughness) | LOBE_ANY_SIDE;
+    if (!roughness_input_is_constant(&g->roughness))
+        return LOBE_SPECULAR | LOBE_GLOSSY | LOBE_ANY_SIDE;
+    return ggx_glass_class(roughness_input_eval(&g->roughness, NULL)) | LOBE_ANY_SIDE;
 }
 
 static const medium *glass_interior(const void *self)

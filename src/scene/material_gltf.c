@@ -243,6 +243,14 @@ static unsigned classes_of(const float_input *roughness)
     return ggx_class(facets_of(roughness, NULL));
 }
 
+/* Of what passes light on. */
+static unsigned glass_classes(const float_input *roughness)
+{
+    if (roughness->texture)
+        return LOBE_SPECULAR | LOBE_GLOSSY;
+    return ggx_glass_class(facets_of(roughness, NULL));
+}
+
 static unsigned facet_classes(const gltf_material *m)
 {
     unsigned round = classes_of(&m->roughness);
@@ -262,7 +270,7 @@ static unsigned gltf_lobes(const void *self)
     if (may_be_below_1(&m->metallic) && may_be_below_1(&m->transmission))
         lobes |= LOBE_DIFFUSE;
     if (may_be_below_1(&m->metallic) && may_be_above_0(&m->transmission))
-        lobes |= LOBE_TRANSMISSION;
+        lobes |= LOBE_TRANSMISSION | glass_classes(&m->roughness);
     if (may_be_above_0(&m->coat))
         lobes |= classes_of(&m->coat_roughness);
     return lobes;
