@@ -125,6 +125,10 @@ static const setting_row table[] = {
     {"edges", SETTING_BOOL, AT(edges), "", 0, 1, 1, NULL, "", "photonmap auto vcm",
      "Probes the surroundings of an estimate, so that edges and corners are not dark and "
      "no light leaks through thin walls."},
+    {"bright_spots", SETTING_BOOL, AT(bright_spots), "", 0, 1, 1, NULL, "", "auto",
+     "Camera paths look aside at brightly lit places, such as what the sun throws "
+     "through "
+     "a window, as they do at lamps, where that pays."},
     {"time_slices", SETTING_COUNT, AT(time_slices), "", 1, MOST_TIME_SLICES, 8, NULL, "",
      "photonmap auto vcm",
      "In so many parts the time of the shutter is cut where something moves: what is "

@@ -31,6 +31,7 @@ enum {
    with shares of all photons. */
 typedef struct trial_noise {
     double of_paths, left[AIM_SHARES];
+    double seen, unseen; /* flux that landed in the camera's sight, and out of it */
 } trial_noise;
 
 /* What the trials of a round share. */
@@ -126,6 +127,7 @@ static void note_arrival(const photon_event *event, void *data)
     t->value += flux * (sight > 0.0f ? 1.0f : UNSEEN_VALUE);
     if (sight > 0.0f)
         add_noise(&t->noise, event, sight);
+    *(sight > 0.0f ? &t->noise.seen : &t->noise.unseen) += (double)flux;
 }
 
 static void run_trials(size_t begin, size_t end, unsigned thread, void *data)
@@ -180,10 +182,13 @@ static void sum_noise(const trials *all)
     for (size_t i = 0; i < all->n_arrived; i++) {
         const trial_noise *noise = &all->noise[all->n_known + i];
         sum.of_paths += noise->of_paths;
+        sum.seen += noise->seen;
+        sum.unseen += noise->unseen;
         for (int k = 0; k < AIM_SHARES; k++)
             sum.left[k] += noise->left[k];
     }
     out->noise = sum.of_paths * scale;
+    out->unseen = sum.unseen > 0.0 ? sum.unseen / (sum.seen + sum.unseen) : 0.0;
     for (int k = 0; k < AIM_SHARES; k++)
         out->left[k] = sum.left[k] * scale;
 }

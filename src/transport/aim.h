@@ -17,8 +17,11 @@ static inline double aim_share(int i)
 
 /** @brief What the last trials brought. */
 typedef struct aim_result {
-    double noise; /**< square of the noise that a camera sample had if it had to find by
-                     itself what photons bring: (W m⁻² sr⁻¹ nm⁻¹)² */
+    double noise;  /**< square of the noise that a camera sample had if it had to find by
+                      itself what photons bring: (W m⁻² sr⁻¹ nm⁻¹)² */
+    double unseen; /**< share of what photons bring that lands out of the camera's sight:
+                      it is in the picture by way of other surfaces only, and not in
+                      noise */
     double left[AIM_SHARES]; /**< what is left of it where so many photons help */
     float *boost; /**< by light: how much denser than by the light's own emission useful
                      photons are sent; the caller frees it with g_free */

@@ -6,8 +6,9 @@
  * Light that goes lamp → specular or glossy → diffuse surface is found by photons and by
  * paths from the eye; at whatever diffuse surface the camera path stands, and however it
  * got there, each takes the share that it finds better (photon/share.h). Every other path
- * is traced from the camera. Trial photons tell how many a pass is worth (budget.h);
- * where that is none, this is `path`.
+ * is traced from the camera; brightly lit places are looked at as lamps are
+ * (path_spots.c). Trials tell how many photons a pass is worth, and how often it is worth
+ * to look (budget.h); where that is never, this is `path`.
  */
 #pragma once
 

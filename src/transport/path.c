@@ -1,36 +1,8 @@
-#include "transport/path.h"
-
 #include "transport/direct.h"
+#include "transport/path_walk.h"
 #include "transport/photonmap.h"
 
 enum { ROULETTE_BOUNCES = 4 };
-
-/* A camera path on its way. */
-typedef struct camera_path {
-    ray ray;
-    spectrum beta;
-    int lane;
-    unsigned bounces;
-    unsigned n_before;  /* followed bounces before the first diffuse one */
-    unsigned n_diffuse; /* diffuse bounces */
-    unsigned n_after;   /* followed bounces since the last diffuse one */
-    float eta2;         /* takes refraction's scale of radiance out of roulette */
-    float pdf; /* pdf_solid_angle of the direction; 0: specular or from the camera */
-    vec3 from;
-    float
-        pdf_scatter; /* of the direction, by the bsdf of all lanes; where photons share */
-    bool every_light; /* how lights were sampled there */
-} camera_path;
-
-/* What one camera ray's path is traced with. */
-typedef struct path_walk {
-    const path_pass *pass;
-    const scene *scene;
-    const settings *how;
-    sampler *random;
-    transport_scratch *scratch;
-    radiance_sample *out;
-} path_walk;
 
 static radiance_layer layer_of(const camera_path *path)
 {
@@ -43,8 +15,7 @@ static radiance_layer layer_of(const camera_path *path)
     return path->n_after > 0 ? LAYER_CAUSTIC : LAYER_DIRECT;
 }
 
-/* Counts one more bounce by a lobe. */
-static void count_bounce(camera_path *path, unsigned lobe)
+void camera_path_count(camera_path *path, unsigned lobe)
 {
     path->bounces++;
     if (lobe & LOBE_DIFFUSE) {
@@ -80,6 +51,21 @@ static bool add(path_walk *walk, const camera_path *path, spectrum radiance)
     }
     walk->out->layers[layer_of(path)] += value;
     return true;
+}
+
+/* Adds what photons brought, with its parts by light groups. */
+static void add_parts(path_walk *walk, const camera_path *path, spectrum radiance)
+{
+    if (!add(walk, path, radiance) || !walk->out->groups)
+        return;
+    for (int i = 0; i < walk->scene->n_light_groups; i++)
+        walk->out->groups[i] += path->beta * walk->scratch->estimate.groups[i];
+}
+
+bool path_is_cut(const path_walk *walk, const camera_path *path, unsigned more)
+{
+    int64_t limit = walk->how->max_backward_bounces;
+    return limit >= 0 && path->bounces + more > limit;
 }
 
 /* Adds what came from one lamp. */
@@ -151,7 +137,7 @@ static void meet_sky(path_walk *walk, const camera_path *path)
 /* Grain shows on what is seen straight or in a mirror. */
 static bool samples_every_light(const camera_path *path)
 {
-    return path->n_diffuse == 0;
+    return path->n_diffuse == 0 && !path->by_either;
 }
 
 /* The bsdf whatever lane the path has kept: b, or made in room. */
@@ -165,15 +151,29 @@ static const bsdf *all_lanes(const path_walk *walk, const camera_path *path,
     return room;
 }
 
-static void sample_lights(path_walk *walk, const camera_path *path,
-                          const surface_hit *hit, const bsdf *b)
+/* Notes a place whose light lights others. */
+static void note_lit(const path_walk *walk, const camera_path *path,
+                     const surface_hit *hit, spectrum radiance)
+{
+    photon_store *lit = walk->pass->lit;
+    vec3 toward = -path->ray.direction;
+    const photon place = {.p = hit->p,
+                          .wi = toward,
+                          .flux = path->beta * radiance,
+                          .n = face_forward(hit->n_geom, toward)};
+    if (path->n_diffuse > 0 && lit->n < lit->capacity)
+        photon_store_put(lit, &place);
+}
+
+void path_sample_lights(path_walk *walk, const camera_path *path, const surface_hit *hit,
+                        const bsdf *b)
 {
     if (!walk->how->direct_illumination || !(b->lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)))
         return;
     bsdf room;
     camera_path by_diffuse = *path, by_glossy = *path;
-    count_bounce(&by_diffuse, LOBE_DIFFUSE);
-    count_bounce(&by_glossy, LOBE_GLOSSY);
+    camera_path_count(&by_diffuse, LOBE_DIFFUSE);
+    camera_path_count(&by_glossy, LOBE_GLOSSY);
     bool share = (b->lobes & LOBE_GLOSSY) && photons_share(walk, &by_glossy);
     const direct_query query = {
         .scene = walk->scene,
@@ -192,6 +192,8 @@ static void sample_lights(path_walk *walk, const camera_path *path,
     for (int i = 0; i < n; i++) {
         add_from(walk, &by_diffuse, found[i].diffuse, found[i].light);
         add_from(walk, &by_glossy, found[i].glossy, found[i].light);
+        if (walk->pass->lit)
+            note_lit(walk, path, hit, found[i].diffuse + found[i].glossy);
     }
 }
 
@@ -200,29 +202,26 @@ static void sample_lights(path_walk *walk, const camera_path *path,
    the same way and were counted there. Light that a lobe of n_diffuse > 0 would take from
    photons of delta lights on glossy lobes has been counted at the diffuse surface
    before. */
-static void gather_caustics(path_walk *walk, const camera_path *path,
-                            const surface_hit *hit, const bsdf *b)
+void path_gather_caustics(path_walk *walk, const camera_path *path,
+                          const surface_hit *hit, const bsdf *b)
 {
     const photonmap_pass *photons = walk->pass->caustics;
+    if (!photons)
+        return;
     unsigned delta = path->n_diffuse == 0 && photons->has_unmet_lights ? LOBE_GLOSSY : 0;
     camera_path seen = *path;
-    int64_t limit = walk->how->max_backward_bounces;
     if (!(b->lobes & (LOBE_DIFFUSE | delta)) || is_caustic(path) ||
-        (limit >= 0 && path->bounces + 2 > limit))
+        path_is_cut(walk, path, 2))
         return;
     const shading_point at = {hit, b, -path->ray.direction, path->n_diffuse > 0};
     float p = at.blurred ? walk->pass->plan->p_blurred : 1.0f;
     if (p < 1.0f && !(sampler_1d(walk->random) < p))
         return;
-    count_bounce(&seen, LOBE_DIFFUSE);
+    camera_path_count(&seen, LOBE_DIFFUSE);
     seen.n_after = 1;
     seen.beta /= p;
-    spectrum radiance =
-        photonmap_gather(photons, PHOTON_CAUSTIC, &at, delta, walk->scratch);
-    if (!add(walk, &seen, radiance) || !walk->out->groups)
-        return;
-    for (int i = 0; i < walk->scene->n_light_groups; i++)
-        walk->out->groups[i] += seen.beta * walk->scratch->estimate.groups[i];
+    add_parts(walk, &seen,
+              photonmap_gather(photons, PHOTON_CAUSTIC, &at, delta, walk->scratch));
 }
 
 /* Keeps what the share of photons depends on, where they may have one. */
@@ -247,14 +246,16 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
                                TRANSPORT_RADIANCE, &next))
         return false;
     note_density(walk, path, hit, b, &next);
+    path->looked = path_looks(walk, path, b);
     path->beta *= next.weight;
     path->lane = next.lane;
     path->eta2 *= next.eta * next.eta;
     path->pdf = (next.lobe & LOBE_SPECULAR) ? 0.0f : next.pdf;
     path->from = hit->p;
     path->every_light = samples_every_light(path);
+    path->by_either = path->looked > 0.0f && path_has_both(b);
     path->ray = hit_ray(hit, next.wi);
-    count_bounce(path, next.lobe);
+    camera_path_count(path, next.lobe);
     if (path->bounces < ROULETTE_BOUNCES)
         return !spectrum_is_black(path->beta);
     float p = minf(1.0f, spectrum_mean(path->beta) * path->eta2);
@@ -273,7 +274,6 @@ void path_radiance(const void *data, const ray *r, sampler *random,
                         .lane = ALL_LANES,
                         .eta2 = 1.0f,
                         .from = r->origin};
-    int64_t limit = walk.how->max_backward_bounces;
     for (;;) {
         surface_hit hit;
         scratch->camera_rays++;
@@ -292,11 +292,13 @@ void path_radiance(const void *data, const ray *r, sampler *random,
         }
         if (path.bounces == 0)
             radiance_sample_note(out, &hit, &b, -path.ray.direction, path.from);
-        if (limit >= 0 && path.bounces >= limit)
+        if (path_is_cut(&walk, &path, 1))
             return;
-        sample_lights(&walk, &path, &hit, &b);
-        if (pass->caustics)
-            gather_caustics(&walk, &path, &hit, &b);
+        camera_path seen = path;
+        seen.beta *= path_left_by_spots(&walk, &path, &hit, &b);
+        path_sample_lights(&walk, &seen, &hit, &b);
+        path_gather_caustics(&walk, &seen, &hit, &b);
+        path_look_at_spots(&walk, &path, &hit, &b);
         if (!bounce(&walk, &path, &hit, &b))
             return;
     }

@@ -6,6 +6,7 @@
  */
 #pragma once
 
+#include "photon/spots.h"
 #include "transport/transport.h"
 
 extern const transport_kind transport_path;
@@ -16,7 +17,14 @@ typedef struct path_pass {
     const transport_plan *plan;
     wavelengths w;
     bsdf_options options;
-    struct photonmap_pass *caustics; /**< NULL: paths find all light themselves */
+    struct photonmap_pass *caustics;       /**< NULL: paths find all light themselves */
+    photon_spots *spots[MOST_TIME_SLICES]; /**< by slice of the shutter's time; owned;
+                                              NULL: there are none, or not looked at */
+    int n_slices;                          /**< of them */
+    float p_spots;            /**< probability of looking at them from a surface */
+    struct spot_trial *trial; /**< to measure with: what looking is worth; else NULL */
+    photon_store *lit; /**< to measure with: places that light sampling found lit, and how
+                          much of the picture they light; else NULL */
     bool without_caustics; /**< to measure with: light by way of a specular or glossy
                               bounce to a diffuse surface is left out */
 } path_pass;

@@ -53,6 +53,7 @@ void transport_plan_clear(transport_plan *plan)
     plan->guide = NULL;
     g_clear_pointer(&plan->boost, g_free);
     g_clear_pointer(&plan->density, photon_map_free);
+    photon_store_clear(&plan->lit);
     plan->share = (caustic_share){0};
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         g_clear_pointer(&plan->radius_map[c], photon_map_free);

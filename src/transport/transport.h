@@ -92,6 +92,10 @@ typedef struct transport_plan {
     bool shares;           /**< photons share caustics with paths from the eye */
     caustic_share share;   /**< what they share before radii are known, for trials */
     float *boost;          /**< share.boost; owned */
+    photon_store lit;      /**< places that light sampling found lit (path_effort_measure)
+                            */
+    float p_spots;         /**< path_pass.p_spots, where no photons are sent */
+    double sample_rays;    /**< that a sample costs, photons apart */
     float p_blurred;       /**< probability of a gather that is seen by way of a diffuse
                               bounce, where photons share */
 } transport_plan;

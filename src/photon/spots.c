@@ -1,0 +1,231 @@
+#include "photon/spots.h"
+
+#include "math/frame.h"
+#include "math/warp.h"
+#include "scene/light_tree.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    MOST_SPOTS = 512,
+    NEIGHBOURS = 6, /* that a spot reaches */
+};
+
+/* The widest spot, over the median of them: what lies alone covers no more. */
+#define WIDEST 4.0f
+
+typedef struct disc {
+    vec3 p, n;
+    float radius;
+} disc;
+
+struct photon_spots {
+    photon_map *places; /* photons whose flux[0] is the radius, flux[1] the power */
+    disc *discs;        /* the same, unpacked */
+    light_tree *tree;   /* over them */
+    float reach;        /* how far from a spot's centre a ray may land, at most */
+};
+
+/* ---- Building ---- */
+
+static double worth(const photon_store *photons, size_t i)
+{
+    double flux = (double)spectrum_mean(photons->flux[i]);
+    return isfinite(flux) && flux > 0.0 ? flux : 0.0;
+}
+
+/* Adds photons at even steps of the sum of flux: flux[0] becomes the least radius,
+   flux[1] how many steps fell on one. */
+static void choose_places(const spot_source *source, size_t most, photon_store *places)
+{
+    const photon_store *from = source->places;
+    double total = 0.0, sum = 0.0;
+    for (size_t i = 0; i < from->n; i++)
+        total += worth(from, i);
+    size_t n_steps = MIN(from->n, most), steps = 0;
+    for (size_t i = 0; i < from->n && total > 0.0; i++) {
+        size_t before = steps;
+        sum += worth(from, i);
+        while (steps < n_steps && sum * (double)n_steps > ((double)steps + 0.5) * total)
+            steps++;
+        if (steps == before)
+            continue;
+        photon p = photon_store_get(from, i);
+        p.flux[0] = source->least;
+        p.flux[1] = (float)(steps - before) / (float)n_steps;
+        photon_store_put(places, &p);
+    }
+}
+
+static bool choose_all(const spot_source *sources, size_t n, photon_store *places,
+                       GError **error)
+{
+    size_t n_known = 0;
+    for (size_t i = 0; i < n; i++)
+        n_known += sources[i].places && sources[i].places->oriented;
+    places->oriented = true;
+    if (n_known == 0 || !photon_store_reserve(places, MOST_SPOTS, error))
+        return false;
+    for (size_t i = 0; i < n; i++)
+        if (sources[i].places && sources[i].places->oriented)
+            choose_places(&sources[i], MOST_SPOTS / n_known, places);
+    return places->n > 0;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static float median(const float *values, size_t n)
+{
+    float sorted[MOST_SPOTS];
+    memcpy(sorted, values, n * sizeof *sorted);
+    qsort(sorted, n, sizeof *sorted, by_value);
+    return sorted[n / 2];
+}
+
+/* The way to the furthest of the neighbours of each place. */
+static bool measure_ways(const photon_map *map, float ways[MOST_SPOTS])
+{
+    const photon_store *places = photon_map_store(map);
+    photon_hits hits = {0};
+    bool ok = true;
+    for (size_t i = 0; i < places->n && ok; i++) {
+        float d2 = 0.0f;
+        vec3 p = photon_store_get(places, i).p;
+        ok = photon_map_nearest(map, p, NEIGHBOURS, INFINITY, NULL, &hits);
+        for (size_t k = 0; k < hits.n; k++)
+            d2 = maxf(d2, hits.distance2[k]);
+        ways[i] = sqrtf(d2);
+    }
+    photon_hits_clear(&hits);
+    return ok;
+}
+
+/* The same places, with their radii. */
+static bool set_radii(photon_spots *spots, GError **error)
+{
+    const photon_store *from = photon_map_store(spots->places);
+    photon_store places = {.oriented = true};
+    float ways[MOST_SPOTS], widest = 0.0f;
+    if (!measure_ways(spots->places, ways) ||
+        !photon_store_reserve(&places, from->n, error))
+        return false;
+    float most = WIDEST * median(ways, from->n);
+    for (size_t i = 0; i < from->n; i++) {
+        photon p = photon_store_get(from, i);
+        p.flux[0] = maxf(minf(ways[i], most), p.flux[0]);
+        widest = maxf(widest, p.flux[0]);
+        photon_store_put(&places, &p);
+    }
+    photon_map_free(spots->places);
+    spots->places = photon_map_build(MAP_KDTREE, &places, 0.0f, 1, error);
+    spots->reach = 1.0001f * sqrtf(2.0f) * widest;
+    return spots->places && widest > 0.0f;
+}
+
+static void unpack_discs(photon_spots *spots)
+{
+    const photon_store *places = photon_map_store(spots->places);
+    spots->discs = g_aligned_alloc0(places->n, sizeof *spots->discs, 16);
+    for (size_t i = 0; i < places->n; i++) {
+        photon p = photon_store_get(places, i);
+        spots->discs[i] = (disc){p.p, p.n, p.flux[0]};
+    }
+}
+
+static void plant_tree(photon_spots *spots)
+{
+    const photon_store *places = photon_map_store(spots->places);
+    size_t n = places->n;
+    light_bound *bounds = g_aligned_alloc0(n, sizeof *bounds, 16);
+    for (size_t i = 0; i < n; i++) {
+        const disc *d = &spots->discs[i];
+        vec3 reach = vec3_make(d->radius, d->radius, d->radius);
+        box3 box = {d->p - reach, d->p + reach};
+        bounds[i] =
+            (light_bound){.is_local = true, .box = box, .power = places->flux[i][1]};
+    }
+    spots->tree = light_tree_new(bounds, (int)n);
+    g_aligned_free(bounds);
+}
+
+photon_spots *photon_spots_new(const spot_source *sources, size_t n, GError **error)
+{
+    photon_store places = {0};
+    g_autoptr(photon_spots) spots = g_new0(photon_spots, 1);
+    if (!choose_all(sources, n, &places, error)) {
+        photon_store_clear(&places);
+        return NULL;
+    }
+    spots->places = photon_map_build(MAP_KDTREE, &places, 0.0f, 1, error);
+    if (!spots->places || !set_radii(spots, error))
+        return NULL;
+    unpack_discs(spots);
+    plant_tree(spots);
+    return g_steal_pointer(&spots);
+}
+
+void photon_spots_free(photon_spots *spots)
+{
+    if (!spots)
+        return;
+    photon_map_free(spots->places);
+    light_tree_free(spots->tree);
+    g_aligned_free(spots->discs);
+    g_free(spots);
+}
+
+/* ---- Sampling ---- */
+
+/* pdf_solid_angle of the direction, by places on the disc; 0 if the ray misses it, or
+   lands further from it along the ray than it is wide. */
+static float disc_pdf(const disc *d, vec3 from, vec3 wi, vec3 landed)
+{
+    float r2 = d->radius * d->radius, cosine = dot3(wi, d->n);
+    if (!(length3_2(landed - d->p) < 2.0f * r2))
+        return 0.0f;
+    float t = dot3(d->p - from, d->n) / cosine;
+    if (!(t > 0.0f) || !isfinite(t))
+        return 0.0f;
+    vec3 pierced = from + t * wi;
+    if (!(length3_2(pierced - d->p) < r2) || !(length3_2(landed - pierced) < r2))
+        return 0.0f;
+    return t * t / (fabsf(cosine) * PI_F * r2);
+}
+
+bool photon_spots_sample(const photon_spots *spots, vec3 from, float u_choice, vec2 u,
+                         int *spot, vec3 *wi)
+{
+    float probability;
+    *spot = light_tree_sample(spots->tree, from, u_choice, &probability);
+    const disc *d = &spots->discs[*spot];
+    frame plane = frame_from_normal(d->n);
+    vec2 on = warp_disk(u);
+    vec3 way = d->p + d->radius * (on.x * plane.s + on.y * plane.t) - from;
+    *wi = normalize3(way);
+    return length3_2(way) > 0.0f;
+}
+
+bool photon_spots_landed(const photon_spots *spots, int spot, vec3 from, vec3 wi,
+                         vec3 landed)
+{
+    return disc_pdf(&spots->discs[spot], from, wi, landed) > 0.0f;
+}
+
+float photon_spots_pdf(const photon_spots *spots, vec3 from, vec3 wi, vec3 landed,
+                       photon_hits *hits)
+{
+    float sum = 0.0f;
+    if (!photon_map_within(spots->places, landed, spots->reach, NULL, hits))
+        return 0.0f;
+    for (size_t i = 0; i < hits->n; i++) {
+        float pdf = disc_pdf(&spots->discs[hits->index[i]], from, wi, landed);
+        if (pdf > 0.0f)
+            sum += pdf * light_tree_probability(spots->tree, from, (int)hits->index[i]);
+    }
+    return sum;
+}
