@@ -63,6 +63,33 @@ static void test_nothing_is_lost_or_counted_twice(gconstpointer data)
     }
 }
 
+/* A ball of glass on its way past: in each slice of time its caustic has few photons, and
+   the automatic radius must not reach for many of them from afar. Without a bound on what
+   it wants it is 30 to 60 % too bright. */
+#define PASSING                                                                          \
+    "LookAt 0 -4 1.6  0 0 0.6  0 0 1 Camera \"perspective\" \"float fov\" 42\n" SIZE(    \
+        40) "WorldBegin\nMaterial \"diffuse\" Shape \"disk\" \"float radius\" 6\n"       \
+            "LightSource \"infinite\" \"rgb L\" [0.1 0.1 0.12] AttributeBegin "          \
+            "Translate 1.5 -1 4 "                                                        \
+            "AreaLightSource \"diffuse\" \"rgb L\" [40 40 40] Shape \"sphere\" \"float " \
+            "radius\" "                                                                  \
+            "0.3 AttributeEnd ActiveTransform EndTime Translate 0.8 0 0 "                \
+            "ActiveTransform All "                                                       \
+            "Translate -0.4 0 0.5 Material \"dielectric\" Shape \"sphere\" \"float "     \
+            "radius\" 0.5\n"
+
+static void test_few_photons_do_not_shine_afar(void)
+{
+    g_autoptr(scene) s = scene_of(PASSING);
+    g_autoptr(image) few = render_with(s, "integrator=auto passes=24 spp=4 seed=1");
+    g_autoptr(image) many =
+        render_with(s, "integrator=photonmap passes=4 spp=16 caustic_photons=100000 "
+                       "photons=1000 radius=0.03 alpha=1 seed=2");
+    double a = mean_of(few, "caustic"), b = mean_of(many, "caustic");
+    g_test_message("few photons %g, many %g (%+.2f %%)", a, b, 100 * (a / b - 1));
+    g_assert_cmpfloat(fabs(a / b - 1.0), <, 0.15);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -70,5 +97,6 @@ int main(int argc, char **argv)
         g_autofree char *path = g_strconcat("/share/", scenes[i].name, NULL);
         g_test_add_data_func(path, &scenes[i], test_nothing_is_lost_or_counted_twice);
     }
+    g_test_add_func("/share/few-photons", test_few_photons_do_not_shine_afar);
     return g_test_run();
 }

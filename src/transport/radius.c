@@ -31,6 +31,11 @@ static const double photons_wanted[N_PHOTON_CLASSES] = {600.0, 12000.0, 300.0};
 /* ... but in each pass at least so many. */
 static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
 
+/* Beside a bright spot, radii are as wide as it takes to reach the wanted photons in it:
+   this is light that is not there, in proportion to their share of all. So of a caustic's
+   photons in a map no more are wanted than this share, and at least one. */
+#define MOST_SHARE (1.0 / 200.0)
+
 /* Caustics finer than this many pixels cannot be seen. */
 #define LEAST_PIXELS 1.0f
 
@@ -137,6 +142,14 @@ static photon_map *pilot_map(const pilot *p, photon_class c, const cancel_flag *
     return photon_map_build(MAP_KDTREE, &store, 0.0f, (unsigned)plan->how.threads, error);
 }
 
+/* Of n in a map of a slice of time. */
+static double wanted_in_reach(const transport_plan *plan, photon_class c, double n)
+{
+    double passes = (double)settings_planned_passes(&plan->how);
+    double wanted = fmax(photons_wanted[c] / passes, photons_wanted_least[c]);
+    return c == PHOTON_CAUSTIC ? fmin(wanted, fmax(MOST_SHARE * n, 1.0)) : wanted;
+}
+
 static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
                           GError **error)
 {
@@ -145,12 +158,11 @@ static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
     g_autoptr(photon_map) map = pilot_map(p, c, cancel, &n_emitted, error);
     if (!map)
         return false;
-    double passes = (double)settings_planned_passes(&plan->how);
-    double wanted = fmax(photons_wanted[c] / passes, photons_wanted_least[c]);
     int n_slices = scene_time_slices(plan->scene, &plan->how);
     double density = (double)plan->n_photons[c] / n_slices / (double)n_emitted;
+    double in_map = (double)photon_map_store(map)->n * density;
     const radius_rule rule = {
-        .scale = sqrt(wanted / PLACES_NEAREST / density),
+        .scale = sqrt(wanted_in_reach(plan, c, in_map) / PLACES_NEAREST / density),
         .largest = 0.1 * (double)plan->scene->radius,
         .pixels = p->pixels,
     };
