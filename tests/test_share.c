@@ -65,7 +65,7 @@ static void test_nothing_is_lost_or_counted_twice(gconstpointer data)
 
 /* A ball of glass on its way past: in each slice of time its caustic has few photons, and
    the automatic radius must not reach for many of them from afar. Without a bound on what
-   it wants it is 30 to 60 % too bright. */
+   it wants it is a quarter too bright. */
 #define PASSING                                                                          \
     "LookAt 0 -4 1.6  0 0 0.6  0 0 1 Camera \"perspective\" \"float fov\" 42\n" SIZE(    \
         40) "WorldBegin\nMaterial \"diffuse\" Shape \"disk\" \"float radius\" 6\n"       \

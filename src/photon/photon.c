@@ -31,6 +31,18 @@ static bool grow(void *array, size_t n, size_t capacity, size_t size, GError **e
     return grown != NULL;
 }
 
+static void free_arrays(photon_store *store)
+{
+    big_free(store->x);
+    big_free(store->y);
+    big_free(store->z);
+    big_free(store->wi);
+    big_free(store->flux);
+    big_free(store->normal);
+    big_free(store->tag);
+    *store = (photon_store){.oriented = store->oriented, .tagged = store->tagged};
+}
+
 bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
 {
     if (store->x && capacity <= store->capacity)
@@ -50,6 +62,8 @@ bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
               (!store->tagged || grow(&store->tag, n, room, sizeof *store->tag, error));
     if (ok)
         store->capacity = room - STORE_BLOCK;
+    else if (store->capacity == 0)
+        free_arrays(store);
     return ok;
 }
 
@@ -81,13 +95,7 @@ photon photon_store_get(const photon_store *store, size_t i)
 
 void photon_store_clear(photon_store *store)
 {
-    big_free(store->x);
-    big_free(store->y);
-    big_free(store->z);
-    big_free(store->wi);
-    big_free(store->flux);
-    big_free(store->normal);
-    big_free(store->tag);
+    free_arrays(store);
     *store = (photon_store){0};
 }
 

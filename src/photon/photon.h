@@ -62,7 +62,8 @@ typedef struct photon_store {
     uint32_t *tag;    /**< NULL unless tagged */
 } photon_store;
 
-/** @brief Makes room for capacity photons in all; on failure the store is as it was. */
+/** @brief Makes room for capacity photons in all; on failure the store holds what it did:
+ * nothing that needs to be freed, if it had no room before. */
 bool photon_store_reserve(photon_store *store, size_t capacity, GError **error);
 /** @brief Appends; room must have been reserved. */
 void photon_store_put(photon_store *store, const photon *p);
