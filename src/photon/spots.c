@@ -110,9 +110,12 @@ static bool set_radii(photon_spots *spots, GError **error)
 {
     const photon_store *from = photon_map_store(spots->places);
     photon_store places = {.oriented = true};
-    float ways[MOST_SPOTS], widest = 0.0f;
-    if (!measure_ways(spots->places, ways) ||
-        !photon_store_reserve(&places, from->n, error))
+    float ways[MOST_SPOTS] = {0}, widest = 0.0f;
+    if (!measure_ways(spots->places, ways)) {
+        error_set(error, ERROR_FAILED, "out of memory: bright spots");
+        return false;
+    }
+    if (!photon_store_reserve(&places, from->n, error))
         return false;
     float most = WIDEST * median(ways, from->n);
     for (size_t i = 0; i < from->n; i++) {
