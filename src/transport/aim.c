@@ -8,12 +8,13 @@ enum {
     TRIALS = 1 << 14,     /* photons a round */
     MAX_TRIALS = 1 << 18, /* in the first round, if hardly any arrives */
     LEAST_TRIALS = 1 << 12,
+    BATCHES = 4,            /* of a round's trials: what is worthless may show early */
     SAMPLES_PER_TRIAL = 64, /* of the camera, planned, for each trial of a round ... */
     SAMPLES_PER_FIRST_TRIAL = 16, /* ... and of the first, if hardly any arrives */
     TELLING_ARRIVALS = 32,        /* so many show that photons bring next to nothing */
     ENOUGH_ARRIVALS = 1000,
     VISIBLE_POINTS = 4096,
-    CHUNK = 1024,
+    CHUNK = 256,
 };
 
 /* Trial photons are those of passes that no render reaches. */
@@ -231,13 +232,14 @@ static bool run_batch(trials *all, GError **error)
     trials batch = *all;
     batch.records += all->n_known + all->n_arrived;
     batch.noise += all->n_known + all->n_arrived;
-    if (!parallel_for(all->each, CHUNK, (unsigned)all->task.how->threads,
-                      all->task.cancel, run_trials, &batch)) {
+    const size_t n = all->each / BATCHES;
+    if (!parallel_for(n, CHUNK, (unsigned)all->task.how->threads, all->task.cancel,
+                      run_trials, &batch)) {
         error_set(error, ERROR_CANCELLED, "cancelled");
         return false;
     }
-    all->n_arrived += keep_arrivals(batch.records, batch.noise, all->each);
-    all->first += all->each;
+    all->n_arrived += keep_arrivals(batch.records, batch.noise, n);
+    all->first += n;
     if (all->result)
         note_result(all);
     return true;
@@ -253,8 +255,9 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
     do {
         if (!run_batch(all, error))
             return false;
-    } while (all->first < limit && all->n_arrived < ENOUGH_ARRIVALS &&
-             !is_worthless(all));
+    } while (!is_worthless(all) &&
+             (all->first < all->each ||
+              (all->first < limit && all->n_arrived < ENOUGH_ARRIVALS)));
     all->n_known += all->n_arrived;
     emission_guide_learn(guide, all->records, all->n_known);
     return true;
