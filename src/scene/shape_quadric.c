@@ -2,7 +2,9 @@
 
 #include <glib.h>
 
-enum { MEAN_STEPS = 512 };
+/* Of the mean of the area factor: steps at first, how often they are doubled at most. */
+enum { LEAST_STEPS = 4, ROMBERG_ROWS = 8 };
+enum { MEAN_STEPS = LEAST_STEPS << (ROMBERG_ROWS - 1) };
 
 static double dot_double(const double *a, const double *b, int n)
 {
@@ -74,10 +76,9 @@ bool quadric_init(quadric *q, const params *p, const shape_place *at, GError **e
     return true;
 }
 
-/* The mean of the area factor over the surface, by the midpoint rule. */
-static double mean_factor(const quadric *q)
+/* The mean of the area factor over the surface by the midpoint rule, n steps each way. */
+static double midpoint_mean(const quadric *q, int n)
 {
-    int n = q->mean_steps;
     double sum = 0.0;
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < n; k++) {
@@ -86,6 +87,28 @@ static double mean_factor(const quadric *q)
         }
     }
     return sum / ((double)n * n);
+}
+
+/* The mean of the area factor over the surface, by Romberg's extrapolation: the rule's
+   error is a series in the square of the step. */
+static double mean_factor(const quadric *q)
+{
+    const double settled = 1e-6;
+    double row[ROMBERG_ROWS];
+    for (int k = 0; k < ROMBERG_ROWS && LEAST_STEPS << k <= q->mean_steps; k++) {
+        double above = k > 0 ? row[k - 1] : 0.0, power = 1.0;
+        double better = midpoint_mean(q, LEAST_STEPS << k);
+        for (int j = 0; j < k; j++) {
+            double before = row[j];
+            row[j] = better;
+            power *= 4.0;
+            better += (better - before) / (power - 1.0);
+        }
+        row[k] = better;
+        if (k > 1 && fabs(better - above) <= settled * better)
+            return better;
+    }
+    return row[0];
 }
 
 bool quadric_set_area(quadric *q, quadric_map map, double object_area, const params *p,

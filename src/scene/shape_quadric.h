@@ -29,7 +29,7 @@ typedef struct quadric {
     bool is_similar; /**< to_world keeps shapes: rotation, mirroring, uniform scale */
     double phi_max;  /**< rad, in (0, 2 pi] */
     double factor;   /**< largest area factor (the only one if is_similar) */
-    int mean_steps;  /**< each way, where the mean area factor is taken by a sum */
+    int mean_steps;  /**< at most, each way, to sum the mean area factor */
     float area;      /**< m², world */
     quadric_map map;
 } quadric;
