@@ -4,6 +4,7 @@
  */
 #include "math/distribution.h"
 #include "math/frame.h"
+#include "math/median.h"
 #include "math/sampler.h"
 #include "math/transform.h"
 #include "math/warp.h"
@@ -171,6 +172,25 @@ static void test_distribution_follows_its_weights(void)
     distribution_clear(&d);
 }
 
+/* As many values are below the median as above, or one more. */
+static void test_median_is_in_the_middle(void)
+{
+    sampler random = sampler_make(3, 0);
+    for (size_t n = 1; n <= 9; n++) {
+        float values[9], sorted[9];
+        for (size_t i = 0; i < n; i++)
+            values[i] = sorted[i] = floorf(5.0f * sampler_1d(&random));
+        float middle = median(sorted, n);
+        size_t below = 0, above = 0;
+        for (size_t i = 0; i < n; i++) {
+            below += values[i] < middle;
+            above += values[i] > middle;
+        }
+        g_assert_cmpuint(below, <=, n / 2);
+        g_assert_cmpuint(above, <=, (n - 1) / 2);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -184,5 +204,6 @@ int main(int argc, char **argv)
     g_test_add_func("/math/warp/integrals", test_warps_integrate);
     g_test_add_func("/math/frame/orthonormal", test_frames_are_orthonormal);
     g_test_add_func("/math/distribution/weights", test_distribution_follows_its_weights);
+    g_test_add_func("/math/median/middle", test_median_is_in_the_middle);
     return g_test_run();
 }

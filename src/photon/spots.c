@@ -1,10 +1,10 @@
 #include "photon/spots.h"
 
 #include "math/frame.h"
+#include "math/median.h"
 #include "math/warp.h"
 #include "scene/light_tree.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -73,20 +73,6 @@ static bool choose_all(const spot_source *sources, size_t n, photon_store *place
     return places->n > 0;
 }
 
-static int by_value(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
-static float median(const float *values, size_t n)
-{
-    float sorted[MOST_SPOTS];
-    memcpy(sorted, values, n * sizeof *sorted);
-    qsort(sorted, n, sizeof *sorted, by_value);
-    return sorted[n / 2];
-}
-
 /* The way to the furthest of the neighbours of each place. */
 static bool measure_ways(const photon_map *map, float ways[MOST_SPOTS])
 {
@@ -110,14 +96,15 @@ static bool set_radii(photon_spots *spots, GError **error)
 {
     const photon_store *from = photon_map_store(spots->places);
     photon_store places = {.oriented = true};
-    float ways[MOST_SPOTS] = {0}, widest = 0.0f;
+    float ways[MOST_SPOTS] = {0}, sorted[MOST_SPOTS], widest = 0.0f;
     if (!measure_ways(spots->places, ways)) {
         error_set(error, ERROR_FAILED, "out of memory: bright spots");
         return false;
     }
     if (!photon_store_reserve(&places, from->n, error))
         return false;
-    float most = WIDEST * median(ways, from->n);
+    memcpy(sorted, ways, sizeof sorted);
+    float most = WIDEST * median(sorted, from->n);
     for (size_t i = 0; i < from->n; i++) {
         photon p = photon_store_get(from, i);
         p.flux[0] = maxf(minf(ways[i], most), p.flux[0]);

@@ -23,6 +23,14 @@ spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w)
     return sum;
 }
 
+bool scene_has_unmet_lights(const scene *s)
+{
+    for (unsigned i = 0; i < s->lights->len; i++)
+        if (scene_light(s, (int)i)->is_unmet)
+            return true;
+    return false;
+}
+
 bool scene_sample_one_light(const scene *s, int i, const wavelengths *w, vec3 ref,
                             float u_primitive, vec2 u, light_sample *out)
 {

@@ -104,15 +104,6 @@ path_effort path_effort_measure(const transport_plan *plan, photon_store *lit)
 
 /* ---- What photons are worth ---- */
 
-static bool has_unmet_lights(const scene *s)
-{
-    for (unsigned i = 0; i < s->lights->len; i++) {
-        if (scene_light(s, (int)i)->is_unmet)
-            return true;
-    }
-    return false;
-}
-
 /* Rays that a camera sample costs more where photons are gathered, however few. */
 static double gather_rays(const path_effort *paths)
 {
@@ -122,7 +113,7 @@ static double gather_rays(const path_effort *paths)
 
 double caustic_least_noise(const transport_plan *plan, const path_effort *paths)
 {
-    if (plan->how.class_photons[PHOTON_CAUSTIC] > 0 || has_unmet_lights(plan->scene))
+    if (plan->how.class_photons[PHOTON_CAUSTIC] > 0 || scene_has_unmet_lights(plan->scene))
         return 0.0;
     return paths->noise * gather_rays(paths) / fmax(paths->rays, 1.0);
 }
@@ -162,7 +153,7 @@ void caustic_budget_decide(transport_plan *plan, const aim_result *found,
     if (plan->how.class_photons[PHOTON_CAUSTIC] > 0)
         return;
     double share = best_share(plan, found, paths);
-    if (found->noise + found->unseen > 0.0 && has_unmet_lights(plan->scene))
+    if (found->noise + found->unseen > 0.0 && scene_has_unmet_lights(plan->scene))
         share = fmax(share, LEAST_WORTH);
     *n = share > 0.0 ? (uint64_t)MAX(share * (double)*n, 1.0) : 0;
 }

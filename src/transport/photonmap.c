@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "transport/aim.h"
+#include "transport/places.h"
 
 double photonmap_radius(double radius, double alpha, uint32_t pass)
 {
@@ -72,15 +73,6 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
 static double seconds(void)
 {
     return (double)g_get_monotonic_time() * 1e-6;
-}
-
-static bool has_unmet_lights(const scene *s)
-{
-    for (unsigned i = 0; i < s->lights->len; i++) {
-        if (scene_light(s, (int)i)->is_unmet)
-            return true;
-    }
-    return false;
 }
 
 /* What one slice of a pass does for one class. */
@@ -249,7 +241,7 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
     pass->how = &plan->how;
     pass->w = scene_wavelengths(plan->scene, &plan->how, index);
     pass->options.deterministic = !plan->how.multiple_samples;
-    pass->has_unmet_lights = has_unmet_lights(plan->scene);
+    pass->has_unmet_lights = scene_has_unmet_lights(plan->scene);
     pass->n_slices = scene_time_slices(plan->scene, &plan->how);
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         double radius = photonmap_radius(plan->radius[c], plan->how.alpha, index);
@@ -284,11 +276,12 @@ static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
 {
     const photon_map *radii = pass->plan->radius_map[c];
     float typical = pass->estimates[c].radius;
-    if (!radii || pass->estimates[c].nearest > 0 ||
-        !photon_map_nearest(radii, p, 1, INFINITY, NULL, hits) || hits->n == 0)
+    if (!radii || pass->estimates[c].nearest > 0)
+        return typical;
+    float r = places_at(radii, p, -1.0f, hits);
+    if (r < 0.0f)
         return typical;
     float shrunk = typical / (float)pass->plan->radius[c];
-    float r = photon_map_store(radii)->flux[hits->index[0]][0];
     return minf(maxf(r, sqrtf(hits->distance2[0])) * shrunk,
                 LARGEST_OVER_TYPICAL * typical);
 }

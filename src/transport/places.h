@@ -24,5 +24,6 @@ typedef float (*places_value)(const void *data, vec3 p, float distance,
 photon_map *places_keep(const photon_map *map, unsigned threads, places_value value,
                         const void *data, GError **error);
 
-/** @brief The number nearest to p, or `none` if none is kept. @param hits scratch */
+/** @brief The number nearest to p, or `none` if none is kept.
+ *  @param hits gets the place whose number it is */
 float places_at(const photon_map *places, vec3 p, float none, photon_hits *hits);

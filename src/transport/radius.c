@@ -13,11 +13,10 @@
  * No radius is finer than a pixel, of the place that it is for: a table may stand at a
  * window, and most pixels be of a landscape where they are metres wide.
  */
+#include "math/median.h"
 #include "transport/photonmap.h"
 #include "transport/places.h"
 #include "transport/visible.h"
-
-#include <stdlib.h>
 
 enum {
     PILOT_PHOTONS = 20000,
@@ -49,18 +48,6 @@ typedef struct pilot {
     size_t n_points;
     photon_map *pixels; /* at those points; flux[0] is a pixel's width there */
 } pilot;
-
-static int ascending(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
-static float median(float *values, size_t n)
-{
-    qsort(values, n, sizeof *values, ascending);
-    return values[n / 2];
-}
 
 /* A bound of a class' radii, and what turns the pilot's distances into radii. */
 typedef struct radius_rule {
