@@ -38,7 +38,7 @@ static const GOptionEntry entries[] = {
     {"every", 0, 0, G_OPTION_ARG_STRING, &given.every,
      "Write the image every N passes, or as 30s every so many seconds", "N|Ns"},
     {"integrator", 0, 0, G_OPTION_ARG_STRING, &given.settings.integrator,
-     "photonmap or path", "NAME"},
+     "auto, photonmap, path, vcm or sppm", "NAME"},
     {"threads", 'j', 0, G_OPTION_ARG_STRING, &given.settings.threads,
      "Threads; 0: one per processor", "N"},
     {"seed", 0, 0, G_OPTION_ARG_STRING, &given.settings.seed, "Seed of random numbers",
@@ -60,7 +60,7 @@ static const usage how = {
     .name = "render",
     .operands = "SCENE",
     .n_operands = 1,
-    .summary = "Renders a pbrt-v4 scene by photon mapping.",
+    .summary = "Renders a scene (pbrt, glTF, OBJ, STL, PLY) by photon mapping.",
     .description =
         "Without -o the image goes where the scene's Film says, else to the scene's "
         "name with\n.exr in the current folder.\n\n"
