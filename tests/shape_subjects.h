@@ -81,7 +81,8 @@ static inline shape *unit_square(const shape_place *at)
 static inline accel *accel_of(shape *const *shapes, size_t n)
 {
     GError *error = NULL;
-    accel *a = accel_build(shapes, n, 1, &error);
+    const accel_input in = {.shapes = shapes, .n_shapes = n, .shutter = {0.0, 1.0}};
+    accel *a = accel_build(&in, 1, &error);
     g_assert_no_error(error);
     return a;
 }

@@ -1,5 +1,5 @@
 /*
- * Ray queries. The one file that calls Embree (3 or 4) is accel.c.
+ * Ray queries, by Embree (3 or 4), of which nobody else knows: see accel_embree.h.
  */
 #pragma once
 
@@ -18,9 +18,9 @@ typedef struct accel_input {
     double shutter[2]; /**< s: when rays of time 0 and 1 are */
 } accel_input;
 
-accel *accel_build_scene(const accel_input *in, unsigned threads, GError **error);
-/** @brief The same for n shapes of the world alone. */
-accel *accel_build(shape *const *shapes, size_t n, unsigned threads, GError **error);
+/** @brief Builds what the queries below ask. threads: 0 = all. ERROR_FAILED if Embree
+ * does not start or runs out of memory. */
+accel *accel_build(const accel_input *in, unsigned threads, GError **error);
 void accel_free(accel *a);
 /** @brief Nearest hit in (0, r->t_max): geometry only, hit->shape and hit->instance tell
  * the rest. Cut-outs (alpha) are passed by a choice that the ray alone decides.

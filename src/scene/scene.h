@@ -266,8 +266,8 @@ static inline int scene_light_group(const scene *s, int i)
  * shine. */
 spectrum scene_emitted(const scene *s, const surface_hit *hit, vec3 wo,
                        const wavelengths *w);
-/** @brief True if some light is one that no ray meets: such as a point, or a lamp of alpha
- * 0. What it sends through glass or by mirrors only photons find. */
+/** @brief True if some light is one that no ray meets: such as a point, or a lamp of
+ * alpha 0. What it sends through glass or by mirrors only photons find. */
 bool scene_has_unmet_lights(const scene *s);
 /** @brief Radiance of all environments arriving from direction d. */
 spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w);

@@ -274,7 +274,7 @@ bool scene_build_accel(scene *s, unsigned threads, GError **error)
         .n_objects = s->objects->len,
         .shutter = {(double)s->camera.shutter_open, (double)s->camera.shutter_close},
     };
-    s->accel = accel_build_scene(&in, threads, error);
+    s->accel = accel_build(&in, threads, error);
     s->moves = false;
     for (guint i = 0; i < s->instances->len && s->accel; i++)
         s->moves |= accel_instance_moves(s->accel, (int)i);
