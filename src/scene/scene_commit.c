@@ -1,0 +1,176 @@
+/*
+ * Committing a scene: what only the whole of it can tell is found once and kept, so that
+ * queries need only look.
+ *
+ *   bounds ─► lights, prepared for them ─► casters of caustics ─► power that may meet
+ * them ─► acceleration structure ─► groups, width of a pixel, solids
+ */
+#include "scene/scene_commit.h"
+
+#include "base/memory.h"
+#include "scene/scene_geometry.h"
+#include "scene/scene_media.h"
+
+/* ---- Lights ---- */
+
+static bool find_lights(scene *s, GError **error)
+{
+    const wavelengths w = wavelengths_at(0.5f);
+    guint n = s->lights->len;
+    s->environments = g_new0(int, MAX(n, 1));
+    float *power = big_alloc(n, sizeof(float), "lights", error);
+    light_bound *bounds = power ? big_alloc(n, sizeof *bounds, "lights", error) : NULL;
+    if (!bounds) {
+        big_free(power);
+        return false;
+    }
+    for (guint i = 0; i < n; i++) {
+        const light *l = s->lights->pdata[i];
+        if (l->kind->prepare)
+            l->kind->prepare(l->self, s->center, s->radius);
+        if (l->kind->is_environment)
+            s->environments[s->n_environments++] = (int)i;
+        power[i] = spectrum_mean(l->kind->power(l->self, &w));
+        bounds[i] = l->kind->bound(l->self, &w);
+    }
+    s->light_tree = light_tree_new(bounds, (int)n);
+    bool done = distribution_init(&s->light_power, power, n, error);
+    big_free(power);
+    big_free(bounds);
+    double total = done ? distribution_total(&s->light_power) : 0.0;
+    if (done && !(total > 0.0 && isfinite(total))) {
+        error_set(error, ERROR_INPUT,
+                  n == 0        ? "the scene has no light"
+                  : total > 0.0 ? "the scene's lights are infinitely strong"
+                                : "the scene has no light: all its lights are black");
+        done = false;
+    }
+    return done;
+}
+
+/* The share of a light's power that may meet the sphere around what casts caustics:
+   parallel light is spread over the whole scene, that from a lamp apart from the sphere
+   over a cone and up to twice as strong as on average. */
+static float caustic_share(const scene *s, light *l, const wavelengths *w)
+{
+    if (l->kind->is_parallel)
+        return square(minf(1.0f, s->caustic_radius / s->radius));
+    light_bound bound = l->kind->bound(l->self, w);
+    vec3 nearest = max3(bound.box.low, min3(s->caustic_center, bound.box.high));
+    l->is_apart = bound.is_local &&
+                  length3(nearest - s->caustic_center) > 1.01f * s->caustic_radius;
+    float distance = length3(box3_center(bound.box) - s->caustic_center);
+    float sine = s->caustic_radius / distance;
+    return l->is_apart ? 1.0f - sqrtf(maxf(0.0f, 1.0f - sine * sine)) : 1.0f;
+}
+
+static bool find_caustic_power(scene *s, GError **error)
+{
+    const wavelengths w = wavelengths_at(0.5f);
+    guint n = s->lights->len;
+    float *power = big_alloc(n, sizeof(float), "lights", error);
+    for (guint i = 0; i < n && power; i++) {
+        light *l = s->lights->pdata[i];
+        power[i] = spectrum_mean(l->kind->power(l->self, &w)) * caustic_share(s, l, &w);
+    }
+    bool done = power && distribution_init(&s->caustic_power, power, n, error);
+    big_free(power);
+    return done;
+}
+
+/* Index of a group by name, made if it is new. */
+static int group_index(GPtrArray *names, const char *name)
+{
+    guint i;
+    if (g_ptr_array_find_with_equal_func(names, name, g_str_equal, &i))
+        return (int)i;
+    g_ptr_array_add(names, g_strdup(name));
+    return (int)names->len - 1;
+}
+
+static void find_light_groups(scene *s)
+{
+    bool any = false;
+    for (guint i = 0; i < s->lights->len; i++)
+        any |= scene_light(s, (int)i)->group != NULL;
+    g_autoptr(GPtrArray) names = g_ptr_array_new();
+    for (guint i = 0; i < s->lights->len && any; i++) {
+        light *l = s->lights->pdata[i];
+        l->group_index = group_index(names, l->group ? l->group : "default");
+    }
+    s->n_light_groups = (int)names->len;
+    g_ptr_array_add(names, NULL);
+    s->light_groups = (char **)g_ptr_array_steal(names, NULL);
+}
+
+/* ---- Pixels ---- */
+
+/* By two rays half a pixel apart: with several samples a pixel each has to see no more.
+ */
+static void find_pixel_width(scene *s)
+{
+    vec2 middle = {0.5f * (float)s->film.width, 0.5f * (float)s->film.height};
+    ray a = camera_ray(&s->camera, middle, (vec2){0.5f, 0.5f}, 0.5f);
+    middle.x += 0.5f;
+    ray b = camera_ray(&s->camera, middle, (vec2){0.5f, 0.5f}, 0.5f);
+    s->pixel_width = length3(b.origin - a.origin);
+    s->pixel_spread = length3(b.direction - a.direction);
+}
+
+void scene_resize(scene *s, int width, int height)
+{
+    s->film.width = width;
+    s->film.height = height;
+    if (s->has_camera)
+        camera_resize(&s->camera, width, height);
+    if (s->committed)
+        find_pixel_width(s);
+}
+
+/* ---- All of it ---- */
+
+bool scene_may_change(const scene *s, GError **error)
+{
+    if (s->committed)
+        error_set(error, ERROR_USAGE, "the scene is committed and can not be changed");
+    return !s->committed;
+}
+
+void scene_forget_commit(scene *s)
+{
+    accel_free(s->accel);
+    s->accel = NULL;
+    distribution_clear(&s->light_power);
+    g_clear_pointer(&s->light_tree, light_tree_free);
+    distribution_clear(&s->caustic_area);
+    distribution_clear(&s->caustic_power);
+    g_clear_pointer(&s->environments, g_free);
+    g_clear_pointer(&s->light_groups, g_strfreev);
+    g_clear_pointer(&s->casters, g_free);
+    g_clear_pointer(&s->interiors, g_free);
+    s->n_environments = s->n_casters = 0;
+}
+
+bool scene_commit(scene *s, unsigned threads, GError **error)
+{
+    if (!scene_may_change(s, error))
+        return false;
+    if (!s->has_camera) {
+        error_set(error, ERROR_INPUT, "the scene has no camera");
+        return false;
+    }
+    if (!s->filter.name && !filter_init_default(&s->filter, error))
+        return false;
+    s->committed = scene_find_bounds(s, error) && find_lights(s, error) &&
+                   scene_find_casters(s, error) && find_caustic_power(s, error) &&
+                   scene_build_accel(s, threads, error);
+    if (s->committed) {
+        find_light_groups(s);
+        find_pixel_width(s);
+        scene_find_media(s);
+        g_hash_table_remove_all(s->files);
+    } else {
+        scene_forget_commit(s);
+    }
+    return s->committed;
+}
