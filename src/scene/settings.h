@@ -35,9 +35,9 @@ typedef enum integrator_choice {
 /** Which strategies vertex connection and merging uses: see transport/vcm.h. */
 typedef enum vcm_choice { VCM_ALL, VCM_BPT, VCM_BPM, VCM_PPM, VCM_LIGHT } vcm_choice;
 
-/** @brief Every knob. Arrays are indexed by photon class. A plain value: copy it. */
 enum { MOST_TIME_SLICES = 64 };
 
+/** @brief Every knob. Arrays are indexed by photon class. A plain value: copy it. */
 typedef struct settings {
     int integrator; /**< integrator_choice */
     int64_t passes; /**< 0: see settings_most_passes */
