@@ -12,6 +12,10 @@ if ! command -v blender >/dev/null; then
     echo "1..0 # SKIP Blender is not installed"
     exit 0
 fi
+if ! blender --background --python-exit-code 1 --python-expr "import numpy" >/dev/null 2>&1; then
+    echo "1..0 # SKIP Blender has no numpy, which its glTF exporter needs"
+    exit 0
+fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 echo "1..3"

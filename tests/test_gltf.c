@@ -115,6 +115,54 @@ static void test_lights_and_camera(void)
     g_assert_cmpfloat(fabsf(raster.y), <, 0.1f);
 }
 
+/* A spot lamp's light at an angle off its axis, as a share of that along it. */
+static double spot_share(const char *asset, const char *cone, double angle)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *buffers = buffer_uri();
+    g_autofree char *text = g_strdup_printf(
+        "{\"asset\":{\"version\":\"2.0\"%s},\"materials\":[{}]," MESH(
+            "0") "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":"
+                 "\"spot\",\"spot\":{%s}}]}},\"nodes\":[{\"mesh\":0},{\"extensions\":{"
+                 "\"KHR_lights_punctual\":{\"light\":0}}}],%s" VIEWS "}",
+        asset, cone, buffers);
+    g_autoptr(scene) s = load_bytes("a.gltf", text, -1, NULL, &error);
+    g_assert_no_error(error);
+    const light *l = scene_light(s, 0);
+    wavelengths w = wavelengths_at(0.5f);
+    double found[2] = {0.0, 0.0};
+    for (int i = 0; i < 2; i++) {
+        light_sample to;
+        vec3 p = vec3_make((float)sin(i * angle), 0.0f, (float)-cos(i * angle));
+        if (l->kind->sample(l->self, &w, p, 0.5f, (vec2){0.5f, 0.5f}, &to))
+            found[i] = (double)spectrum_mean(to.radiance);
+    }
+    return found[1] / found[0];
+}
+
+/* Blender's lamp of 70 degrees across and a blend of a half is at full strength where
+ * 1 - cos is half of that at the edge, and fades by smoothstep in it from there on. */
+static void test_spot_edges(void)
+{
+#define BLENDER ",\"generator\":\"Khronos glTF Blender I/O v3.4.50\""
+#define SOFT "\"innerConeAngle\":0.305432619,\"outerConeAngle\":0.610865238"
+#define SHARP "\"innerConeAngle\":0.5,\"outerConeAngle\":0.5"
+    const double edge = 1.0 - cos(0.610865238), tiny = 1e-4;
+    for (double share = 0.49; share < 1.0; share += 0.125) {
+        double x = CLAMP((1.0 - share) / 0.5, 0.0, 1.0);
+        double want = x * x * (3.0 - 2.0 * x);
+        double found = spot_share(BLENDER, SOFT, acos(1.0 - share * edge));
+        g_assert_cmpfloat(fabs(found - want), <, tiny);
+    }
+    g_assert_cmpfloat(spot_share("", SOFT, 0.30), >, 1.0 - tiny);
+    g_assert_cmpfloat(spot_share("", SOFT, 0.35), <, 0.99);
+    for (int i = 0; i < 2; i++) {
+        const char *from = i ? BLENDER : "";
+        g_assert_cmpfloat(spot_share(from, SHARP, 0.499), >, 1.0 - tiny);
+        g_assert_cmpfloat(spot_share(from, SHARP, 0.501), <, tiny);
+    }
+}
+
 static void test_defaults(void)
 {
     notes kept = {g_string_new(NULL)};
@@ -252,6 +300,7 @@ int main(int argc, char **argv)
     g_test_add_func("/gltf/shapes", test_shapes);
     g_test_add_func("/gltf/containers", test_containers);
     g_test_add_func("/gltf/lights-and-camera", test_lights_and_camera);
+    g_test_add_func("/gltf/spot-edges", test_spot_edges);
     g_test_add_func("/gltf/defaults", test_defaults);
     g_test_add_func("/gltf/refused", test_refused);
     g_test_add_func("/gltf/not-json", test_not_json);

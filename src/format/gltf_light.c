@@ -30,14 +30,34 @@ static params *emission(gltf *g, const json_value *lamp, const char *name)
     return p;
 }
 
+static bool is_from_blender(gltf *g)
+{
+    json_value asset = json_member(&g->root, "asset");
+    const char *generator = json_text(&asset, "generator");
+    return generator && g_str_has_prefix(generator, "Khronos glTF Blender I/O");
+}
+
+/* Blender's lamps fade over a share of 1 - cos of the outer angle. What it writes into a
+ * file is that share of the angle, which is wider; reading the file, it takes that back.
+ */
+static double blender_inner(double inner, double outer)
+{
+    double share = 1.0 - inner / outer, edge = cos(outer);
+    return acos(MIN(edge + share * (1.0 - edge), 1.0));
+}
+
+/* The standard wants the inner angle below the outer one; Blender writes sharp edges as
+ * two equal ones. */
 static params *spot_params(gltf *g, const json_value *lamp)
 {
     params *p = emission(g, lamp, "I");
     json_value spot = json_member(lamp, "spot");
     double inner = json_real(&spot, "innerConeAngle", 0.0);
     double outer = json_real(&spot, "outerConeAngle", G_PI / 4.0);
-    if (!(inner >= 0.0 && inner < outer && outer <= 0.5001 * G_PI))
-        json_fail(&spot, "expected cone angles 0 <= inner < outer <= pi/2");
+    if (!(inner >= 0.0 && inner <= outer && outer > 0.0 && outer <= 0.5001 * G_PI))
+        json_fail(&spot, "expected cone angles 0 <= inner <= outer <= pi/2");
+    else if (is_from_blender(g))
+        inner = blender_inner(inner, outer);
     outer = MIN(outer, 0.4999 * G_PI);
     give_float(p, "coneangle", outer * DEGREES);
     give_float(p, "conedeltaangle", (outer - MIN(inner, outer)) * DEGREES);
