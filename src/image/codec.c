@@ -7,7 +7,8 @@
 #include <string.h>
 
 static const image_codec *const codecs[] = {
-    &codec_exr, &codec_png, &codec_jpeg, &codec_hdr, &codec_pfm,
+    &codec_exr, &codec_png, &codec_jpeg, &codec_hdr, &codec_pfm, &codec_bmp,
+    &codec_tga, /* has no mark of its own */
 };
 
 const char *const rgba_names[4] = {"R", "G", "B", "A"};
@@ -119,7 +120,7 @@ static image *read_source(const image_source *source, const image_read_options *
     if (!codec) {
         error_set(error, ERROR_INPUT,
                   "%s: not an image in a format that is known (OpenEXR, PNG, JPEG, "
-                  "Radiance HDR, PFM)",
+                  "Radiance HDR, PFM, BMP, TGA)",
                   source->path);
         return NULL;
     }

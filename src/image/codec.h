@@ -28,7 +28,7 @@ typedef struct image_sink {
 /** @brief One file format. */
 typedef struct image_codec {
     const char *name;              /**< "OpenEXR", for messages */
-    const char *const *extensions; /**< ".exr" ..., lower case, NULL-terminated */
+    const char *const *extensions; /**< that it writes: ".exr" ..., NULL-terminated */
     bool (*recognises)(const image_source *source);
     image *(*read)(const image_source *source, const image_read_options *options,
                    GError **error);
@@ -37,7 +37,8 @@ typedef struct image_codec {
                   const image_write_options *options, GError **error);
 } image_codec;
 
-extern const image_codec codec_exr, codec_png, codec_jpeg, codec_hdr, codec_pfm;
+extern const image_codec codec_exr, codec_png, codec_jpeg, codec_hdr, codec_pfm, codec_bmp,
+    codec_tga;
 
 /** @brief ERROR_INPUT "path: damaged NAME file: ..." for a file that breaks its format.
  */

@@ -54,16 +54,16 @@ int image_channel(const image *img, const char *name);
 const char *image_header_get(const image *img, const char *key);
 void image_header_set(image *img, const char *key, const char *value);
 
-/** @brief Reads EXR, PNG (8/16 bit), JPEG, HDR (RGBE) or PFM, by content not by name. EXR
- * keeps its channels' names (sorted) and its data window only; every other format gives
- * R, G, B, grey repeated, and a PNG with transparency A.
+/** @brief Reads EXR, PNG (8/16 bit), JPEG, HDR (RGBE), PFM, BMP or TGA, by content not by
+ * name. EXR keeps its channels' names (sorted) and its data window only; every other
+ * format gives R, G, B, grey repeated, and a PNG with transparency A.
  *  @param options NULL = automatic. @return NULL with ERROR_INPUT naming the file when it
  *  cannot be read, is damaged or claims a size it cannot hold. */
 image *image_read(const char *path, const image_read_options *options, GError **error);
 /** @brief The same for a file that is in memory (part of a .glb, say).
  *  @param name for messages */
-image *image_read_bytes(const char *name, GBytes *bytes, const image_read_options *options,
-                        GError **error);
+image *image_read_bytes(const char *name, GBytes *bytes,
+                        const image_read_options *options, GError **error);
 
 /** @brief Writes by the name's extension (.exr, .png, .jpg, .hdr, .pfm): to a temporary
  * name beside it, synced and renamed, so that no partial file is ever seen under the
