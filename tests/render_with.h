@@ -12,7 +12,6 @@ static inline settings settings_with(const scene *s, const char *words)
 {
     settings how = s->settings;
     how.integrator = INTEGRATOR_PHOTONMAP;
-    how.integrator = INTEGRATOR_PHOTONMAP;
     g_auto(GStrv) list = g_strsplit(words, " ", -1);
     for (char **word = list; *word; word++) {
         g_auto(GStrv) pair = g_strsplit(*word, "=", 2);

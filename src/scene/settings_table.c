@@ -40,7 +40,7 @@ static const setting_row table[] = {
      "Specular scattering events followed back from the eye; -1 is unlimited. The alias "
      "maxdepth d bounds photons too, by d - 1."},
     {"max_forward_bounces", SETTING_COUNT, AT(max_forward_bounces), "", -1, 1e6, -1, NULL,
-     "maxForwardBounces MAX_PHOTON_BOUNCES", "photonmap",
+     "maxForwardBounces MAX_PHOTON_BOUNCES", "photonmap auto",
      "Scattering events of a photon; 0 stores it at its first hit only, -1 is unlimited "
      "(roulette ends it)."},
     {"final_gather", SETTING_BOOL, AT(final_gather), "", 0, 1, 0, NULL, "finalgather",
@@ -54,10 +54,11 @@ static const setting_row table[] = {
      "Estimates radiance once at photon positions, so that a gather ray is one look-up "
      "(Christensen 1999)."},
     {"direct_illumination", SETTING_BOOL, AT(direct_illumination), "", 0, 1, 1, NULL, "",
-     "photonmap",
-     "Samples the lights at each hit; off: direct light comes from the direct map."},
+     "photonmap auto path",
+     "Samples the lights at each hit; off: direct light comes from the direct map, and "
+     "paths find only lamps that they meet."},
     {"shadow_rays", SETTING_BOOL, AT(shadow_rays), "", 0, 1, 1, NULL, "",
-     "photonmap path",
+     "photonmap auto path",
      "Tests whether sampled lights are hidden; off: direct light casts no shadows."},
     {"photons", SETTING_COUNT, AT(photons), "photons/pass", 0, 1e12, 0, NULL,
      "numEmitted photonsperiteration photons_per_pass", "photonmap auto vcm",
@@ -72,7 +73,7 @@ static const setting_row table[] = {
      "Photons emitted a pass for the indirect map, over all lights; 0: a share of "
      "photons."},
     {"caustic_photons", SETTING_COUNT, AT(class_photons[2]), "photons/pass", 0, 1e12, 0,
-     NULL, "CAUSTIC_PHOTONS_PER_LIGHT causticphotons", "photonmap",
+     NULL, "CAUSTIC_PHOTONS_PER_LIGHT causticphotons", "photonmap auto",
      "Photons emitted a pass for the caustic map, over all lights; 0: a share of "
      "photons."},
     {"direct_nearest", SETTING_COUNT, AT(class_nearest[0]), "photons", 0, 1e7, 0, NULL,
@@ -82,10 +83,10 @@ static const setting_row table[] = {
      "INDIRECT_NEARBY_PHOTONS", "photonmap",
      "Nearest indirect photons in an estimate; 0: all within the radius."},
     {"caustic_nearest", SETTING_COUNT, AT(class_nearest[2]), "photons", 0, 1e7, 0, NULL,
-     "CAUSTIC_NEARBY_PHOTONS", "photonmap",
+     "CAUSTIC_NEARBY_PHOTONS", "photonmap auto",
      "Nearest caustic photons in an estimate; 0: all within the radius."},
     {"radius", SETTING_REAL, AT(radius), "m", 0, 1e12, 0, NULL,
-     "photonRadius gather_radius", "photonmap vcm",
+     "photonRadius gather_radius", "photonmap auto vcm",
      "Radius of the estimate in the first pass, or its bound for nearest photons; 0: "
      "chosen from the photons and the pixels."},
     {"direct_kernel", SETTING_CHOICE, AT(class_kernel[0]), "", 0, 3, KERNEL_EPANECHNIKOV,
@@ -94,7 +95,8 @@ static const setting_row table[] = {
      KERNEL_EPANECHNIKOV, kernel_words, "", "photonmap vcm",
      "How an indirect photon's weight falls with distance."},
     {"caustic_kernel", SETTING_CHOICE, AT(class_kernel[2]), "", 0, 3, KERNEL_EPANECHNIKOV,
-     kernel_words, "", "photonmap", "How a caustic photon's weight falls with distance."},
+     kernel_words, "", "photonmap auto",
+     "How a caustic photon's weight falls with distance."},
     {"direct_cone_k", SETTING_REAL, AT(class_cone_k[0]), "", 1, 1e6, 1, NULL,
      "DIRECT_CONE_FILTER_PARAM", "photonmap",
      "Slope of the direct cone kernel 1 - d/(k r). The alias also chooses the kernel: "
@@ -104,14 +106,15 @@ static const setting_row table[] = {
      "Slope of the indirect cone kernel 1 - d/(k r). The alias also chooses the kernel: "
      "below 1 constant, else cone."},
     {"caustic_cone_k", SETTING_REAL, AT(class_cone_k[2]), "", 1, 1e6, 1, NULL,
-     "CAUSTICS_CONE_FILTER_PARAM CAUSTIC_CONE_FILTER_PARAM", "photonmap",
+     "CAUSTICS_CONE_FILTER_PARAM CAUSTIC_CONE_FILTER_PARAM", "photonmap auto",
      "Slope of the caustic cone kernel 1 - d/(k r). The alias also chooses the kernel: "
      "below 1 constant, else cone."},
     {"photon_map", SETTING_CHOICE, AT(photon_map), "", 0, 3, MAP_AUTO, map_words, "",
      "photonmap auto vcm",
      "The structure photons are looked up in; all give the same answers. auto is the "
      "tree where the automatic radius differs from place to place, else the grid."},
-    {"flatten", SETTING_REAL, AT(flatten), "", 0.001, 1, 1, NULL, "", "photonmap vcm",
+    {"flatten", SETTING_REAL, AT(flatten), "", 0.001, 1, 1, NULL, "",
+     "photonmap auto vcm",
      "Height of the neighbourhood along the normal over its radius; below 1 it leaks "
      "less light through corners."},
     {"edges", SETTING_BOOL, AT(edges), "", 0, 1, 1, NULL, "", "photonmap auto vcm",
@@ -125,7 +128,7 @@ static const setting_row table[] = {
      "In so many parts the time of the shutter is cut where something moves: what is "
      "seen in one is lit by the photons of that one."},
     {"roulette", SETTING_CHOICE, AT(roulette), "", 0, 1, ROULETTE_MEAN, roulette_words,
-     "", "photonmap",
+     "", "photonmap auto",
      "What of a photon's flux decides its survival: the mean or the largest over "
      "wavelengths."},
     {"caustic_emission", SETTING_CHOICE, AT(caustic_emission), "", 0, 2, EMISSION_GUIDED,
@@ -133,14 +136,15 @@ static const setting_row table[] = {
      "Where photons for caustics are sent: as the light shines, toward what focuses "
      "light, or where trial photons were seen to cast caustics."},
     {"multiple_samples", SETTING_BOOL, AT(multiple_samples), "", 0, 1, 1, NULL,
-     "MULTIPLE_SAMPLES", "photonmap path",
+     "MULTIPLE_SAMPLES", "photonmap auto path",
      "Samples roughness and Fresnel's split; off: one deterministic path, without "
      "either."},
     {"vcm_strategies", SETTING_CHOICE, AT(vcm_strategies), "", 0, 4, VCM_ALL, vcm_words,
      "", "vcm",
      "How vcm finds light: by all strategies, connections only (bpt), merging at every "
      "vertex (bpm) or at the first (ppm), or light paths that reach the eye (light)."},
-    {"alpha", SETTING_REAL, AT(alpha), "", 0.01, 1, 2.0 / 3.0, NULL, "", "photonmap vcm",
+    {"alpha", SETTING_REAL, AT(alpha), "", 0.01, 1, 2.0 / 3.0, NULL, "",
+     "photonmap auto vcm",
      "How slowly the radius shrinks from pass to pass; 1: not at all (Knaus & Zwicker "
      "2011)."},
     {"seed", SETTING_COUNT, AT(seed), "", 0, 9007199254740992.0, 0, NULL, "", "all",
