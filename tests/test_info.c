@@ -59,6 +59,37 @@ static void test_size(void)
           "m wide; lengths are in metres");
 }
 
+/* A sky through a window behind the scene, its corners in either order. */
+static void test_portal(void)
+{
+    float white[2 * 2 * 3];
+    for (size_t i = 0; i < G_N_ELEMENTS(white); i++)
+        white[i] = 1.0f;
+    GByteArray *sky = g_byte_array_new();
+    g_byte_array_append(sky, (const guint8 *)"PF 2 2 -1\n", 10);
+    g_byte_array_append(sky, (const guint8 *)white, sizeof white);
+    const char *const corners[] = {"-1 5 -1  1 5 -1  1 5 1  -1 5 1",
+                                   "-1 5 -1  -1 5 1  1 5 1  1 5 -1"};
+    for (guint i = 0; i < 2; i++) {
+        g_autofree char *text = g_strdup_printf(
+            HEAD MATT "Shape \"sphere\" \"float phimax\" 200\n"
+                      "LightSource \"infinite\" \"string filename\" \"sky.pfm\" "
+                      "\"point3 portal\" [%s]\n",
+            corners[i]);
+        scene_folder f = folder_new(text);
+        folder_write(&f, "sky.pfm", (const char *)sky->data, (gssize)sky->len);
+        g_autoptr(GError) error = NULL;
+        g_autoptr(scene) s = format_load(f.main, 1, NULL, &error);
+        g_assert_no_error(error);
+        g_autoptr(GPtrArray) warnings = describe_warnings(s);
+        g_assert_cmpuint(warnings->len, ==, i);
+        if (i > 0)
+            g_assert_nonnull(strstr(warnings->pdata[0], "light 1 (infinite) reaches"));
+        folder_remove(&f);
+    }
+    g_byte_array_unref(sky);
+}
+
 static void test_json(void)
 {
     scene_folder f = folder_new(HEAD GLASS OPEN);
@@ -99,6 +130,7 @@ int main(int argc, char **argv)
     g_test_add_func("/info/lamps", test_lamps);
     g_test_add_func("/info/size", test_size);
     g_test_add_func("/info/instances", test_instances);
+    g_test_add_func("/info/portal", test_portal);
     g_test_add_func("/info/json", test_json);
     return g_test_run();
 }

@@ -1,6 +1,7 @@
 /*
  * What is allowed, but seldom meant: glass that encloses nothing or is turned inside out,
- * lamps shut into bodies that let no light out, scenes of strange size.
+ * lamps shut into bodies that let no light out, skies seen from behind their portal,
+ * scenes of strange size.
  */
 #include "api/describe.h"
 
@@ -126,6 +127,23 @@ static void inspect_lamp(inspection *in, guint i)
              l->kind->name, around);
 }
 
+/* A portal lets light in on one side only. */
+static void inspect_sky(inspection *in, guint i)
+{
+    const wavelengths w = wavelengths_at(0.5f);
+    const light *l = in->scene->lights->pdata[i];
+    const vec3 places[] = {transform_point(&in->scene->camera.to_world, (vec3){0}),
+                           in->scene->center};
+    light_sample seen;
+    for (size_t k = 0; k < G_N_ELEMENTS(places); k++)
+        if (l->kind->sample(l->self, &w, places[k], 0.5f, (vec2){0.5f, 0.5f}, &seen))
+            return;
+    warn(in,
+         "light %u (%s) reaches neither the camera nor the middle of the scene: a portal "
+         "lets light in on one side, which the order of its corners tells",
+         i, l->kind->name);
+}
+
 /* ---- All of it ---- */
 
 GPtrArray *describe_warnings(const scene *s)
@@ -133,8 +151,13 @@ GPtrArray *describe_warnings(const scene *s)
     inspection in = {s, g_ptr_array_new_with_free_func(g_free)};
     for (guint i = 0; i < s->shapes->len; i++)
         inspect_glass(&in, i);
-    for (guint i = 0; i < s->lights->len; i++)
-        inspect_lamp(&in, i);
+    for (guint i = 0; i < s->lights->len; i++) {
+        const light *l = s->lights->pdata[i];
+        if (l->kind->is_environment)
+            inspect_sky(&in, i);
+        else
+            inspect_lamp(&in, i);
+    }
     if (s->shapes->len > 0 && (s->radius > LARGEST_RADIUS || s->radius < SMALLEST_RADIUS))
         warn(&in, "the scene is %g m wide; lengths are in metres",
              2.0 * (double)s->radius);
