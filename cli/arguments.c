@@ -1,6 +1,7 @@
 #include "arguments.h"
 
 #include "command.h"
+#include "loading.h"
 #include "message.h"
 
 #include <math.h>
@@ -21,6 +22,8 @@ static GOptionContext *context_new(const usage *how)
     if (how->description)
         g_option_context_set_description(context, how->description);
     g_option_context_add_main_entries(context, how->entries, NULL);
+    if (how->loads_scene)
+        g_option_context_add_main_entries(context, loading_entries, NULL);
     g_option_context_add_main_entries(context, common_entries, NULL);
     return context;
 }
@@ -86,6 +89,15 @@ bool argument_real(const char *option, const char *text, double *out, GError **e
     if (is_decimal && !*end && isfinite(*out))
         return true;
     return refuse(option, "a number", text, error);
+}
+
+bool argument_between(const char *option, const char *text, double low, double high,
+                      double *out, GError **error)
+{
+    if (argument_real(option, text, out, NULL) && *out >= low && *out <= high)
+        return true;
+    g_autofree char *expected = g_strdup_printf("a number from %g to %g", low, high);
+    return refuse(option, expected, text, error);
 }
 
 bool argument_count(const char *option, const char *text, guint64 low, guint64 high,

@@ -14,6 +14,7 @@ typedef struct usage {
     const char *summary;     /**< a sentence or two */
     const char *description; /**< shown below the options; NULL if none */
     const GOptionEntry *entries;
+    bool loads_scene; /**< takes the options of loading.h too */
 } usage;
 
 /**
@@ -25,6 +26,9 @@ bool arguments_parse(const usage *how, int *argc, char ***argv, int *exit_code);
 
 /** @brief A decimal number and nothing else. ERROR_USAGE naming the option. */
 bool argument_real(const char *option, const char *text, double *out, GError **error);
+/** @brief The same from low to high. */
+bool argument_between(const char *option, const char *text, double low, double high,
+                      double *out, GError **error);
 /** @brief A whole number from low to high and nothing else. */
 bool argument_count(const char *option, const char *text, guint64 low, guint64 high,
                     guint64 *out, GError **error);

@@ -94,21 +94,6 @@ static NephScene *open_material(const char *name, size_t *i, GError **error)
     return scene;
 }
 
-static bool read_incidence(double *incidence, GError **error)
-{
-    char *end = NULL;
-    *incidence = 45.0;
-    if (!given.incidence)
-        return true;
-    *incidence = g_ascii_strtod(given.incidence, &end);
-    if (end != given.incidence && !*end && *incidence >= 0.0 && *incidence <= 89.0)
-        return true;
-    g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_USAGE,
-                "--incidence: expected degrees from 0 to 89, found '%s'",
-                given.incidence);
-    return false;
-}
-
 static int write_diagram(const char *svg)
 {
     g_autoptr(GError) error = NULL;
@@ -125,9 +110,10 @@ int command_bsdf(int argc, char **argv)
     if (!arguments_parse(&how, &argc, &argv, &exit_code))
         return exit_code;
     g_autoptr(GError) error = NULL;
-    double incidence;
+    double incidence = 45.0;
     size_t i;
-    if (!read_incidence(&incidence, &error))
+    if (given.incidence &&
+        !argument_between("--incidence", given.incidence, 0.0, 89.0, &incidence, &error))
         return report_error(error);
     g_autoptr(NephScene) scene = open_material(argv[1], &i, &error);
     if (!scene)

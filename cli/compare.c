@@ -1,3 +1,6 @@
+/*
+ * nephroid compare: how far an image is from a reference.
+ */
 #include "arguments.h"
 #include "command.h"
 #include "message.h"

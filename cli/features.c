@@ -1,3 +1,6 @@
+/*
+ * nephroid features: what of pbrt-v4 is read.
+ */
 #include "arguments.h"
 #include "command.h"
 #include "message.h"

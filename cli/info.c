@@ -1,15 +1,14 @@
+/*
+ * nephroid info: what is in a scene, told before a long render.
+ */
 #include "arguments.h"
 #include "command.h"
+#include "loading.h"
 #include "message.h"
 
-static gboolean as_json, lenient, thin_glass;
+static gboolean as_json;
 
 static const GOptionEntry entries[] = {
-    {"lenient", 0, 0, G_OPTION_ARG_NONE, &lenient,
-     "Replace what can not be rendered, with a warning, instead of refusing the scene",
-     NULL},
-    {"thin-glass", 0, 0, G_OPTION_ARG_NONE, &thin_glass,
-     "Read glass without a volume (glTF, OBJ) as thin panes, on closed meshes too", NULL},
     {"json", 0, 0, G_OPTION_ARG_NONE, &as_json, "For programs", NULL},
     G_OPTION_ENTRY_NULL};
 
@@ -20,7 +19,8 @@ static const usage how = {
     .summary = "Says what is in a scene: shapes, lights and their power, materials and "
                "whether they\ncast caustics, camera, film, and settings that differ from "
                "the defaults.",
-    .entries = entries};
+    .entries = entries,
+    .loads_scene = true};
 
 int command_info(int argc, char **argv)
 {
@@ -28,11 +28,7 @@ int command_info(int argc, char **argv)
     if (!arguments_parse(&how, &argc, &argv, &exit_code))
         return exit_code;
     g_autoptr(GError) error = NULL;
-    bool quiet = as_json;
-    const NephLoadOptions options = {.lenient = lenient,
-                                     .thin_glass = thin_glass,
-                                     .log = log_to_stderr,
-                                     .log_data = &quiet};
+    const NephLoadOptions options = loading_options(0, as_json);
     g_autoptr(NephScene) scene = neph_scene_load_with(argv[1], &options, &error);
     if (!scene)
         return report_error(error);

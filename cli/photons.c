@@ -1,5 +1,10 @@
+/*
+ * nephroid photons: the photons of one pass, counted, written or told of, without a
+ * picture.
+ */
 #include "arguments.h"
 #include "command.h"
+#include "loading.h"
 #include "message.h"
 #include "overrides.h"
 
@@ -7,7 +12,7 @@
 
 static struct {
     char *output, *trace;
-    gboolean quiet, lenient, thin_glass;
+    gboolean quiet;
     overrides settings;
 } given;
 
@@ -24,11 +29,6 @@ static const GOptionEntry entries[] = {
      "Threads; 0: one per processor", "N"},
     {"seed", 0, 0, G_OPTION_ARG_STRING, &given.settings.seed, "Seed of random numbers",
      "N"},
-    {"lenient", 0, 0, G_OPTION_ARG_NONE, &given.lenient,
-     "Replace what can not be rendered, with a warning, instead of refusing the scene",
-     NULL},
-    {"thin-glass", 0, 0, G_OPTION_ARG_NONE, &given.thin_glass,
-     "Read glass without a volume (glTF, OBJ) as thin panes, on closed meshes too", NULL},
     {"quiet", 'q', 0, G_OPTION_ARG_NONE, &given.quiet, "Only warnings and errors", NULL},
     G_OPTION_ENTRY_NULL};
 
@@ -38,7 +38,8 @@ static const usage how = {
     .n_operands = 1,
     .summary = "Traces the photons of one pass without rendering, and says how long that "
                "took and what\nwas emitted and stored.",
-    .entries = entries};
+    .entries = entries,
+    .loads_scene = true};
 
 static int print_counts(const NephPhotons *photons)
 {
@@ -90,12 +91,7 @@ static int tell_story(const NephScene *scene, const NephSettings *settings, size
 static int work_on(const char *file, unsigned threads, size_t n_stories)
 {
     g_autoptr(GError) error = NULL;
-    bool quiet = given.quiet;
-    const NephLoadOptions options = {.threads = threads,
-                                     .lenient = given.lenient,
-                                     .thin_glass = given.thin_glass,
-                                     .log = log_to_stderr,
-                                     .log_data = &quiet};
+    const NephLoadOptions options = loading_options(threads, given.quiet);
     g_autoptr(NephScene) scene = neph_scene_load_with(file, &options, &error);
     if (!scene)
         return report_error(error);

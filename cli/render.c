@@ -4,6 +4,7 @@
  */
 #include "arguments.h"
 #include "command.h"
+#include "loading.h"
 #include "message.h"
 #include "overrides.h"
 #include "progress.h"
@@ -15,7 +16,7 @@
 static struct {
     char **outputs;
     char *size, *exposure, *stats, *every;
-    gboolean quiet, lenient, thin_glass;
+    gboolean quiet;
     overrides settings;
 } given;
 
@@ -47,11 +48,6 @@ static const GOptionEntry entries[] = {
      "Brighten 8-bit images by so many stops", "STOPS"},
     {"stats", 0, 0, G_OPTION_ARG_FILENAME, &given.stats, "Write statistics as JSON",
      "FILE"},
-    {"lenient", 0, 0, G_OPTION_ARG_NONE, &given.lenient,
-     "Replace what can not be rendered, with a warning, instead of refusing the scene",
-     NULL},
-    {"thin-glass", 0, 0, G_OPTION_ARG_NONE, &given.thin_glass,
-     "Read glass without a volume (glTF, OBJ) as thin panes, on closed meshes too", NULL},
     {"quiet", 'q', 0, G_OPTION_ARG_NONE, &given.quiet,
      "Only warnings and errors; no progress, no table", NULL},
     G_OPTION_ENTRY_NULL};
@@ -70,7 +66,8 @@ static const usage how = {
         "and --seed.\n'nephroid settings' lists them all. With --time or --noise the "
         "scene's own number of\npasses is no limit; --passes N is.\n\n"
         "Ctrl-C writes what there is and exits with 3; a second one ends at once.\n",
-    .entries = entries};
+    .entries = entries,
+    .loads_scene = true};
 
 /* What the options mean, checked. */
 typedef struct job {
@@ -225,12 +222,7 @@ static int run(job *j, NephRender *render)
 static int render_scene(job *j)
 {
     g_autoptr(GError) error = NULL;
-    bool quiet = given.quiet;
-    const NephLoadOptions options = {.threads = j->threads,
-                                     .lenient = given.lenient,
-                                     .thin_glass = given.thin_glass,
-                                     .log = log_to_stderr,
-                                     .log_data = &quiet};
+    const NephLoadOptions options = loading_options(j->threads, given.quiet);
     g_autoptr(NephScene) scene = neph_scene_load_with(j->scene_file, &options, &error);
     if (!scene)
         return report_error(error);

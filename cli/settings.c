@@ -1,3 +1,6 @@
+/*
+ * nephroid settings: the table of settings, for people, programs or the manual.
+ */
 #include "arguments.h"
 #include "command.h"
 #include "message.h"
