@@ -27,7 +27,8 @@ extern "C" {
 
 #define NEPH_API __attribute__((visibility("default")))
 
-/** @brief Why a call failed; also the exit codes of the command line. */
+/** @brief Why a call failed; the first three are also exit codes of the command line,
+ * which ends with 3 if it was stopped. */
 typedef enum {
     NEPH_ERROR_INPUT = 1,     /**< a scene, image or value is wrong */
     NEPH_ERROR_USAGE = 2,     /**< a call or setting is wrong */
@@ -82,13 +83,15 @@ typedef struct NephSettings NephSettings;
 NEPH_API NephSettings *neph_settings_new(void); /**< defaults */
 NEPH_API NephSettings *neph_settings_copy(const NephSettings *settings);
 NEPH_API void neph_settings_free(NephSettings *settings);
-/** @brief Sets by name or alias, from text. */
+/** @brief Sets by name or alias, from text. NEPH_ERROR_USAGE if there is no such setting
+ * or the value is out of range; the settings are as they were. */
 NEPH_API bool neph_settings_set(NephSettings *settings, const char *name,
                                 const char *value, GError **error);
 /** @brief The value as text, owned by the caller (g_free); NULL if the name is unknown.
  */
 NEPH_API char *neph_settings_get(const NephSettings *settings, const char *name);
-/** @brief Reads "name = value" lines. */
+/** @brief Reads "name = value" lines; '#' begins a comment. NEPH_ERROR_INPUT with the
+ * place of the first mistake; the settings are as they were. */
 NEPH_API bool neph_settings_load(NephSettings *settings, const char *path,
                                  GError **error);
 /** @brief The table of all settings, for people (json false) or programs. Owned by
@@ -133,7 +136,10 @@ NEPH_API NephScene *neph_scene_share(const NephScene *scene);
 /** @brief The settings that the file asks for (defaults where it does not); owned by
  * caller. */
 NEPH_API NephSettings *neph_scene_settings(const NephScene *scene);
+/** @brief Size of the picture, pixels. */
 NEPH_API void neph_scene_size(const NephScene *scene, int *width, int *height);
+/** @brief Another size, 1 to 65536 pixels a side, else NEPH_ERROR_USAGE; while nothing
+ * renders the scene. */
 NEPH_API bool neph_scene_resize(NephScene *scene, int width, int height, GError **error);
 /** @brief The files that the scene was read from, its own first: what it includes,
  * meshes, images, spectra, buffers, materials; also those that it names, does without and
@@ -201,16 +207,24 @@ NEPH_API bool neph_scene_bounds(const NephScene *scene, double low[3], double hi
 
 /* ---- Images ---- */
 
+/** @brief Pixels of named channels, float and linear. A rendered one has R, G and B in
+ * the colour space of the scene's film (sRGB where it names none), then layers such as
+ * "caustic.R"; docs/manual.md lists them. */
 typedef struct NephImage NephImage;
 NEPH_API void neph_image_free(NephImage *image);
+/** @brief By the file's content: the formats written, TGA and BMP. Integer formats become
+ * linear. NEPH_ERROR_INPUT; owned by caller. */
 NEPH_API NephImage *neph_image_read(const char *path, GError **error);
 /** @brief By the name's extension: .exr (float, all layers), .png, .jpg, .hdr, .pfm.
  * Written to a temporary name and renamed. exposure: stops, for 8-bit formats. */
 NEPH_API bool neph_image_write(const NephImage *image, const char *path, float exposure,
                                GError **error);
+/** @brief Whether the name says a format and the place can be written; leaves no trace.
+ */
 NEPH_API bool neph_image_can_write(const char *path, GError **error);
 NEPH_API void neph_image_size(const NephImage *image, int *width, int *height,
                               int *n_channels);
+/** @brief "R", "caustic.G" ...; NULL if there is no such channel. The image's. */
 NEPH_API const char *neph_image_channel_name(const NephImage *image, int channel);
 /** @brief [(y * width + x) * n_channels + c], row 0 at the top, linear. Owned by the
  * image. */
@@ -225,12 +239,18 @@ NEPH_API NephImage *neph_image_scale(const NephImage *image, int width, int heig
 NEPH_API NephImage *neph_image_sheet(const NephImage *const *images, size_t n,
                                      size_t columns, GError **error);
 
+/** @brief Errors over R, G and B of an image a against its reference b. */
 typedef struct NephImageDifference {
     double mean_a, mean_b; /**< mean luminance */
-    double rmse, relmse, psnr, flip;
-    size_t n_not_finite;
+    double rmse;           /**< root of the mean of (a - b)² */
+    double relmse;         /**< mean of (a - b)² / (b² + 0.01) */
+    double psnr;           /**< dB, sRGB-encoded and clipped to 0..1; INFINITY if alike */
+    double flip;           /**< mean error of FLIP (Andersson et al. 2020), 0..1, at 67
+                              pixels a degree */
+    size_t n_not_finite;   /**< pixels left out since one of them is not finite */
 } NephImageDifference;
-/** @brief Compares image with reference over R, G, B. */
+/** @brief Compares image with reference. NEPH_ERROR_INPUT if their sizes differ, R, G or
+ * B is missing, or no pixel is finite in both. */
 NEPH_API bool neph_image_compare(const NephImage *image, const NephImage *reference,
                                  NephImageDifference *out, GError **error);
 /** @brief Where the image is brighter (red, then white) or darker (blue, then white) than
@@ -287,7 +307,8 @@ typedef bool (*NephProgressFunc)(double fraction, const NephStatistics *statisti
                                  void *data);
 
 typedef struct NephRender NephRender;
-/** @brief Prepares a render of the scene, which must outlive it. */
+/** @brief Prepares a render of the scene, which must outlive it; the settings are copied.
+ * NEPH_ERROR_FAILED if there is no memory for the picture. */
 NEPH_API NephRender *neph_render_new(const NephScene *scene, const NephSettings *settings,
                                      GError **error);
 NEPH_API void neph_render_free(NephRender *render);
@@ -298,7 +319,8 @@ NEPH_API bool neph_render_run(NephRender *render, NephProgressFunc progress, voi
                               GError **error);
 /** @brief Asks neph_render_run to stop soon. Any thread; also from a signal handler. */
 NEPH_API void neph_render_cancel(NephRender *render);
-/** @brief The mean of the passes so far, with layers; owned by the caller. */
+/** @brief The mean of the passes so far, with layers; owned by the caller.
+ * NEPH_ERROR_FAILED if memory is refused. */
 NEPH_API NephImage *neph_render_image(const NephRender *render, GError **error);
 NEPH_API void neph_render_statistics(const NephRender *render, NephStatistics *out);
 /** @brief The relative error of the image, as in NephStatistics, found now: also from the

@@ -66,11 +66,7 @@ char *neph_settings_get(const NephSettings *s, const char *name)
 
 bool neph_settings_load(NephSettings *s, const char *path, GError **error)
 {
-    settings values = s->values;
-    if (!settings_load(&values, path, error))
-        return false;
-    s->values = values;
-    return true;
+    return settings_load(&s->values, path, error);
 }
 
 static void describe_row_json(json *j, const setting_row *row, const char *initial)

@@ -116,6 +116,6 @@ void film_to_rgb(const film *f, const double sum[3], double weight, float out[3]
 /** @brief The picture: R G B, the layers' R G B, albedo, normal, depth; linear, film's
  * space. With two passes or more also variance.Y, the square of the standard error of
  * the luminance; with light groups their layers light.NAME; then those of a gbuffer.
- * Before the first pass is
- * done, what was put of it, pixels that are still to come looking like those beside. */
+ * Before the first pass is done, what was put of it, pixels that are still to come
+ * looking like those beside. */
 image *film_image(const film *f, GError **error);
