@@ -1,6 +1,7 @@
 #include "api/describe.h"
 
 #include "base/memory.h"
+#include "scene/light_lines.h"
 
 #include <math.h>
 #include <string.h>
@@ -43,14 +44,13 @@ static void count_shapes(const scene *s, summary *all)
 
 static void count_lights(const scene *s, summary *all)
 {
-    const wavelengths w = wavelengths_at(0.5f);
     for (guint i = 0; i < s->lights->len; i++) {
         const light *one = s->lights->pdata[i];
         tally *t = tally_of(all->lights, one->kind->name);
         t->n++;
         t->is_environment = one->kind->is_environment;
-        t->power += (double)(spectrum_mean(one->kind->power(one->self, &w)) *
-                             (LAMBDA_MAX - LAMBDA_MIN));
+        t->power +=
+            (double)(light_measure(one, NULL).power * (LAMBDA_MAX - LAMBDA_MIN));
     }
 }
 

@@ -2,7 +2,9 @@
  * The eight wavelengths of a pass.
  *
  * The offset of a pass is van der Corput's sequence, rotated by a hash of the seed: any
- * 2^k passes from the first are exactly 8 * 2^k equidistant wavelengths.
+ * 2^k passes from the first are exactly 8 * 2^k equidistant wavelengths. Where a scene
+ * asks for more of some wavelengths, the same numbers run through the inverse of the
+ * cumulative density.
  */
 #include "color/wavelengths.h"
 
@@ -18,11 +20,16 @@ static uint32_t reverse_bits(uint32_t x)
     return ((x & 0xaaaaaaaau) >> 1) | ((x & 0x55555555u) << 1);
 }
 
-wavelengths wavelengths_for_pass(uint64_t seed, uint32_t pass)
+float wavelength_offset(uint64_t seed, uint32_t pass)
 {
     uint32_t shift = (uint32_t)(hash_mix(seed, 0x77617665u) >> 32);
     uint32_t bits = reverse_bits(pass) + shift;
-    return wavelengths_at((float)(bits >> 8) * 0x1p-24f);
+    return (float)(bits >> 8) * 0x1p-24f;
+}
+
+wavelengths wavelengths_for_pass(uint64_t seed, uint32_t pass)
+{
+    return wavelengths_at(wavelength_offset(seed, pass));
 }
 
 wavelengths wavelengths_at(float offset)
@@ -34,6 +41,54 @@ wavelengths wavelengths_at(float offset)
         w.lambda[i] = LAMBDA_MIN + ((float)i + offset) * stratum;
     for (int i = 0; i < 3; i++)
         w.xyz[i] = range * grid_eval(o->folded[i], w.lambda);
+    return w;
+}
+
+wavelength_density wavelength_density_of(const double weights[WAVELENGTH_CELLS])
+{
+    wavelength_density d;
+    double total = 0.0, sum = 0.0;
+    for (int i = 0; i < WAVELENGTH_CELLS; i++)
+        total += weights[i];
+    for (int i = 0; i < WAVELENGTH_CELLS; i++) {
+        d.cumulative[i] = (float)(sum / total);
+        sum += weights[i];
+    }
+    d.cumulative[WAVELENGTH_CELLS] = 1.0f;
+    return d;
+}
+
+/* The cell that u in [0, 1) falls into. */
+static int cell_at(const wavelength_density *d, float u)
+{
+    int low = 0, high = WAVELENGTH_CELLS;
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (d->cumulative[middle] <= u)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+wavelengths wavelengths_drawn(const wavelength_density *d, float offset)
+{
+    const float cell = (LAMBDA_MAX - LAMBDA_MIN) / WAVELENGTH_CELLS;
+    const observer *o = observer_get();
+    wavelengths w;
+    spectrum part;
+    if (!d)
+        return wavelengths_at(offset);
+    for (int i = 0; i < N_LANES; i++) {
+        float u = ((float)i + offset) / N_LANES;
+        int at = cell_at(d, u);
+        part[i] = d->cumulative[at + 1] - d->cumulative[at];
+        float t = (u - d->cumulative[at]) / part[i];
+        w.lambda[i] = LAMBDA_MIN + ((float)at + t) * cell;
+    }
+    for (int i = 0; i < 3; i++)
+        w.xyz[i] = cell / part * grid_eval(o->folded[i], w.lambda);
     return w;
 }
 

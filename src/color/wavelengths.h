@@ -24,11 +24,33 @@ typedef struct wavelengths {
     spectrum xyz[3];
 } wavelengths;
 
-/** @brief The wavelengths of a pass; seed shifts the whole sequence. */
+/** @brief Where the wavelengths of a pass lie in their strata, in [0, 1); seed shifts the
+ * whole sequence. */
+float wavelength_offset(uint64_t seed, uint32_t pass);
+/** @brief The wavelengths of a pass. */
 wavelengths wavelengths_for_pass(uint64_t seed, uint32_t pass);
 
 /** @brief The wavelengths for an offset in [0, 1) of a stratum. */
 wavelengths wavelengths_at(float offset);
+
+enum {
+    WAVELENGTH_CELLS = 1360, /**< of LAMBDA_MIN to LAMBDA_MAX: a quarter of a nm each */
+    CELLS_PER_STRATUM = WAVELENGTH_CELLS / N_LANES,
+};
+
+/** @brief How densely wavelengths are drawn where they are not drawn evenly: constant
+ * within each cell. */
+typedef struct wavelength_density {
+    float cumulative[WAVELENGTH_CELLS + 1]; /**< up to each cell; 0 first, 1 last */
+} wavelength_density;
+
+/** @brief A density in proportion to weights, which are positive. */
+wavelength_density wavelength_density_of(const double weights[WAVELENGTH_CELLS]);
+
+/** @brief Eight wavelengths drawn by a density, one from each eighth of it, with the
+ * observer divided by the density: so means over passes of what is seen stay the same.
+ * @param d NULL: evenly, as wavelengths_at */
+wavelengths wavelengths_drawn(const wavelength_density *d, float offset);
 
 /** @brief XYZ of spectral radiance L (mean over lanes of xyz * L). */
 void spectrum_to_xyz(const wavelengths *w, spectrum radiance, float xyz[3]);

@@ -284,9 +284,14 @@ void scene_move_camera(scene *s, const motion *to_world)
 
 wavelengths scene_wavelengths(const scene *s, const settings *how, uint32_t pass)
 {
-    return s->switches.fixed_wavelengths
-               ? wavelengths_at(0.5f)
-               : wavelengths_for_pass((uint64_t)how->seed, pass);
+    bool fixed = s->switches.fixed_wavelengths;
+    return wavelengths_drawn(s->lines,
+                             fixed ? 0.5f : wavelength_offset((uint64_t)how->seed, pass));
+}
+
+wavelengths scene_trial_wavelengths(const scene *s, uint32_t trial)
+{
+    return wavelengths_drawn(s->lines, s->lines ? wavelength_offset(0, trial) : 0.5f);
 }
 
 bool scene_see(const scene *s, const ray *r, surface_hit *hit)

@@ -94,9 +94,11 @@ typedef struct scene {
     distribution
         light_power;        /**< over lights, by power: which one a photon starts from */
     light_tree *light_tree; /**< which one a point is lit by */
-    char **light_groups;    /**< names; those of lights without one: "default" */
-    int n_light_groups;     /**< 0: no light names one */
-    int *environments;      /**< indices of lights that are environments */
+    wavelength_density *lines; /**< how wavelengths are drawn; NULL: evenly, since no
+                                  lamp has a spectrum of lines */
+    char **light_groups;       /**< names; those of lights without one: "default" */
+    int n_light_groups;        /**< 0: no light names one */
+    int *environments;         /**< indices of lights that are environments */
     int n_environments;
     interior *interiors; /**< per material; NULL: nothing in the scene absorbs */
     bool moves;          /**< some instance does while the shutter is open */
@@ -111,6 +113,9 @@ typedef struct scene {
 
 /** @brief Those of a pass. */
 wavelengths scene_wavelengths(const scene *s, const settings *how, uint32_t pass);
+/** @brief Those of a trial before the first pass: the same for all trials, unless lamps
+ * have lines that they might miss. */
+wavelengths scene_trial_wavelengths(const scene *s, uint32_t trial);
 
 /** @brief The same committed scene with a size and a camera of its own; all else stays
  * the first one's, which must outlive it. Freed by g_free. */

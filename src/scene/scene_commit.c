@@ -8,6 +8,7 @@
 #include "scene/scene_commit.h"
 
 #include "base/memory.h"
+#include "scene/light_lines.h"
 #include "scene/scene_geometry.h"
 #include "scene/scene_media.h"
 
@@ -15,7 +16,7 @@
 
 static bool find_lights(scene *s, GError **error)
 {
-    const wavelengths w = wavelengths_at(0.5f);
+    light_lines lines = {.n = 0};
     guint n = s->lights->len;
     s->environments = g_new0(int, MAX(n, 1));
     float *power = big_alloc(n, sizeof(float), "lights", error);
@@ -30,9 +31,11 @@ static bool find_lights(scene *s, GError **error)
             l->kind->prepare(l->self, s->center, s->radius);
         if (l->kind->is_environment)
             s->environments[s->n_environments++] = (int)i;
-        power[i] = spectrum_mean(l->kind->power(l->self, &w));
-        bounds[i] = l->kind->bound(l->self, &w);
+        light_strength strength = light_measure(l, &lines);
+        power[i] = strength.power;
+        bounds[i] = strength.bound;
     }
+    s->lines = light_lines_density(&lines);
     s->light_tree = light_tree_new(bounds, (int)n);
     bool done = distribution_init(&s->light_power, power, n, error);
     big_free(power);
@@ -71,7 +74,7 @@ static bool find_caustic_power(scene *s, GError **error)
     float *power = big_alloc(n, sizeof(float), "lights", error);
     for (guint i = 0; i < n && power; i++) {
         light *l = s->lights->pdata[i];
-        power[i] = spectrum_mean(l->kind->power(l->self, &w)) * caustic_share(s, l, &w);
+        power[i] = distribution_pdf(&s->light_power, i) * caustic_share(s, l, &w);
     }
     bool done = power && distribution_init(&s->caustic_power, power, n, error);
     big_free(power);
@@ -142,6 +145,7 @@ void scene_forget_commit(scene *s)
     s->accel = NULL;
     distribution_clear(&s->light_power);
     g_clear_pointer(&s->light_tree, light_tree_free);
+    g_clear_pointer(&s->lines, g_free);
     distribution_clear(&s->caustic_area);
     distribution_clear(&s->caustic_power);
     g_clear_pointer(&s->environments, g_free);

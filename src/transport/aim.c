@@ -251,6 +251,7 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
 {
     size_t limit = round == 0 ? all->most : all->each;
     all->task.pass = TRIAL_PASS + round;
+    all->task.w = scene_trial_wavelengths(all->task.scene, round);
     all->first = all->n_arrived = 0;
     do {
         if (!run_batch(all, error))
@@ -305,7 +306,6 @@ bool aim_caustics(transport_plan *plan, const aim_effort *effort, aim_result *re
             {
                 .scene = plan->scene,
                 .how = &plan->how,
-                .w = wavelengths_at(0.5f),
                 .photon_class = PHOTON_CAUSTIC,
                 .guide = guide,
                 .share = plan->shares ? &plan->share : NULL,

@@ -90,7 +90,7 @@ path_effort path_effort_measure(const transport_plan *plan, photon_store *lit)
     const path_pass pass = {.plan = plan,
                             .lit = lit,
                             .without_caustics = true,
-                            .w = wavelengths_at(0.5f),
+                            .w = scene_trial_wavelengths(plan->scene, 0),
                             .options.deterministic = !plan->how.multiple_samples};
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x627564676574u);
     double pairs = caustic_planned_samples(plan) / SAMPLES_PER_PAIR;

@@ -163,7 +163,7 @@ bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,
                             GError **error)
 {
     bool ok = true;
-    pilot p = {.plan = plan, .w = wavelengths_at(0.5f)};
+    pilot p = {.plan = plan, .w = scene_trial_wavelengths(plan->scene, 0)};
     if (!(plan->how.radius > 0.0)) {
         p.n_points = find_visible_points(plan, PILOT_POINTS, p.points);
         p.pixels = map_of_pixels(&p, error);

@@ -42,7 +42,7 @@ bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **
     vcm_pass pilot = {
         .plan = plan,
         .scene = plan->scene,
-        .w = wavelengths_at(0.5f),
+        .w = scene_trial_wavelengths(plan->scene, 0),
         .index = PILOT_PASS,
         .strategies.merge = true,
         .n_slices = 1,

@@ -49,7 +49,7 @@ static bool find_one(const lookout *from, ray r, sampler *random, visible_point 
 size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point *out)
 {
     const camera *c = &plan->scene->camera;
-    lookout from = {.scene = plan->scene, .w = wavelengths_at(0.5f)};
+    lookout from = {.scene = plan->scene, .w = scene_trial_wavelengths(plan->scene, 0)};
     from.options.deterministic = !plan->how.multiple_samples;
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x6c6f6f6bu);
     size_t found = 0;
