@@ -92,6 +92,41 @@ static void test_corner_is_as_bright_as_the_middle(void)
     check_even(s, map, x, G_N_ELEMENTS(x));
 }
 
+/* What stands close above hides nothing that photons lie on, however close it is: the
+   foot of a glass, which light comes through. */
+static void test_floor_below_glass_is_as_bright(void)
+{
+    const float gap[] = {0.0002f, 0.001f,  0.002f, 0.0035f,
+                         0.0045f, 0.0055f, 0.008f, 0.02f};
+    g_autoptr(photon_map) map = field(-1, 1);
+    for (size_t i = 0; i < G_N_ELEMENTS(gap); i++) {
+        g_autofree char *text = g_strdup_printf(
+            CAMERA "WorldBegin\n" LAMP FLOOR
+                   "Material \"dielectric\" Shape \"disk\" \"float radius\" 0.6 \"float "
+                   "height\" %g Shape \"disk\" \"float radius\" 0.6 \"float height\" 0.1",
+            (double)gap[i]);
+        g_autoptr(scene) s = scene_of(text);
+        g_test_message("gap of %g radii", (double)(gap[i] / radius));
+        const float x[] = {0, 0.2f};
+        check_even(s, map, x, G_N_ELEMENTS(x));
+    }
+}
+
+/* A ball that stands on the floor: around the foot it hides what it hides, and no place
+   is brighter than the light. */
+static void test_floor_below_a_ball_is_as_bright(void)
+{
+    g_autoptr(photon_map) map = field(-1, 1);
+    g_autoptr(scene) s = scene_of(CAMERA "WorldBegin\n" LAMP FLOOR
+                                         "Material \"dielectric\" Translate 0 0 0.4001 "
+                                         "Shape \"sphere\" \"float radius\" 0.4\n");
+    for (float x = 0.01f; x < 0.3f; x += 0.02f) {
+        double e = irradiance(s, map, x);
+        g_test_message("at x = %g: %g W/m2, expected 1", (double)x, e);
+        g_assert_cmpfloat(fabs(e - 1), <, 0.1);
+    }
+}
+
 /* Light on one side of the wall only: none comes through, and none is lost. */
 static void test_thin_wall_does_not_leak(void)
 {
@@ -103,7 +138,8 @@ static void test_thin_wall_does_not_leak(void)
     g_assert_cmpfloat(fabs(irradiance(s, map, 0.22f) - 1), <, 0.02);
 }
 
-/* Sunlight on the far side of the wall, a thousand watts a square metre; the room is dark.
+/* Sunlight on the far side of the wall, a thousand watts a square metre; the room is
+ * dark.
  */
 static photon_map *sunlit_wall(bool oriented)
 {
@@ -210,6 +246,8 @@ static void test_what_bends_is_whole(void)
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/neighbourhood/below-glass", test_floor_below_glass_is_as_bright);
+    g_test_add_func("/neighbourhood/below-ball", test_floor_below_a_ball_is_as_bright);
     g_test_add_func("/neighbourhood/open", test_open_floor);
     g_test_add_func("/neighbourhood/edge", test_edge_is_as_bright_as_the_middle);
     g_test_add_func("/neighbourhood/corner", test_corner_is_as_bright_as_the_middle);

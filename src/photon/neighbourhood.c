@@ -9,9 +9,10 @@ enum {
     AREA_PROBES = 24,
 };
 
-/* How far probes are lifted off the surface, and where the rim is probed, over the
- * radius. */
+/* How far probes are lifted off the surface, at most and at least, and where the rim is
+ * probed, over the radius. */
 #define LIFT 0.06f
+#define LEAST_LIFT 0.006f
 #define RIM 0.9f
 
 /* So far off the plane the rim of what bends may be, over the radius. */
@@ -69,14 +70,14 @@ static void turn_frame(neighbourhood *hood)
 
 static vec3 lifted(const neighbourhood *hood, vec3 p)
 {
-    return p + hood->n * (LIFT * hood->radius);
+    return p + hood->n * hood->lift;
 }
 
 /* How far the surface of the disc lies off the point q of its plane, over what is
  * allowed; 1 or more: there is none. */
 static float surface_height(const neighbourhood *hood, vec3 q)
 {
-    float slab = NEIGHBOURHOOD_FLATTEN * hood->radius, height = LIFT * hood->radius;
+    float slab = NEIGHBOURHOOD_FLATTEN * hood->radius, height = hood->lift;
     ray down = {lifted(hood, q), -hood->n, height + slab, hood->time, {{NULL}}};
     surface_hit hit;
     bool found = scene_intersect(hood->scene, &down, &hit) &&
@@ -88,11 +89,12 @@ static float surface_height(const neighbourhood *hood, vec3 q)
    may be. */
 static ray along_surface(const neighbourhood *hood, vec3 d)
 {
-    float slope = 1.0f / sqrtf(RIM * RIM + LIFT * LIFT);
+    float lift = hood->lift / hood->radius;
+    float slope = 1.0f / sqrtf(RIM * RIM + lift * lift);
     return (ray){.origin = lifted(hood, hood->p),
                  .time = hood->time,
-                 .direction = (d * RIM - hood->n * LIFT) * slope,
-                 .t_max = (LIFT + NEIGHBOURHOOD_FLATTEN) / (LIFT * slope) * hood->radius};
+                 .direction = (d * RIM - hood->n * lift) * slope,
+                 .t_max = (lift + NEIGHBOURHOOD_FLATTEN) / (lift * slope) * hood->radius};
 }
 
 /* Down to the rim. */
@@ -144,16 +146,39 @@ static bool rim_is_surface(const neighbourhood *hood, vec3 d)
     return scene_intersect(hood->scene, &down, &hit) && is_arc(hood, &down, &hit);
 }
 
-bool neighbourhood_is_whole(neighbourhood *hood)
+static bool whole_rim(const neighbourhood *hood)
 {
     const turn sixth = {0.5f, 0.86602540f};
     turn a = {1.0f, 0.0f};
-    turn_frame(hood);
     for (int i = 0; i < RIM_PROBES; i++, a = turn_further(a, sixth)) {
         if (!rim_is_surface(hood, direction_at(hood, a)))
             return false;
     }
     return true;
+}
+
+/* Lifts probes to the middle of a gap that is too low for them: from within what lies
+ * above, they would not find the surface. @return false: there is no such gap */
+static bool stay_below(neighbourhood *hood)
+{
+    float least = LEAST_LIFT * hood->radius;
+    ray up = {hood->p + hood->n * (0.5f * least),
+              hood->n,
+              2.0f * hood->lift,
+              hood->time,
+              {{NULL}}};
+    surface_hit hit;
+    if (!scene_intersect(hood->scene, &up, &hit))
+        return false;
+    hood->lift = maxf(0.5f * (hit.t + 0.5f * least), least);
+    return true;
+}
+
+bool neighbourhood_is_whole(neighbourhood *hood)
+{
+    turn_frame(hood);
+    hood->lift = LIFT * hood->radius;
+    return whole_rim(hood) || (stay_below(hood) && whole_rim(hood));
 }
 
 /* Corners of the horizon between open directions lie so far out that its sides clear the

@@ -11,6 +11,7 @@
  *               │            │ down: is there a surface, in the plane?
  *     ──────────x────────────q──────
  *
+ * (less where something lies close above it, as the foot of a glass does above a table)
  * and where a probe fails, photons are held to the same test and the area is that of the
  * part that passes it.
  *
@@ -36,6 +37,7 @@ typedef struct neighbourhood {
     vec3 p, n;    /**< centre, unit geometric normal on the side that is seen */
     float radius; /**< m */
     float time;   /**< of the shutter, at which it is probed */
+    float lift;   /**< m; how far probes are lifted off the surface */
     frame frame;  /**< turned by an angle of its own for every place */
     float offset; /**< of the probes, 0..1, of its own for every place */
     /** How far one sees along the surface, in the frame's plane: the sides of a polygon
@@ -46,7 +48,8 @@ typedef struct neighbourhood {
 /** Height over radius within which a surface counts as the disc's. */
 #define NEIGHBOURHOOD_FLATTEN 0.03f
 
-/** @brief True if a few probes around the rim find nothing amiss. */
+/** @brief True if a few probes around the rim find nothing amiss; comes before the other
+ * calls. */
 bool neighbourhood_is_whole(neighbourhood *hood);
 
 /** @brief Probes the horizon, and gives the share of the kernel's area that is surface in
