@@ -36,6 +36,12 @@ static void test_materials(void)
          "\"baseColorFactor\":[0,0,0,1]},\"extensions\":{\"KHR_materials_specular\":{"
          "\"specularFactor\":0.5}}}",
          LOBE_SPECULAR | LOBE_REFLECTION, 0.02f},
+        /* Nothing but the base, as Blender writes what has no specular part. */
+        {"{\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.1,"
+         "\"baseColorFactor\":[0.5,0.5,0.5,1]},\"extensions\":{\"KHR_materials_"
+         "specular\":{"
+         "\"specularColorFactor\":[0,0,0]}}}",
+         LOBE_DIFFUSE | LOBE_REFLECTION, 0.5f},
         {"{\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.4,"
          "\"baseColorFactor\":[0,0,0,1]},\"extensions\":{\"KHR_materials_clearcoat\":{"
          "\"clearcoatFactor\":1}}}",

@@ -25,7 +25,7 @@
 
 #include <glib.h>
 
-enum { N_MU = 32, N_ALPHA = 16, N_SIDE = 24 };
+enum { N_MU = 32, N_ALPHA = 16, N_SIDE = 24, SMOOTH_ROW = -1 };
 enum { LAYER_COAT, LAYER_FACETS, LAYER_PANE, LAYER_BASE, LAYER_LEAF, N_LAYERS };
 
 #define COAT_F0 0.04f
@@ -41,13 +41,29 @@ typedef struct facet_tables {
     facet_shares mean[N_ALPHA];
 } facet_tables;
 
+/* Where a roughness stands between two rows of the tables. */
+typedef struct table_row {
+    int i; /* SMOOTH_ROW: not in them */
+    float share;
+} table_row;
+
 typedef struct gltf_data {
     gltf_surface s;
+    table_row facets, coat;
     float mean_e; /* E̅ of what is not metal */
+    float escape; /* share of matt light that the coat lets out */
+    float mean_f0, mean_diffuse, mean_through, mean_leaf; /* over the lanes in use */
     float turn_cos, turn_sin;
 } gltf_data;
 
 _Static_assert(sizeof(gltf_data) <= BSDF_DATA_SIZE, "a glTF surface must fit");
+
+/* What facets and coat do to light of one cosine. */
+typedef struct facing {
+    facet_shares e; /* of the facets */
+    float taken;    /* E(μ) of what is not metal */
+    float coat;     /* share that passes the coat */
+} facing;
 
 /* What is wanted of a query and how likely each layer is to be sampled. */
 typedef struct choice {
@@ -129,34 +145,33 @@ static facet_shares blend(facet_shares x, facet_shares y, float share)
     return (facet_shares){lerpf(x.a, y.a, share), lerpf(x.b, y.b, share)};
 }
 
-static int row_of(ggx g, float *share)
+static table_row row_of(ggx g)
 {
+    if (ggx_is_smooth(g))
+        return (table_row){SMOOTH_ROW, 0.0f};
     float alpha = sqrtf(g.alpha_x * g.alpha_y);
     float y = sqrtf(clampf(alpha, 0.0f, 1.0f)) * (N_ALPHA - 1);
     int i = MIN((int)y, N_ALPHA - 2);
-    *share = y - (float)i;
-    return i;
+    return (table_row){i, y - (float)i};
 }
 
-static facet_shares shares(ggx g, float mu)
+static facet_shares shares(table_row row, float mu)
 {
-    if (ggx_is_smooth(g))
+    if (row.i == SMOOTH_ROW)
         return (facet_shares){1.0f - power5(1.0f - mu), power5(1.0f - mu)};
-    float dy, x = clampf(mu * N_MU - 0.5f, 0.0f, N_MU - 1.0f);
-    int i = row_of(g, &dy), j = MIN((int)x, N_MU - 2);
-    const facet_shares(*at)[N_MU] = tables()->at;
+    float x = clampf(mu * N_MU - 0.5f, 0.0f, N_MU - 1.0f);
+    int j = MIN((int)x, N_MU - 2);
+    const facet_shares(*at)[N_MU] = tables()->at + row.i;
     float dx = x - (float)j;
-    return blend(blend(at[i][j], at[i][j + 1], dx),
-                 blend(at[i + 1][j], at[i + 1][j + 1], dx), dy);
+    return blend(blend(at[0][j], at[0][j + 1], dx), blend(at[1][j], at[1][j + 1], dx),
+                 row.share);
 }
 
-static facet_shares mean_shares(ggx g)
+static facet_shares mean_shares(table_row row)
 {
-    float dy;
-    if (ggx_is_smooth(g)) /* ∫ 2μ(1-μ)⁵ dμ = 1/21 */
+    if (row.i == SMOOTH_ROW) /* ∫ 2μ(1-μ)⁵ dμ = 1/21 */
         return (facet_shares){20.0f / 21.0f, 1.0f / 21.0f};
-    int i = row_of(g, &dy);
-    return blend(tables()->mean[i], tables()->mean[i + 1], dy);
+    return blend(tables()->mean[row.i], tables()->mean[row.i + 1], row.share);
 }
 
 /* ---- The layers ---- */
@@ -166,19 +181,16 @@ static const gltf_data *data_of(const bsdf *b)
     return (const void *)b->data;
 }
 
-/* E(μ) of what is not metal. */
-static float taken_by_facets(const gltf_surface *s, float mu)
+static facing facing_of(const gltf_data *d, float mu)
 {
-    facet_shares e = shares(s->roughness, mu);
-    return minf(s->plain_f0 * e.a + s->plain_f90 * e.b, 1.0f);
-}
-
-static float left_by_coat(const gltf_surface *s, float mu)
-{
-    if (!(s->coat > 0.0f))
-        return 1.0f;
-    facet_shares e = shares(s->coat_roughness, mu);
-    return 1.0f - s->coat * minf(COAT_F0 * e.a + e.b, 1.0f);
+    const gltf_surface *s = &d->s;
+    facing f = {.e = shares(d->facets, mu), .coat = 1.0f};
+    f.taken = minf(s->plain_f0 * f.e.a + s->plain_f90 * f.e.b, 1.0f);
+    if (s->coat > 0.0f) {
+        facet_shares e = shares(d->coat, mu);
+        f.coat = 1.0f - s->coat * minf(COAT_F0 * e.a + e.b, 1.0f);
+    }
+    return f;
 }
 
 static unsigned layer_lobe(const gltf_surface *s, int layer)
@@ -197,46 +209,61 @@ static unsigned layer_lobe(const gltf_surface *s, int layer)
     }
 }
 
-/* Albedo of each layer for light from cosine mu; what leaves through the coat is taken to
- * leave as it came, or from the base, in the mean. */
-static void layer_albedos(const gltf_data *d, float mu, spectrum out[N_LAYERS])
+/* Albedo of each layer; what leaves through the coat is taken to leave as it came, or
+ * from the base, in the mean. */
+static void layer_albedos(const gltf_data *d, const facing *f, spectrum out[N_LAYERS])
 {
     const gltf_surface *s = &d->s;
-    facet_shares e = shares(s->roughness, mu), c = mean_shares(s->coat_roughness);
-    float coat = left_by_coat(s, mu), taken = taken_by_facets(s, mu);
-    float escape = 1.0f - s->coat * (COAT_F0 * c.a + c.b);
-    out[LAYER_COAT] = spectrum_fill(1.0f - coat);
-    out[LAYER_FACETS] = (s->f0 * e.a + s->f90 * e.b) * square(coat);
-    out[LAYER_PANE] = s->through * (maxf(0.0f, e.a + e.b - taken) * square(coat));
-    out[LAYER_BASE] = s->diffuse * ((1.0f - taken) * coat * escape);
-    out[LAYER_LEAF] = s->leaf * ((1.0f - taken) * coat * escape);
+    float matt = (1.0f - f->taken) * f->coat * d->escape, coat2 = square(f->coat);
+    out[LAYER_COAT] = spectrum_fill(1.0f - f->coat);
+    out[LAYER_FACETS] = (s->f0 * f->e.a + s->f90 * f->e.b) * coat2;
+    out[LAYER_PANE] = s->through * (maxf(0.0f, f->e.a + f->e.b - f->taken) * coat2);
+    out[LAYER_BASE] = s->diffuse * matt;
+    out[LAYER_LEAF] = s->leaf * matt;
 }
 
-static choice choose(const bsdf *b, vec3 o, unsigned lobes)
+static choice choose(const gltf_data *d, unsigned lobes)
 {
-    const gltf_data *d = data_of(b);
-    spectrum albedo[N_LAYERS];
     choice out = {0};
-    float sum = 0.0f;
-    layer_albedos(d, o[2], albedo);
-    for (int i = 0; i < N_LAYERS; i++) {
+    for (int i = 0; i < N_LAYERS; i++)
         out.wanted[i] = lobe_wanted(lobes, layer_lobe(&d->s, i));
-        out.p[i] = out.wanted[i] ? maxf(0.0f, lane_mean(b, albedo[i])) : 0.0f;
-        sum += out.p[i];
-    }
-    for (int i = 0; i < N_LAYERS && sum > 0.0f; i++)
-        out.p[i] /= sum;
     return out;
 }
 
-/* D G2 / (4 oz iz) and the density of mirroring at visible normals. */
-static float facets(ggx g, vec3 o, vec3 i, float *cos_m, float *pdf)
+/* Layers are sampled by their albedo, in the mean over the lanes in use. */
+static void weigh(const gltf_data *d, const facing *f, choice *c)
+{
+    float matt = (1.0f - f->taken) * f->coat * d->escape, coat2 = square(f->coat);
+    float passed = maxf(0.0f, f->e.a + f->e.b - f->taken), sum = 0.0f;
+    const float albedo[N_LAYERS] = {
+        [LAYER_COAT] = 1.0f - f->coat,
+        [LAYER_FACETS] = (d->mean_f0 * f->e.a + d->s.f90 * f->e.b) * coat2,
+        [LAYER_PANE] = d->mean_through * (passed * coat2),
+        [LAYER_BASE] = d->mean_diffuse * matt,
+        [LAYER_LEAF] = d->mean_leaf * matt,
+    };
+    for (int i = 0; i < N_LAYERS; i++) {
+        c->p[i] = c->wanted[i] ? maxf(0.0f, albedo[i]) : 0.0f;
+        sum += c->p[i];
+    }
+    for (int i = 0; i < N_LAYERS && sum > 0.0f; i++)
+        c->p[i] /= sum;
+}
+
+/* D G2 / (4 oz iz) */
+static float facets(ggx g, vec3 o, vec3 i, float *cos_m)
 {
     vec3 m = normalize3(o + i);
-    float so = ggx_stretched(g, o), si = ggx_stretched(g, i), d = ggx_density(g, m);
+    float so = ggx_stretched(g, o), si = ggx_stretched(g, i);
     *cos_m = dot3(o, m);
-    *pdf = d / (2.0f * (o[2] + so));
-    return d / (2.0f * (o[2] * si + i[2] * so));
+    return ggx_density(g, m) / (2.0f * (o[2] * si + i[2] * so));
+}
+
+/* Of mirroring at visible normals. */
+static float facets_pdf(ggx g, vec3 o, vec3 i)
+{
+    vec3 m = normalize3(o + i);
+    return ggx_density(g, m) / (2.0f * (o[2] + ggx_stretched(g, o)));
 }
 
 static spectrum facets_fresnel(const gltf_surface *s, float cos_m)
@@ -245,39 +272,57 @@ static spectrum facets_fresnel(const gltf_surface *s, float cos_m)
     return s->f0 * (1.0f - edge) + s->f90 * edge;
 }
 
-/* Value and density of the rough layers for o above and i above, or below. */
-static spectrum layers_eval(const gltf_data *d, const choice *c, vec3 o, vec3 i,
-                            float *pdf)
+static bool has_rough_facets(const gltf_data *d, const choice *c, bool above)
+{
+    return d->facets.i != SMOOTH_ROW && c->wanted[above ? LAYER_FACETS : LAYER_PANE];
+}
+
+static bool has_rough_coat(const gltf_data *d, const choice *c, bool above)
+{
+    return above && c->wanted[LAYER_COAT] && d->s.coat > 0.0f && d->coat.i != SMOOTH_ROW;
+}
+
+/* Of the rough layers for o above and i above, or below. fo: facing of o. */
+static spectrum layers_eval(const gltf_data *d, const choice *c, const facing *fo, vec3 o,
+                            vec3 i)
 {
     const gltf_surface *s = &d->s;
-    bool above = i[2] > 0.0f, rough = !ggx_is_smooth(s->roughness);
+    bool above = i[2] > 0.0f;
     vec3 j = flip_z(i, !above);
     spectrum f = {0};
-    float cos_m, p;
-    *pdf = 0.0f;
-    if (rough && (above ? c->wanted[LAYER_FACETS] : c->wanted[LAYER_PANE])) {
-        float g = facets(s->roughness, o, j, &cos_m, &p);
-        *pdf += c->p[above ? LAYER_FACETS : LAYER_PANE] * p;
+    float cos_m;
+    if (has_rough_facets(d, c, above)) {
+        float g = facets(s->roughness, o, j, &cos_m);
         if (above)
             f += facets_fresnel(s, cos_m) * g;
         else
             f += s->through * (1.0f - schlick(s->plain_f0, s->plain_f90, cos_m)) * g;
     }
-    int matt = above ? LAYER_BASE : LAYER_LEAF;
-    if (c->wanted[matt]) {
-        float left =
-            (1.0f - taken_by_facets(s, o[2])) * (1.0f - taken_by_facets(s, j[2]));
+    bool matt = c->wanted[above ? LAYER_BASE : LAYER_LEAF];
+    if (!matt && !(s->coat > 0.0f))
+        return f;
+    facing fi = facing_of(d, j[2]);
+    float left = (1.0f - fo->taken) * (1.0f - fi.taken);
+    if (matt)
         f += (above ? s->diffuse : s->leaf) * (INV_PI_F * left / (1.0f - d->mean_e));
-        *pdf += c->p[matt] * j[2] * INV_PI_F;
-    }
-    if (s->coat > 0.0f)
-        f *= left_by_coat(s, o[2]) * left_by_coat(s, j[2]);
-    if (above && c->wanted[LAYER_COAT] && !ggx_is_smooth(s->coat_roughness)) {
-        float g = facets(s->coat_roughness, o, j, &cos_m, &p);
+    f *= fo->coat * fi.coat;
+    if (has_rough_coat(d, c, above)) {
+        float g = facets(s->coat_roughness, o, j, &cos_m);
         f += spectrum_fill(s->coat * schlick(COAT_F0, 1.0f, cos_m) * g);
-        *pdf += c->p[LAYER_COAT] * p;
     }
     return f;
+}
+
+static float layers_pdf(const gltf_data *d, const choice *c, vec3 o, vec3 i)
+{
+    bool above = i[2] > 0.0f;
+    vec3 j = flip_z(i, !above);
+    float pdf = c->p[above ? LAYER_BASE : LAYER_LEAF] * j[2] * INV_PI_F;
+    if (has_rough_facets(d, c, above))
+        pdf += c->p[above ? LAYER_FACETS : LAYER_PANE] * facets_pdf(d->s.roughness, o, j);
+    if (has_rough_coat(d, c, above))
+        pdf += c->p[LAYER_COAT] * facets_pdf(d->s.coat_roughness, o, j);
+    return pdf;
 }
 
 /* To the axes of the facets, above or below; turned = -1: back. */
@@ -287,37 +332,36 @@ static vec3 turned(const gltf_data *d, vec3 w, bool flip, float sign)
     return flip_z(vec3_make(c * w[0] + s * w[1], c * w[1] - s * w[0], w[2]), flip);
 }
 
-/* The directions turned so that wo is above. */
-static spectrum gltf_scatter(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes, float *pdf)
-{
-    const gltf_data *d = data_of(b);
-    bool flip = wo[2] < 0.0f;
-    vec3 o = turned(d, wo, flip, 1.0f);
-    choice c = choose(b, o, lobes);
-    return layers_eval(d, &c, o, turned(d, wi, flip, 1.0f), pdf);
-}
-
 static spectrum gltf_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
                           transport_mode mode)
 {
     (void)mode;
-    float pdf;
-    return gltf_scatter(b, wo, wi, lobes, &pdf);
+    const gltf_data *d = data_of(b);
+    bool flip = wo[2] < 0.0f; /* turned so that wo is above */
+    vec3 o = turned(d, wo, flip, 1.0f);
+    choice c = choose(d, lobes);
+    facing f = facing_of(d, o[2]);
+    return layers_eval(d, &c, &f, o, turned(d, wi, flip, 1.0f));
 }
 
 static float gltf_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
                       transport_mode mode)
 {
     (void)mode;
-    float pdf;
-    gltf_scatter(b, wo, wi, lobes, &pdf);
-    return pdf;
+    const gltf_data *d = data_of(b);
+    bool flip = wo[2] < 0.0f;
+    vec3 o = turned(d, wo, flip, 1.0f);
+    choice c = choose(d, lobes);
+    facing f = facing_of(d, o[2]);
+    weigh(d, &f, &c);
+    return layers_pdf(d, &c, o, turned(d, wi, flip, 1.0f));
 }
 
 /* A smooth layer's one direction. */
-static void follow_smooth(const gltf_surface *s, int layer, vec3 o, bsdf_sample *out)
+static void follow_smooth(const gltf_surface *s, int layer, const facing *f, vec3 o,
+                          bsdf_sample *out)
 {
-    float under = square(left_by_coat(s, o[2])), mu = o[2];
+    float under = square(f->coat), mu = o[2];
     bool through = layer == LAYER_PANE;
     out->wi = vec3_make(-o[0], -o[1], through ? -mu : mu);
     if (layer == LAYER_COAT)
@@ -359,20 +403,23 @@ static bool gltf_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned l
     const gltf_data *d = data_of(b);
     bool flip = wo[2] < 0.0f;
     vec3 o = turned(d, wo, flip, 1.0f);
-    choice c = choose(b, o, lobes);
+    choice c = choose(d, lobes);
+    facing f = facing_of(d, o[2]);
+    weigh(d, &f, &c);
     int layer = pick_layer(&c, u_lobe);
     if (layer < 0)
         return false;
     out->lobe = layer_lobe(&d->s, layer);
     out->pdf = c.p[layer];
     if (out->lobe & LOBE_SPECULAR) {
-        follow_smooth(&d->s, layer, o, out);
+        follow_smooth(&d->s, layer, &f, o, out);
     } else {
         vec3 i = sample_layer(&d->s, layer, o, u);
         if (!(i[2] > 0.0f))
             return false;
         out->wi = flip_z(i, layer == LAYER_PANE || layer == LAYER_LEAF);
-        out->weight = layers_eval(d, &c, o, out->wi, &out->pdf) * (i[2] / out->pdf);
+        out->pdf = layers_pdf(d, &c, o, out->wi);
+        out->weight = layers_eval(d, &c, &f, o, out->wi) * (i[2] / out->pdf);
     }
     out->wi = turned(d, out->wi, flip, -1.0f);
     return out->pdf > 0.0f;
@@ -382,7 +429,8 @@ static spectrum gltf_albedo(const bsdf *b, vec3 wo, unsigned lobes)
 {
     const gltf_data *d = data_of(b);
     spectrum albedo[N_LAYERS], sum = {0};
-    layer_albedos(d, fabsf(wo[2]), albedo);
+    facing f = facing_of(d, fabsf(wo[2]));
+    layer_albedos(d, &f, albedo);
     for (int i = 0; i < N_LAYERS; i++)
         if (lobe_wanted(lobes, layer_lobe(&d->s, i)))
             sum += albedo[i];
@@ -399,10 +447,25 @@ void bsdf_make_gltf(bsdf *b, const gltf_surface *surface)
         .albedo = gltf_albedo,
     };
     gltf_data *d = (void *)b->data;
-    facet_shares e = mean_shares(surface->roughness);
-    *d = (gltf_data){
-        .s = *surface, .turn_cos = cosf(surface->turn), .turn_sin = sinf(surface->turn)};
+    *d = (gltf_data){.s = *surface,
+                     .facets = row_of(surface->roughness),
+                     .coat = row_of(surface->coat_roughness),
+                     .mean_f0 = lane_mean(b, surface->f0),
+                     .mean_diffuse = lane_mean(b, surface->diffuse),
+                     .mean_through = lane_mean(b, surface->through),
+                     .mean_leaf = lane_mean(b, surface->leaf),
+                     .escape = 1.0f,
+                     .turn_cos = 1.0f};
+    facet_shares e = mean_shares(d->facets);
     d->mean_e = minf(surface->plain_f0 * e.a + surface->plain_f90 * e.b, 0.999f);
+    if (surface->coat > 0.0f) {
+        e = mean_shares(d->coat);
+        d->escape = 1.0f - surface->coat * (COAT_F0 * e.a + e.b);
+    }
+    if (surface->turn < 0.0f || surface->turn > 0.0f) {
+        d->turn_cos = cosf(surface->turn);
+        d->turn_sin = sinf(surface->turn);
+    }
     b->ops = &ops;
     b->lambertian = false;
     b->lobes = layer_lobe(surface, LAYER_FACETS);

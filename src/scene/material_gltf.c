@@ -183,6 +183,13 @@ static gltf_surface surface_of(const gltf_material *m, const surface_hit *hit,
     };
 }
 
+/* Nothing but the base: Lambert's law. */
+static bool is_matt(const gltf_surface *s)
+{
+    return !(s->coat > 0.0f) && !(s->f90 > 0.0f) && spectrum_is_black(s->f0) &&
+           spectrum_is_black(s->through) && spectrum_is_black(s->leaf);
+}
+
 /* One deterministic path: the mirror of a metal, through glass, or the matt part. */
 static void make_plainest(const gltf_material *m, const gltf_point *at, bsdf *out)
 {
@@ -223,7 +230,10 @@ static void gltf_bsdf(const void *self, const surface_hit *hit, const wavelength
         return;
     }
     gltf_surface surface = surface_of(m, hit, w, &at);
-    bsdf_make_gltf(out, &surface);
+    if (is_matt(&surface))
+        bsdf_make_diffuse(out, surface.diffuse);
+    else
+        bsdf_make_gltf(out, &surface);
 }
 
 static bool may_be_above_0(const float_input *in)

@@ -21,9 +21,10 @@ static float density_of_following(const direct_query *query, vec3 wi)
     return p * bsdf_pdf(query->bsdf, query->wo, wi, lobes, TRANSPORT_RADIANCE);
 }
 
-/* f of one class of lobes, weighed against following where that is done too. */
+/* f of one class of lobes, weighed against following where that is done too. *pdf: of
+ * following, the same for all classes; negative until one has asked for it. */
 static spectrum weighed_lobe(const direct_query *query, const light_sample *to_light,
-                             bool unmet, unsigned lobe)
+                             bool unmet, unsigned lobe, float *pdf)
 {
     if (!(query->bsdf->lobes & lobe))
         return (spectrum){0};
@@ -32,8 +33,9 @@ static spectrum weighed_lobe(const direct_query *query, const light_sample *to_l
     bool shared = (query->followed & lobe) && !unmet && query->shadow_rays;
     if (!shared || spectrum_is_black(f))
         return f;
-    float pdf = density_of_following(query, to_light->wi);
-    return f * (1.0f - followed_weight(pdf, to_light->pdf));
+    if (*pdf < 0.0f)
+        *pdf = density_of_following(query, to_light->wi);
+    return f * (1.0f - followed_weight(*pdf, to_light->pdf));
 }
 
 /* What photons leave of the light that a glossy lobe sends. */
@@ -63,8 +65,9 @@ static bool radiance_of(const direct_query *query, const light_sample *to_light,
                         bool each, direct_radiance *found, uint64_t *shadow_rays_traced)
 {
     bool unmet = scene_light(query->scene, found->light)->is_unmet;
-    spectrum diffuse = weighed_lobe(query, to_light, unmet, LOBE_DIFFUSE);
-    spectrum glossy = weighed_lobe(query, to_light, unmet, LOBE_GLOSSY);
+    float pdf = -1.0f;
+    spectrum diffuse = weighed_lobe(query, to_light, unmet, LOBE_DIFFUSE, &pdf);
+    spectrum glossy = weighed_lobe(query, to_light, unmet, LOBE_GLOSSY, &pdf);
     if (query->share && !spectrum_is_black(glossy))
         glossy *= glossy_share(query, to_light, found->light, each);
     if (spectrum_is_black(diffuse + glossy))
