@@ -3,6 +3,7 @@
  * each element once whatever the number of threads.
  */
 #include "base/error.h"
+#include "base/intern.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -50,6 +51,25 @@ static void count_visits(size_t begin, size_t end, unsigned thread, void *data)
         visits[i]++;
 }
 
+/* More than the first tables of any pool hold; a leak checker sees what growing leaves.
+ */
+static void test_interned_are_kept_once(void)
+{
+    const char *first[10000];
+    for (int round = 0; round < 2; round++) {
+        for (size_t i = 0; i < G_N_ELEMENTS(first); i++) {
+            g_autofree char *text = g_strdup_printf("kept-%zu", i);
+            const char *kept = intern(text);
+            g_assert_cmpstr(kept, ==, text);
+            g_assert_true(kept != text);
+            if (round == 0)
+                first[i] = kept;
+            g_assert_true(first[i] == kept);
+        }
+    }
+    g_assert_null(intern(NULL));
+}
+
 static void test_parallel_visits_each_once(void)
 {
     for (unsigned threads = 1; threads <= 4; threads++) {
@@ -75,6 +95,7 @@ int main(int argc, char **argv)
     g_test_add_func("/base/error/place", test_error_names_its_place);
     g_test_add_func("/base/memory/aligned", test_allocation_is_aligned_and_zeroed);
     g_test_add_func("/base/memory/refuses", test_allocation_refuses);
+    g_test_add_func("/base/intern", test_interned_are_kept_once);
     g_test_add_func("/base/parallel/once", test_parallel_visits_each_once);
     g_test_add_func("/base/parallel/cancel", test_parallel_stops_when_cancelled);
     return g_test_run();

@@ -25,7 +25,7 @@ GQuark error_quark(void);
 /** @brief A place in an input file; line 0: the whole file, file NULL: not from a file.
  */
 typedef struct source_place {
-    const char *file; /**< interned (g_intern_string), never freed */
+    const char *file; /**< interned (intern.h), never freed */
     int line;         /**< from 1 */
     int column;       /**< from 1 */
 } source_place;

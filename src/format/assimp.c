@@ -7,6 +7,7 @@
  */
 #include "format/assimp.h"
 
+#include "base/intern.h"
 #include "base/memory.h"
 #include "format/defaults.h"
 #include "format/reader.h"
@@ -26,7 +27,7 @@ static const unsigned STEPS = aiProcess_Triangulate | aiProcess_SortByPType |
 
 params *assimp_params(const assimp_reader *r)
 {
-    return params_new((source_place){g_intern_string(r->path), 0, 0}, r->directory,
+    return params_new((source_place){intern(r->path), 0, 0}, r->directory,
                       color_space_srgb());
 }
 
@@ -110,7 +111,7 @@ static bool add_shape(assimp_reader *r, mesh *m, const assimp_material *material
     float_input alpha;
     shape_place at = {
         .to_world = *to_world, .material = index, .area_light = material_is->area_light};
-    const source_place place = {g_intern_string(r->path), 0, 0};
+    const source_place place = {intern(r->path), 0, 0};
     if (material_is->alpha) {
         if (!float_input_init(&alpha, r->scene, material_is->alpha, "alpha", 1.0f, error))
             return false;
@@ -255,7 +256,7 @@ static bool off_is_possible(const char *path)
 
 static bool read_file(assimp_reader *r, GError **error)
 {
-    const source_place place = {g_intern_string(r->path), 0, 0};
+    const source_place place = {intern(r->path), 0, 0};
     if (!g_file_test(r->path, G_FILE_TEST_IS_REGULAR)) {
         error_at(error, place, "expected a file, found none");
         return false;

@@ -14,6 +14,7 @@
  */
 #include "format/assimp.h"
 
+#include "base/intern.h"
 #include "format/given.h"
 #include "format/height_map.h"
 
@@ -321,7 +322,7 @@ const assimp_material *assimp_material_of(assimp_reader *r, unsigned index,
                                           GError **error)
 {
     if (index >= r->source->mNumMaterials) {
-        error_at(error, (source_place){g_intern_string(r->path), 0, 0},
+        error_at(error, (source_place){intern(r->path), 0, 0},
                  "a mesh has material %u of %u", index, r->source->mNumMaterials);
         return NULL;
     }

@@ -6,6 +6,7 @@
  */
 #include "format/defaults.h"
 
+#include "base/intern.h"
 #include "format/given.h"
 #include "math/frame.h"
 #include "scene/scene_geometry.h"
@@ -21,8 +22,7 @@ static params *list(const char *path)
 {
     g_autofree char *absolute = g_canonicalize_filename(path, NULL);
     g_autofree char *directory = g_path_get_dirname(absolute);
-    return params_new((source_place){g_intern_string(path), 0, 0}, directory,
-                      color_space_srgb());
+    return params_new((source_place){intern(path), 0, 0}, directory, color_space_srgb());
 }
 
 /* Local z is up. */
@@ -148,7 +148,7 @@ static bool add_view(scene *s, const char *path, vec3 up, GError **error)
     bool done = look_from(toward, vec3_make(0.0f, 0.0f, 0.0f), up, &look);
     float distance = maxf((float)distance_to_frame(box, &look), 1e-6f);
     if (!done || !look_from(center + distance * toward, center, up, &look)) {
-        error_at(error, (source_place){g_intern_string(path), 0, 0},
+        error_at(error, (source_place){intern(path), 0, 0},
                  "the scene is too large to be looked at");
         return false;
     }
@@ -164,7 +164,7 @@ static bool add_view(scene *s, const char *path, vec3 up, GError **error)
 bool scene_complete(scene *s, const char *path, vec3 up, bool lit, GError **error)
 {
     if (s->shapes->len == 0) {
-        error_at(error, (source_place){g_intern_string(path), 0, 0},
+        error_at(error, (source_place){intern(path), 0, 0},
                  "expected something with a surface, found nothing");
         return false;
     }

@@ -5,6 +5,7 @@
  */
 #include "format/features.h"
 
+#include "base/intern.h"
 #include "format/gltf_extensions.h"
 #include "format/pbrt_parser.h"
 #include "scene/scene.h"
@@ -61,7 +62,7 @@ static directive_kind filter_at(size_t i)
     if (!name)
         return (directive_kind){0};
     g_autofree char *parameters = filter_kind_parameters(i);
-    return (directive_kind){name, g_intern_string(parameters), NULL, NULL, NULL};
+    return (directive_kind){name, intern(parameters), NULL, NULL, NULL};
 }
 
 /* pbrt-v4's kinds of a directive, and the table that ours are in. */

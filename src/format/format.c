@@ -3,6 +3,7 @@
  */
 #include "format/format.h"
 
+#include "base/intern.h"
 #include "format/reader.h"
 
 #include <glib/gstdio.h>
@@ -52,7 +53,7 @@ static void refuse(const char *path, GError **error)
     }
     const char *dot = strrchr(path, '.');
     bool has_extension = dot && !strchr(dot, '/');
-    error_at(error, (source_place){g_intern_string(path), 0, 0},
+    error_at(error, (source_place){intern(path), 0, 0},
              "expected a scene file: %s, found %s", known->str,
              has_extension ? dot : "no extension");
 }

@@ -5,6 +5,7 @@
  */
 #include "format/gltf.h"
 
+#include "base/intern.h"
 #include "base/memory.h"
 #include "format/defaults.h"
 #include "format/gltf_extensions.h"
@@ -24,7 +25,7 @@ enum {
 
 params *gltf_params(const gltf *g)
 {
-    return params_new((source_place){g_intern_string(g->path), 0, 0}, g->directory,
+    return params_new((source_place){intern(g->path), 0, 0}, g->directory,
                       color_space_srgb());
 }
 
@@ -274,7 +275,7 @@ static bool is_glb(const char *data, size_t size)
 static bool find_document(gltf *g, const input *in, const char **text, size_t *size,
                           GError **error)
 {
-    source_place place = {g_intern_string(g->path), 0, 0};
+    source_place place = {intern(g->path), 0, 0};
     size_t at = GLB_HEADER, binary_size;
     *text = in->data;
     *size = in->size;
@@ -334,8 +335,7 @@ static bool read_gltf(scene *s, const char *path, GError **error)
     input in;
     g_autoptr(GError) inner = NULL;
     if (!input_open(&in, path, &inner)) {
-        error_at(error, (source_place){g_intern_string(path), 0, 0}, "%s",
-                 inner->message);
+        error_at(error, (source_place){intern(path), 0, 0}, "%s", inner->message);
         return false;
     }
     g_autofree char *absolute = g_canonicalize_filename(path, NULL);

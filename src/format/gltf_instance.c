@@ -6,6 +6,7 @@
  */
 #include "format/gltf_pose.h"
 
+#include "base/intern.h"
 #include "base/memory.h"
 
 /* ---- Before anything is read ---- */
@@ -63,7 +64,7 @@ static void make_object(gltf *g, const json_value *of, const gltf_pose *pose,
                         gltf_mesh_info *info)
 {
     const transform identity = transform_identity();
-    const source_place place = {g_intern_string(g->path), 0, 0};
+    const source_place place = {intern(g->path), 0, 0};
     GError *error = NULL;
     if (info->is_made)
         return;
@@ -90,7 +91,7 @@ static void place_mesh(gltf *g, const shown_mesh *shown, const transform *to_wor
     const json_value *of = &shown->of;
     const gltf_pose *pose = &shown->pose;
     gltf_mesh_info *info = shown->info;
-    const source_place place = {g_intern_string(g->path), 0, 0};
+    const source_place place = {intern(g->path), 0, 0};
     const motion still = motion_still(to_world);
     GError *error = NULL;
     if (!info->repeats || pose->is_own) {

@@ -7,6 +7,7 @@
  */
 #include "format/gltf_pose.h"
 
+#include "base/intern.h"
 #include "base/memory.h"
 #include "scene/mesh_closed.h"
 
@@ -225,7 +226,7 @@ static void add_shape(gltf *g, const json_value *primitive, mesh *m,
     shape_place at = *stands;
     GError *error = NULL;
     float_input alpha;
-    const source_place place = {g_intern_string(g->path), 0, 0};
+    const source_place place = {intern(g->path), 0, 0};
     if (info->alpha) {
         if (!float_input_init(&alpha, g->scene, info->alpha, "alpha", 1.0f, &error)) {
             gltf_take_error(g, primitive, error);

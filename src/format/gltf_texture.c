@@ -4,6 +4,7 @@
  */
 #include "format/gltf.h"
 
+#include "base/intern.h"
 #include "format/given.h"
 #include "format/pbrt_text.h"
 
@@ -31,7 +32,7 @@ static const char *embedded_path(gltf *g, GBytes *bytes, gint64 index)
     g_autofree char *name =
         g_strdup_printf("%s.image%d.%s", path, (int)index, is_png ? "png" : "jpg");
     scene_add_file(g->scene, name, bytes);
-    return g_intern_string(name);
+    return intern(name);
 }
 
 static const char *path_of(gltf *g, const json_value *img, gint64 index)
@@ -41,7 +42,7 @@ static const char *path_of(gltf *g, const json_value *img, gint64 index)
     json_value at = json_member(img, "uri");
     if (uri && !g_str_has_prefix(uri, "data:")) {
         g_autofree char *path = gltf_uri_path(g, &at, uri);
-        return path ? g_intern_string(path) : NULL;
+        return path ? intern(path) : NULL;
     }
     if (!uri && view < 0) {
         json_fail(img, "expected a \"uri\" or a \"bufferView\", found none");

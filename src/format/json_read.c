@@ -3,6 +3,8 @@
  */
 #include "format/json_read.h"
 
+#include "base/intern.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -49,7 +51,7 @@ static void tell_parse_error(const json_reader *reader, const char *message,
 bool json_open(json_reader *reader, const char *file, const char *text, size_t size,
                GError **error)
 {
-    *reader = (json_reader){.file = g_intern_string(file)};
+    *reader = (json_reader){.file = intern(file)};
     source_place place = {reader->file, line_too_deep(text, size), 1};
     if (place.line > 0) {
         error_at(error, place, "expected at most %d brackets within each other",

@@ -3,11 +3,13 @@
  */
 #include "format/lexer.h"
 
+#include "base/intern.h"
+
 #include <string.h>
 
 lexer lexer_new(const char *file, const char *data, size_t size)
 {
-    lexer l = {.file = g_intern_string(file),
+    lexer l = {.file = intern(file),
                .at = data,
                .end = data + size,
                .line_start = data,

@@ -4,6 +4,7 @@
  */
 #include "format/pbrt_parser.h"
 
+#include "base/intern.h"
 #include "base/memory.h"
 #include "format/input.h"
 #include "format/reader.h"
@@ -315,8 +316,7 @@ static bool read_pbrt(scene *s, const char *path, GError **error)
     input in;
     g_autoptr(GError) inner = NULL;
     if (!input_open(&in, path, &inner)) {
-        error_at(error, (source_place){g_intern_string(path), 0, 0}, "%s",
-                 inner->message);
+        error_at(error, (source_place){intern(path), 0, 0}, "%s", inner->message);
         return false;
     }
     pbrt_parser parser;

@@ -4,6 +4,8 @@
  */
 #include "format/pbrt_parser.h"
 
+#include "base/intern.h"
+
 #include <string.h>
 
 /** Keeps a directive until WorldBegin; a later one of its kind takes its place. */
@@ -182,7 +184,7 @@ static const char *option_name(const char *text)
     for (; *text; text++)
         if (*text != '-' && *text != '_')
             g_string_append_c(name, g_ascii_tolower(*text));
-    return g_intern_string(name->str);
+    return intern(name->str);
 }
 
 /* A word as the value that it looks like. */

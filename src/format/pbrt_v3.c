@@ -8,6 +8,8 @@
  */
 #include "format/pbrt_v3_words.h"
 
+#include "base/intern.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -143,7 +145,7 @@ static void translate_shape(const translation *t)
     if (!uv)
         uv = find(t, "st");
     if (uv && (uv->type == PARAM_FLOAT || uv->type == PARAM_POINT2)) {
-        uv->name = g_intern_string("uv");
+        uv->name = intern("uv");
         uv->type = PARAM_POINT2;
     }
     if (strcmp(*t->kind, "loopsubdiv") == 0)
@@ -212,7 +214,7 @@ static void translate_integrator(const translation *t)
         if (!passes)
             passes = find(t, "iterations");
         if (passes)
-            passes->name = g_intern_string("iterations");
+            passes->name = intern("iterations");
         return;
     }
     if (strcmp(*t->kind, "directlighting") == 0 || strcmp(*t->kind, "whitted") == 0 ||

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include "base/intern.h"
 #include "format/given.h"
 #include "format/pbrt_v3.h"
 
@@ -51,7 +52,7 @@ static inline void rename_to(const translation *t, const char *name, const char 
 {
     param *q = find(t, name);
     if (q && !find(t, other))
-        q->name = g_intern_string(other);
+        q->name = intern(other);
 }
 
 static inline void set_kind(const translation *t, const char *kind)

@@ -7,6 +7,7 @@
  */
 #include "format/ply.h"
 
+#include "base/intern.h"
 #include "base/memory.h"
 #include "format/input.h"
 #include "format/ply_values.h"
@@ -88,7 +89,7 @@ static bool find_columns(column *columns, const ply_element *e, const char *name
         int p = ply_find_property(e, words[i]);
         if (p < 0 || ply_property_at(e, (guint)p)->is_list)
             return false;
-        columns[i] = (column){p, NULL, (size_t)n, g_intern_string(words[i])};
+        columns[i] = (column){p, NULL, (size_t)n, intern(words[i])};
     }
     return true;
 }

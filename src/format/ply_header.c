@@ -3,6 +3,8 @@
  */
 #include "format/ply_header.h"
 
+#include "base/intern.h"
+
 #include <string.h>
 
 enum { MAX_WORDS = 6, LONGEST_LINE = 1000, MAX_PARTS = 1000 };
@@ -209,10 +211,8 @@ bool ply_header_read(ply_header *header, const char *file, const char *data, siz
                      GError **error)
 {
     *header = (ply_header){.elements = g_array_new(FALSE, FALSE, sizeof(ply_element))};
-    header_reader r = {.header = header,
-                       .place = {g_intern_string(file), 0, 1},
-                       .at = data,
-                       .end = data + size};
+    header_reader r = {
+        .header = header, .place = {intern(file), 0, 1}, .at = data, .end = data + size};
     bool fine = read_all(&r, error);
     header->size = (size_t)(r.at - data);
     header->n_lines = r.place.line;

@@ -1,6 +1,7 @@
 /*
  * A PLY file as a scene of its own: one diffuse mesh.
  */
+#include "base/intern.h"
 #include "format/defaults.h"
 #include "format/given.h"
 #include "format/ply.h"
@@ -11,7 +12,7 @@
 static bool read_ply_scene(scene *s, const char *path, GError **error)
 {
     mesh m = {0};
-    source_place place = {g_intern_string(path), 0, 0};
+    source_place place = {intern(path), 0, 0};
     g_autoptr(params) p = params_new(place, "/", color_space_srgb());
     shape_place at = {.to_world = transform_identity()};
     give_triple(p, PARAM_RGB, "reflectance", 0.6, 0.6, 0.6);

@@ -6,6 +6,7 @@
  */
 #include "scene/params.h"
 
+#include "base/intern.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -48,7 +49,7 @@ params *params_new(source_place place, const char *base_directory,
     params *p = g_new0(params, 1);
     p->list = g_ptr_array_new_with_free_func(param_free);
     p->place = place;
-    p->base_directory = g_intern_string(base_directory);
+    p->base_directory = intern(base_directory);
     p->space = space;
     p->to_world = transform_identity();
     return p;
@@ -80,7 +81,7 @@ static param *add(params *p, source_place place, param_type type, const char *na
         return NULL;
     }
     param *q = g_new0(param, 1);
-    q->name = g_intern_string(name);
+    q->name = intern(name);
     q->type = type;
     q->place = place;
     q->n = n;

@@ -6,6 +6,7 @@
  */
 #include "scene/settings.h"
 
+#include "base/intern.h"
 #include "base/json.h"
 #include "scene/settings_table.h"
 
@@ -260,7 +261,7 @@ bool settings_load(settings *s, const char *path, GError **error)
 {
     g_autofree char *text = NULL;
     g_autoptr(GError) inner = NULL;
-    source_place place = {g_intern_string(path), 0, 0};
+    source_place place = {intern(path), 0, 0};
     size_t length = 0;
     if (!g_file_get_contents(path, &text, &length, &inner)) {
         error_at(error, place, "cannot read settings: %s", inner->message);
