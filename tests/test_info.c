@@ -44,6 +44,29 @@ static void test_glass(void)
     check(GLASS "ReverseOrientation " INWARD, NULL);
 }
 
+#define BOX                                                                              \
+    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 1 1 0 -1 1 0 -1 -1 1 1 -1 1 1 " \
+    "1 "                                                                                 \
+    "1 -1 1 1] \"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 2 "  \
+    "3 7 "                                                                               \
+    "2 7 6 3 0 4 3 4 7]\n"
+#define TABLE(z) MATT "Shape \"disk\" \"float radius\" 4 \"float height\" " #z "\n"
+
+/* Glass on a table, above it and a little in it. */
+static void test_touching(void)
+{
+    const char *const text = "have surfaces in one place";
+    check(TABLE(0) GLASS BOX, text);
+    check(TABLE(1) GLASS BOX, text);
+    check(GLASS BOX TABLE(0), text);
+    check(GLASS "Scale 0.03 0.03 0.03 Translate 0.3 0.1 7 " BOX TABLE(0), text);
+    check(TABLE(-0.001) GLASS BOX, NULL);
+    check(TABLE(0.001) GLASS BOX, NULL);
+    check(TABLE(0) MATT BOX, NULL);
+    check(TABLE(0) "Material \"thindielectric\" " BOX, NULL);
+    check(TABLE(-1) GLASS "Shape \"sphere\" \"float radius\" 1\n", NULL);
+}
+
 static void test_lamps(void)
 {
     check(MATT "Shape \"sphere\" \"float radius\" 0.5\n", "light 0 (point) is shut into");
@@ -126,6 +149,7 @@ static void test_instances(void)
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/info/touching", test_touching);
     g_test_add_func("/info/glass", test_glass);
     g_test_add_func("/info/lamps", test_lamps);
     g_test_add_func("/info/size", test_size);

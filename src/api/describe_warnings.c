@@ -1,5 +1,6 @@
 /*
- * What is allowed, but seldom meant: glass that encloses nothing or is turned inside out,
+ * What is allowed, but seldom meant: glass that encloses nothing, is turned inside out
+ * or has a surface where another body has one,
  * lamps shut into bodies that let no light out, skies seen from behind their portal,
  * scenes of strange size.
  */
@@ -71,6 +72,59 @@ static void inspect_glass(inspection *in, guint i)
         warn(in,
              "shape %u of solid glass ('%s') is inside out: its normals point inwards", i,
              name_of(m));
+}
+
+/* ---- Surfaces in one place ---- */
+
+/* Points of all shapes of glass that are looked at, and of each. */
+enum { PROBES = 1 << 18, LEAST_PROBES = 8, MOST_PROBES = 256 };
+
+/* Rays look for a surface from this far, over the width of the shape it is asked of. */
+#define PROBE_WAY 1e-3f
+
+static shape_sample point_of(const shape *on, unsigned k, unsigned n)
+{
+    float at = (float)k + 0.5f, y = 0.7548777f * at, z = 0.5698403f * at;
+    return shape_sample_area(on, at / (float)n, (vec2){y - floorf(y), z - floorf(z)});
+}
+
+/* The shape that a ray meets where it should meet shape i at a point; i if that is so.
+   The ray comes aslant, so that rounding does not always decide for the same shape.
+   It comes from both sides in turn. @param k number of the ray */
+static int met_instead(const inspection *in, guint i, const shape_sample *at, unsigned k)
+{
+    const shape *on = in->scene->shapes->pdata[i];
+    const frame f = frame_from_normal(k % 2 ? -at->n : at->n);
+    float u = 0.4656f * (float)k, v = 0.3247f * (float)k;
+    vec3 slant = f.s * (u - floorf(u) - 0.43f) + f.t * (v - floorf(v) - 0.61f);
+    vec3 from = normalize3(f.n + slant);
+    float way = PROBE_WAY * sqrtf(on->area);
+    float rounding = maxf(8e-6f * max_component3(abs3(at->p)), at->error);
+    ray r = {.origin = at->p + from * way, .direction = -from, .t_max = 2.0f * way};
+    surface_hit hit;
+    bool met = scene_intersect(in->scene, &r, &hit);
+    return met && fabsf(hit.t - way) < rounding ? hit.shape : (int)i;
+}
+
+/* Where glass stands right on a table, rounding tells which of the two a ray meets, and
+   it passes the other. Lamps and what lets nothing through may touch one another. */
+static void inspect_touching(inspection *in, guint i, unsigned n_probes)
+{
+    const shape *on = in->scene->shapes->pdata[i];
+    const material *m = material_of_shape(in->scene, on);
+    if (!m || on->object != NO_INDEX || !material_encloses(m))
+        return;
+    for (unsigned k = 0; k < 2 * n_probes; k++) {
+        shape_sample at = point_of(on, k / 2, n_probes);
+        int other = met_instead(in, i, &at, k);
+        if (other == (int)i)
+            continue;
+        warn(in,
+             "shape %u of solid glass ('%s') and shape %d have surfaces in one place, "
+             "where light is lost: leave a gap between them, or let them overlap",
+             i, name_of(m), other);
+        return;
+    }
 }
 
 /* ---- Lamps ---- */
@@ -149,8 +203,11 @@ static void inspect_sky(inspection *in, guint i)
 GPtrArray *describe_warnings(const scene *s)
 {
     inspection in = {s, g_ptr_array_new_with_free_func(g_free)};
-    for (guint i = 0; i < s->shapes->len; i++)
+    unsigned probes = PROBES / MAX(s->shapes->len, 1);
+    for (guint i = 0; i < s->shapes->len; i++) {
         inspect_glass(&in, i);
+        inspect_touching(&in, i, CLAMP(probes, LEAST_PROBES, MOST_PROBES));
+    }
     for (guint i = 0; i < s->lights->len; i++) {
         const light *l = s->lights->pdata[i];
         if (l->kind->is_environment)
