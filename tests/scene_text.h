@@ -42,6 +42,17 @@ static inline void folder_remove(scene_folder *f)
     g_free(f->main);
 }
 
+/** Radiance of all environments arriving from direction d. */
+static inline spectrum sky_at(const scene *s, vec3 d, const wavelengths *w)
+{
+    spectrum sum = {0};
+    for (int i = 0; i < s->n_environments; i++) {
+        const light *l = scene_light(s, s->environments[i]);
+        sum += l->kind->environment(l->self, s->center, d, w);
+    }
+    return sum;
+}
+
 /** The scene of a text that must be right. */
 static inline scene *scene_of(const char *text)
 {

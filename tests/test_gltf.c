@@ -180,8 +180,8 @@ static void test_defaults(void)
     }
     /* The sky is brighter above than below. */
     wavelengths w = wavelengths_at(0.5f);
-    spectrum up = scene_environment(s, vec3_make(0, 1, 0), &w);
-    spectrum down = scene_environment(s, vec3_make(0, -1, 0), &w);
+    spectrum up = sky_at(s, vec3_make(0, 1, 0), &w);
+    spectrum down = sky_at(s, vec3_make(0, -1, 0), &w);
     g_assert_cmpfloat(spectrum_mean(up), >, 1.5f * spectrum_mean(down));
     g_string_free(kept.text, TRUE);
 }

@@ -140,7 +140,7 @@ static void test_hits_know_material_and_light(void)
     ray away = {{0, -10, 0}, {0, -1, 0}, INFINITY, 0, {{NULL}}};
     surface_hit hit;
     g_assert_false(scene_intersect(s, &away, &hit));
-    g_assert_false(spectrum_is_black(scene_environment(s, away.direction, &w)));
+    g_assert_false(spectrum_is_black(sky_at(s, away.direction, &w)));
 }
 
 /* Samples carry the density that is told for a ray in their direction. */

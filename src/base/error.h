@@ -1,6 +1,6 @@
 /*
- * Errors are values: a function that can fail returns bool or a pointer and takes GError
- * ** last.
+ * Errors are values: a function that can fail returns bool or a pointer, and its last
+ * parameter is a GError **.
  *
  * The codes are the exit codes of the command line, so that the reason for a failure
  * survives from the deepest reader up to the shell.

@@ -5,7 +5,6 @@
  *   grid       471 values, 1 nm apart: formulas, named spectra, tables on whole nm
  *   tabulated  any other table: bisection
  *   smooth     scale * sigmoid of a quadratic (* illuminant): RGB triples
- *   scaled     factor * another curve
  *
  * Workload: made once per scene, evaluated at a pass' wavelengths at every hit.
  */
@@ -28,11 +27,9 @@ struct curve {
     const curve_kind *kind;
     gatomicrefcount references;
     bool is_constant;        /**< over LAMBDA_MIN..LAMBDA_MAX */
-    bool is_emitter;         /**< previews show it as a light, not as a reflectance */
-    float factor;            /**< constant, smooth, scaled */
+    float factor;            /**< constant, smooth */
     float coefficients[3];   /**< smooth */
     const float *illuminant; /**< smooth: NULL unless the curve is a light */
-    curve *base;             /**< scaled; owned reference */
     int n;                   /**< tabulated: points */
     float data[];            /**< grid: values; tabulated: n wavelengths, n values */
 };
@@ -56,7 +53,6 @@ void curve_unref(curve *c)
 {
     if (!c || !g_atomic_ref_count_dec(&c->references))
         return;
-    curve_unref(c->base);
     g_free(c);
 }
 
@@ -118,19 +114,18 @@ static bool same(float a, float b)
     return !(a < b) && !(a > b);
 }
 
-curve *curve_from_grid(const float grid[GRID_N], bool emitter)
+curve *curve_from_grid(const float grid[GRID_N])
 {
     const int first = (int)LAMBDA_MIN - GRID_FIRST, last = (int)LAMBDA_MAX - GRID_FIRST;
     curve *c = curve_new(&grid_kind, GRID_N);
     memcpy(c->data, grid, GRID_N * sizeof *grid);
-    c->is_emitter = emitter;
     c->is_constant = true;
     for (int i = first; i <= last; i++)
         c->is_constant = c->is_constant && same(grid[i], grid[first]);
     return c;
 }
 
-curve *curve_from_function(curve_function f, const void *data, bool emitter)
+curve *curve_from_function(curve_function f, const void *data)
 {
     float grid[GRID_N];
     for (int i = 0; i < GRID_N; i++) {
@@ -141,7 +136,7 @@ curve *curve_from_function(curve_function f, const void *data, bool emitter)
             return NULL;
         grid[i] = good ? (float)value : 0.0f;
     }
-    return curve_from_grid(grid, emitter);
+    return curve_from_grid(grid);
 }
 
 /* Tabulated */
@@ -234,7 +229,7 @@ curve *curve_tabulated(const float *nm, const float *values, int n, GError **err
     for (int i = 0; i < GRID_N; i++)
         grid[i] = at_table(c, (float)(GRID_FIRST + i));
     curve_unref(c);
-    return curve_from_grid(grid, false);
+    return curve_from_grid(grid);
 }
 
 /* Smooth */
@@ -278,7 +273,6 @@ curve *curve_rgb(const color_space *space, const float rgb[3], curve_role role,
     float largest = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
     curve *c = curve_new(&smooth_kind, 0);
     c->factor = role == CURVE_ALBEDO ? 1.0f : 2.0f * largest;
-    c->is_emitter = role == CURVE_EMISSION;
     c->illuminant = role == CURVE_EMISSION ? space->illuminant : NULL;
     if (largest > 0.0f) {
         const float scaled[3] = {rgb[0] / c->factor, rgb[1] / c->factor,
@@ -289,31 +283,6 @@ curve *curve_rgb(const color_space *space, const float rgb[3], curve_role role,
     }
     c->is_constant = !c->illuminant && same(c->coefficients[0], 0.0f) &&
                      same(c->coefficients[1], 0.0f);
-    return c;
-}
-
-/* Scaled */
-
-static float at_scaled(const curve *c, float nm)
-{
-    return c->factor * curve_at(c->base, nm);
-}
-
-static spectrum eval_scaled(const curve *c, const wavelengths *w)
-{
-    return c->factor * curve_eval(c->base, w);
-}
-
-static const curve_kind scaled_kind = {at_scaled, eval_scaled};
-
-curve *curve_scaled(const curve *base, float scale)
-{
-    curve *c = curve_new(&scaled_kind, 0);
-    bool nested = base->kind == &scaled_kind;
-    c->factor = nested ? scale * base->factor : scale;
-    c->base = curve_ref(nested ? base->base : base);
-    c->is_constant = base->is_constant;
-    c->is_emitter = base->is_emitter;
     return c;
 }
 
@@ -341,8 +310,6 @@ static double integrate_table(const curve *c, const float weight[GRID_N])
 
 static double integrate(const curve *c, const float weight[GRID_N])
 {
-    if (c->kind == &scaled_kind)
-        return (double)c->factor * integrate(c->base, weight);
     if (c->kind == &table_kind)
         return integrate_table(c, weight);
     float grid[GRID_N];
@@ -354,24 +321,7 @@ static double integrate(const curve *c, const float weight[GRID_N])
 float curve_photometric(const curve *c)
 {
     const observer *o = observer_get();
-    const curve *light = c->kind == &scaled_kind ? c->base : c;
-    if (light->illuminant)
-        return (float)grid_integrate(light->illuminant, o->xyz[1], GRID_FIRST, GRID_LAST);
+    if (c->illuminant)
+        return (float)grid_integrate(c->illuminant, o->xyz[1], GRID_FIRST, GRID_LAST);
     return (float)integrate(c, o->xyz[1]);
-}
-
-void curve_preview_rgb(const curve *c, float rgb[3])
-{
-    const observer *o = observer_get();
-    double whole = c->is_emitter
-                       ? (double)curve_photometric(c)
-                       : grid_integrate(o->d65, o->xyz[1], GRID_FIRST, GRID_LAST);
-    float xyz[3];
-    for (int k = 0; k < 3; k++) {
-        float weight[GRID_N];
-        for (int i = 0; i < GRID_N; i++)
-            weight[i] = c->is_emitter ? o->folded[k][i] : o->folded[k][i] * o->d65[i];
-        xyz[k] = whole > 0.0 ? (float)(integrate(c, weight) / whole) : 0.0f;
-    }
-    color_space_from_xyz(color_space_srgb(), xyz, rgb);
 }

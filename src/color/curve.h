@@ -50,18 +50,11 @@ curve *curve_rgb(const color_space *space, const float rgb[3], curve_role role,
  *  unless kelvin is positive and finite. Below some 200 K nothing is visible: all zero.
  */
 curve *curve_blackbody(float kelvin);
-/** @brief Sellmeier: n² = 1 + sum b[i] λ²/(λ² - c[i]), λ in µm, c in µm². NULL if n is
- * not finite and positive over the wavelengths of light. */
-curve *curve_sellmeier(const double b[3], const double c[3]);
-/** @brief Cauchy: n = a + b/λ² + c/λ⁴, λ in µm. NULL under the same condition. */
-curve *curve_cauchy(double a, double b, double c);
 /** @brief A named spectrum as pbrt knows them: "metal-Au-eta", "metal-Au-k", "glass-BK7",
  *  "stdillum-D65", ... and ours (see the manual). NULL if unknown. */
 curve *curve_named(const char *name);
 /** @brief All names, NULL-terminated, static. */
 const char *const *curve_names(void);
-/** @brief scale times a curve (a new curve; takes a reference of its own on c). */
-curve *curve_scaled(const curve *c, float scale);
 
 curve *curve_ref(const curve *c);
 void curve_unref(curve *c); /**< NULL is allowed */
@@ -79,11 +72,6 @@ bool curve_is_constant(const curve *c);
  *  CURVE_EMISSION RGB curve it is that of the space's illuminant alone, as pbrt has it.
  */
 float curve_photometric(const curve *c);
-/** @brief The curve's colour as linear sRGB, for previews and `info`: a reflectance as
- * seen under D65 (an RGB albedo gives its triple back); lights (RGB emission, blackbody,
- * named illuminants) as themselves, divided by curve_photometric as pbrt divides them. */
-void curve_preview_rgb(const curve *c, float rgb[3]);
-
 /** @brief RGB texels to spectra: the three coefficients of the smooth curve of an albedo
  * triple in [0,1], by table look-up; pair with smooth_eval. Thread-safe. */
 void smooth_from_rgb(const color_space *space, const float rgb[3], float coefficients[3]);

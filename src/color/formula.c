@@ -24,7 +24,7 @@ curve *curve_blackbody(float kelvin)
     double temperature = (double)kelvin;
     if (!(kelvin > 0.0f) || !isfinite(kelvin))
         return NULL;
-    return curve_from_function(planck, &temperature, true);
+    return curve_from_function(planck, &temperature);
 }
 
 typedef struct sellmeier_terms {
@@ -44,23 +44,5 @@ static double sellmeier(double nm, const void *data)
 curve *curve_sellmeier_terms(const double *b, const double *c, int n_terms)
 {
     const sellmeier_terms terms = {b, c, n_terms};
-    return curve_from_function(sellmeier, &terms, false);
-}
-
-curve *curve_sellmeier(const double b[3], const double c[3])
-{
-    return curve_sellmeier_terms(b, c, 3);
-}
-
-static double cauchy(double nm, const void *data)
-{
-    const double *terms = data;
-    double square = nm * nm * 1e-6;
-    return terms[0] + terms[1] / square + terms[2] / (square * square);
-}
-
-curve *curve_cauchy(double a, double b, double c)
-{
-    const double terms[3] = {a, b, c};
-    return curve_from_function(cauchy, terms, false);
+    return curve_from_function(sellmeier, &terms);
 }

@@ -23,7 +23,7 @@ struct named_row {
 static curve *illuminant(float grid[GRID_N])
 {
     observer_normalize(observer_get(), grid);
-    return curve_from_grid(grid, true);
+    return curve_from_grid(grid);
 }
 
 /* CIE 15:2004, 3.1: the temperature stands for Planck's second constant of 1931. */
@@ -51,13 +51,13 @@ static curve *make_daylight(const named_row *row)
 static curve *make_d65(const named_row *row)
 {
     (void)row;
-    return curve_from_grid(observer_get()->d65, true);
+    return curve_from_grid(observer_get()->d65);
 }
 
 static curve *make_d60(const named_row *row)
 {
     (void)row;
-    return curve_from_grid(observer_get()->d60, true);
+    return curve_from_grid(observer_get()->d60);
 }
 
 static curve *make_fluorescent(const named_row *row)
@@ -73,7 +73,7 @@ static curve *make_paint(const named_row *row)
     float grid[GRID_N];
     grid_from_table(cornell_paints[row->index], CORNELL_N, CORNELL_FIRST, CORNELL_STEP,
                     grid);
-    return curve_from_grid(grid, false);
+    return curve_from_grid(grid);
 }
 
 static curve *make_cornell_light(const named_row *row)
@@ -82,7 +82,7 @@ static curve *make_cornell_light(const named_row *row)
     const float radiance[4] = {0.0f, 8.0f, 15.6f, 18.4f}; /* 400, 500, 600, 700 nm */
     float grid[GRID_N];
     grid_from_table(radiance, 4, 400, 100, grid);
-    return curve_from_grid(grid, true);
+    return curve_from_grid(grid);
 }
 
 static curve *make_glass(const named_row *row)
@@ -104,7 +104,7 @@ static curve *make_oxide_eta(const named_row *row)
 {
     for (const oxide_formula *o = measured_oxides; o->name; o++)
         if (strcmp(o->name, row->source) == 0)
-            return curve_from_function(oxide, o, false);
+            return curve_from_function(oxide, o);
     return NULL;
 }
 
@@ -140,7 +140,7 @@ static curve *make_metal(const named_row *row, double (*part)(const metal_point 
         double t = (nm - (double)a->nm) / (double)(b->nm - a->nm);
         grid[i] = (float)((1.0 - t) * part(a) + t * part(b));
     }
-    return curve_from_grid(grid, false);
+    return curve_from_grid(grid);
 }
 
 static curve *make_eta(const named_row *row)

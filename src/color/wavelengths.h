@@ -18,8 +18,8 @@
 typedef struct wavelengths {
     spectrum lambda;
     /** Matching functions folded to the range (tails beyond it are kept in the scale) and
-     *  multiplied by LAMBDA_MAX - LAMBDA_MIN, so that XYZ = mean over lanes of xyz[i] *
-     * L. A surface that sends D65 with photometric integral 1 has Y = 1 on average over
+     *  multiplied by LAMBDA_MAX - LAMBDA_MIN: XYZ is the mean over lanes of xyz[i] L. A
+     *  surface that sends D65 with photometric integral 1 has Y = 1 on average over
      * passes. */
     spectrum xyz[3];
 } wavelengths;

@@ -82,11 +82,6 @@ void emission_guide_free(emission_guide *guide)
     g_free(guide);
 }
 
-size_t emission_guide_cells(const emission_guide *guide)
-{
-    return (guide->nodes->len + 1) / 2;
-}
-
 static float middle(const guide_node *node)
 {
     return 0.5f * (node->low[node->axis] + node->high[node->axis]);

@@ -9,9 +9,9 @@
  * them, and any correlation between position and direction; a defensive share of uniform
  * numbers keeps every path possible.
  *
- *            ┌──────┐  split in the middle of the axis along which arrivals are least
- * even; ┌─┴─┐  ┌─┴─┐  a drawn number is stretched on its way down, so that its
- *          ...            stratification survives
+ *       ┌───┴───┐     split in the middle of the axis along which
+ *     ┌─┴─┐   ┌─┴─┐   arrivals are least even; a drawn number is stretched
+ *      ...     ...    on its way down, so that its stratification survives
  *
  * Jensen's projection maps (1996) and the histograms of Grittmann et al. ("Efficient
  * Caustic Rendering with Lightweight Photon Mapping", 2018), in primary sample space.
@@ -53,6 +53,3 @@ float emission_guide_draw(const emission_guide *guide, sampler *random,
 /** @brief Density at a point of the cube. */
 float emission_guide_density(const emission_guide *guide,
                              const float u[EMISSION_DIMENSIONS]);
-
-/** @brief Cells (for statistics and tests). */
-size_t emission_guide_cells(const emission_guide *guide);

@@ -14,8 +14,8 @@
  *
  * Over the density with which the path from the eye follows the way up to y1,
  *
- *     met     = p_scatter                 density of y1 → y0 by scattering, per solid
- * angle sampled = p_lights                  the same by choosing a point on the lights
+ *     met     = p_scatter                 per solid angle, y1 → y0 by scattering
+ *     sampled = p_lights                  the same by choosing a point on the lights
  *     merged  = p_scatter π e (π r² N),   e = density of the emission y0 → y1,
  *
  * where what the chain in between does to either density has been taken as equal, and yk

@@ -93,6 +93,6 @@ typedef struct photon_event {
  * flux is multiplied by this instead, with a probability of their ratio. */
 #define PHOTON_LEAST_SHARE 0.25f
 
-/** @brief Traces photon `index` of the task alone and tells each event (000 §4.4). */
+/** @brief Traces photon `index` of the task alone and tells each event. */
 void photon_tell(const trace_task *task, uint64_t index,
                  void (*tell)(const photon_event *event, void *data), void *data);

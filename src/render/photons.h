@@ -1,6 +1,5 @@
 /*
- * Photons alone: traced and shown without a picture, or told event by event (000 §4.3,
- * §4.4).
+ * Photons alone: traced and shown without a picture, or told event by event.
  */
 #pragma once
 

@@ -1,8 +1,8 @@
 /*
  * The world: built by calls, committed once, const afterwards.
  *
- *   scene_new ─► scene_add_* / scene_set_* (any order, one thread) ─► scene_commit ─►
- * queries
+ *   scene_new ─► scene_add_* / scene_set_* (any order, one thread)
+ *             ─► scene_commit ─► queries
  *
  * After the commit every query is const and thread-safe; what it finds goes to the
  * caller's own struct. Calls before it return false or NO_INDEX with an ERROR_INPUT that
@@ -274,8 +274,6 @@ spectrum scene_emitted(const scene *s, const surface_hit *hit, vec3 wo,
 /** @brief True if some light is one that no ray meets: such as a point, or a lamp of
  * alpha 0. What it sends through glass or by mirrors only photons find. */
 bool scene_has_unmet_lights(const scene *s);
-/** @brief Radiance of all environments arriving from direction d. */
-spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w);
 /** @brief Lobe classes and sides of the surface at the hit or beside it: a mixture is one
  * material here and another a hair away, where the eye may gather what landed here. */
 unsigned scene_lobes_around(const scene *s, const surface_hit *hit, const bsdf *b);

@@ -1,6 +1,6 @@
 /*
- * The lights of a committed scene, asked as one: emission at a hit, the environment, and
- * a light chosen by what it sends to a point, with a direction to it.
+ * The lights of a committed scene, asked as one: emission at a hit, and a light chosen by
+ * what it sends to a point, with a direction to it.
  */
 #include "scene/scene.h"
 
@@ -11,16 +11,6 @@ spectrum scene_emitted(const scene *s, const surface_hit *hit, vec3 wo,
         return spectrum_fill(0.0f);
     const light *l = scene_light(s, hit->light);
     return l->kind->radiance(l->self, hit, wo, w);
-}
-
-spectrum scene_environment(const scene *s, vec3 d, const wavelengths *w)
-{
-    spectrum sum = spectrum_fill(0.0f);
-    for (int i = 0; i < s->n_environments; i++) {
-        const light *l = scene_light(s, s->environments[i]);
-        sum += l->kind->environment(l->self, s->center, d, w);
-    }
-    return sum;
 }
 
 bool scene_has_unmet_lights(const scene *s)

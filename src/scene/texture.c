@@ -10,7 +10,6 @@
 struct texture {
     const texture_kind *kind;
     void *self;
-    bool is_spectrum;
 };
 
 static const texture_kind *const kinds[] = {
@@ -49,7 +48,7 @@ texture *texture_new(const struct scene *s, const char *kind, bool is_spectrum,
     if (!self)
         return NULL;
     texture *t = g_new0(texture, 1);
-    *t = (texture){k, self, is_spectrum};
+    *t = (texture){k, self};
     if (!params_all_used(p, what, error)) {
         texture_free(t);
         return NULL;
@@ -90,11 +89,6 @@ void texture_eval_normal(const texture *t, const surface_hit *hit, float rgb[3],
 const char *texture_kind_name(const texture *t)
 {
     return t->kind->name;
-}
-
-bool texture_is_spectrum(const texture *t)
-{
-    return t->is_spectrum;
 }
 
 /* The texture that parameter q names, in the table of its type. */

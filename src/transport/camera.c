@@ -1,7 +1,7 @@
 /*
  * The camera path of photon mapping: Whitted recursion over the lobes that can be
  * followed (specular and glossy), and at each surface what the maps and the lights have
- * to say about the others (000 §3.2).
+ * to say about the others (Whitted 1980; Jensen 2001, §8).
  *
  * Both sides of glass are followed at the first bounces, later one of them by chance. A
  * lamp met after a glossy bounce is shared with light sampling by multiple importance

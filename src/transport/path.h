@@ -1,8 +1,7 @@
 /*
  * Path tracing with next-event estimation and multiple importance sampling (Veach 1997;
  * Pharr et al. 2023, chapter 13): no photons, no bias, and so the oracle that photon
- * mapping is held to, and what it is compared with (002, "Photon Mapping vs Monte Carlo
- * Ray Tracing").
+ * mapping is held to.
  */
 #pragma once
 

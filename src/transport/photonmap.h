@@ -64,8 +64,8 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
 /** @brief Irradiance at some of the photons of a slice of time, as a map to look the
  * nearest up in (Christensen, "Faster Photon Map Global Illumination", 1999):
  * pass->irradiance and its groups.
- *  @param points photons stored, oriented, of n classes; every
- * fourth photon was set apart for them */
+ *  @param points photons stored, oriented, of n classes; every fourth photon was set
+ * apart for them */
 bool irradiance_map_build(photonmap_pass *pass, int slice, const trace_result *points,
                           size_t n, GError **error);
 

@@ -2,8 +2,8 @@
  * Light transport: one file per algorithm, each a row of one table.
  *
  *   prepare ─► plan (once a render: radii, budgets)
- *   begin_pass(plan, i) ─► pass (photons, maps) ─► radiance(pass, camera ray) ... ─►
- * end_pass
+ *   begin_pass(plan, i) ─► pass (photons, maps) ─► radiance(pass, camera ray) ...
+ *                                               ─► end_pass
  *
  * A pass is a pure function of (scene, settings, pass number); threads call `radiance` on
  * it at once, each with scratch of its own.
