@@ -270,10 +270,11 @@ static void test_bad_profiles(void)
 
 static light *turned(const char *kind, const char *path)
 {
-    transform turn = transform_rotate(70, 1, -1, 0.3),
-              move = transform_translate(0, 0, 0);
-    transform both = transform_multiply(&move, &turn);
-    return make(kind, list(path), &both);
+    transform turn = transform_rotate(70, 1, -1, 0.3);
+    params *p = list(path);
+    if (strcmp(kind, "projection") == 0)
+        number(p, "fov", 60);
+    return make(kind, p, &turn);
 }
 
 static bool draw(void *data, float u_lobe, vec2 u, vec3 *out)

@@ -213,6 +213,49 @@ static void test_ball_is_as_bright_as_a_plane(void)
     }
 }
 
+/* Mean over places beside the wall of the share of the disc that is in sight, all lengths
+   times as much; *whole: of places where nothing is amiss. */
+static double coverage_at_size(float size, double *whole)
+{
+    enum { POINTS = 200 };
+    g_autofree char *text = g_strdup_printf(
+        CAMERA "WorldBegin\n" LAMP "Scale %g %g %g\n" FLOOR WALL
+               "Translate -0.3 0 0 Shape \"sphere\" \"float radius\" 0.25\n",
+        (double)size, (double)size, (double)size);
+    g_autoptr(scene) s = scene_of(text);
+    const kernel kappa = {KERNEL_EPANECHNIKOV, 1};
+    double sum = 0;
+    *whole = 0;
+    for (uint32_t i = 0; i < POINTS; i++) {
+        sampler random = sampler_make(8, i);
+        vec2 u = sampler_2d(&random);
+        neighbourhood hood = {.scene = s,
+                              .p = size * vec3_make(u.x - 0.8f, u.y - 0.5f, 0),
+                              .n = vec3_make(0, 0, 1),
+                              .radius = size * radius};
+        *whole += neighbourhood_is_whole(&hood);
+        sum += (double)neighbourhood_coverage(&hood, &kappa);
+    }
+    *whole /= POINTS;
+    return sum / POINTS;
+}
+
+/* In millimetres, metres and kilometres the same is seen. */
+static void test_any_size(void)
+{
+    double whole, expected_whole, expected = coverage_at_size(1, &expected_whole);
+    g_assert_cmpfloat(expected, >, 0.5);
+    g_assert_cmpfloat(expected, <, 0.97);
+    g_assert_cmpfloat(expected_whole, >, 0.2);
+    for (float size = 1e-3f; size < 2e3f; size *= 1e6f) {
+        double found = coverage_at_size(size, &whole);
+        g_test_message("size %g: %g, expected %g; whole %g, expected %g", (double)size,
+                       found, expected, whole, expected_whole);
+        g_assert_cmpfloat(fabs(found - expected), <, 0.01);
+        g_assert_cmpfloat(fabs(whole - expected_whole), <, 0.04);
+    }
+}
+
 static bool is_whole(const scene *s, vec3 p, vec3 n, float reach)
 {
     neighbourhood hood = {.scene = s, .p = p, .n = n, .radius = reach};
@@ -255,6 +298,7 @@ int main(int argc, char **argv)
     g_test_add_func("/neighbourhood/bright-wall",
                     test_bright_wall_does_not_light_the_floor);
     g_test_add_func("/neighbourhood/ball", test_ball_is_as_bright_as_a_plane);
+    g_test_add_func("/neighbourhood/size", test_any_size);
     g_test_add_func("/neighbourhood/bent", test_what_bends_is_whole);
     return g_test_run();
 }

@@ -151,16 +151,17 @@ static void test_patch_samples_are_uniform(void)
     double expected[N][N] = {{0}}, total = 0, found[N][N] = {{0}}, chi2 = 0;
     for (int i = 0; i < N * NET; i++) {
         for (int k = 0; k < N * NET; k++) {
-            float h = 1.0f / (N * NET), u = (float)i * h, v = (float)k * h;
-            vec3 o = transform_point(&at.to_world, twisted_point(u, v));
-            vec3 du = transform_point(&at.to_world, twisted_point(u + h, v)) - o;
-            vec3 dv = transform_point(&at.to_world, twisted_point(u, v + h)) - o;
-            double cell = (double)length3(cross3(du, dv));
+            float h = 0.5f / (N * NET), u = (float)(2 * i + 1) * h,
+                  v = (float)(2 * k + 1) * h;
+            vec3 du = twisted_point(u + h, v) - twisted_point(u - h, v);
+            vec3 dv = twisted_point(u, v + h) - twisted_point(u, v - h);
+            double cell = (double)length3(cross3(transform_vector(&at.to_world, du),
+                                                 transform_vector(&at.to_world, dv)));
             expected[i / NET][k / NET] += cell;
             total += cell;
         }
     }
-    g_assert_cmpfloat(fabs((double)s->area - total), <, 1e-2 * total);
+    g_assert_cmpfloat(fabs((double)s->area - total), <, 1e-4 * total);
     for (uint32_t i = 0; i < SAMPLES; i++) {
         sampler random = sampler_make(77, i);
         float u = sampler_1d(&random);

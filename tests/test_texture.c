@@ -4,6 +4,8 @@
  */
 #include "image/image.h"
 #include "math/sampler.h"
+#include "math/warp.h"
+#include "scene/mapping.h"
 #include "scene/texture.h"
 
 #include <glib/gstdio.h>
@@ -266,6 +268,58 @@ static void test_mappings(void)
     }
 }
 
+static void init_mapping(mapping2 *m, const char *name, const transform *to_world)
+{
+    g_autoptr(params) p = with_word(list(NULL), "mapping", name);
+    p->to_world = *to_world;
+    const float v1[3] = {1, 0.5f, 0}, v2[3] = {0, 0, 2};
+    if (strcmp(name, "planar") == 0) {
+        params_add_numbers(p, here, PARAM_VECTOR3, "v1", v1, 3, NULL);
+        params_add_numbers(p, here, PARAM_VECTOR3, "v2", v2, 3, NULL);
+    }
+    g_assert_true(mapping2_init(m, p, NULL));
+}
+
+/* The most that a coordinate changes by on the way of a footprint, whichever way: found
+   by small steps all around. */
+static vec2 widest(const mapping2 *m, const surface_hit *hit)
+{
+    const float step = 1e-3f;
+    vec2 at = mapping2_eval(m, hit).st, most = {0, 0};
+    for (uint32_t i = 0; i < 2000; i++) {
+        sampler random = sampler_make(9, i);
+        surface_hit beside = *hit;
+        beside.p += step * warp_sphere(sampler_2d(&random));
+        vec2 to = mapping2_eval(m, &beside).st;
+        most.x = maxf(most.x, fabsf(to.x - at.x) * hit->footprint / step);
+        most.y = maxf(most.y, fabsf(to.y - at.y) * hit->footprint / step);
+    }
+    return most;
+}
+
+/* A look of some width covers as much of the texture as the coordinates change by. */
+static void test_mapped_footprints(void)
+{
+    static const char *const names[] = {"spherical", "cylindrical", "planar"};
+    transform turn = transform_rotate(40, 1, -2, 0.5), size = transform_scale(3, 3, 3);
+    transform to_world = transform_multiply(&turn, &size);
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        mapping2 m;
+        init_mapping(&m, names[i], &to_world);
+        surface_hit hit = {.p = transform_point(&to_world, vec3_make(0.5f, 0.4f, 0.3f)),
+                           .footprint = 0.02f};
+        texture_point2 found = mapping2_eval(&m, &hit);
+        vec2 expected = widest(&m, &hit);
+        g_test_message("%s: %g %g, expected %g %g", names[i], (double)found.ds,
+                       (double)found.dt, (double)expected.x, (double)expected.y);
+        g_assert_cmpfloat(fabsf(found.ds / expected.x - 1), <, 0.02f);
+        g_assert_cmpfloat(fabsf(found.dt / expected.y - 1), <, 0.02f);
+        hit.footprint = 1e4f; /* no coordinate of an angle covers more than all of it */
+        found = mapping2_eval(&m, &hit);
+        g_assert_cmpfloat(found.ds, <=, i < 2 ? 1.0f : INFINITY);
+    }
+}
+
 /* Beyond an edge the octahedral sphere goes on at the edge's mirror image. */
 static void test_octahedral_wrap(void)
 {
@@ -327,6 +381,7 @@ int main(int argc, char **argv)
     g_test_add_func("/texture/parameters-act", test_parameters_act);
     g_test_add_func("/texture/wrap", test_wrap);
     g_test_add_func("/texture/mappings", test_mappings);
+    g_test_add_func("/texture/mapped-footprints", test_mapped_footprints);
     g_test_add_func("/texture/octahedral", test_octahedral_wrap);
     g_test_add_func("/texture/trilinear", test_trilinear);
     g_test_add_func("/texture/alpha", test_alpha);
