@@ -213,15 +213,23 @@ static void test_ball_is_as_bright_as_a_plane(void)
     }
 }
 
-/* Mean over places beside the wall of the share of the disc that is in sight, all lengths
-   times as much; *whole: of places where nothing is amiss. */
+/* On the floor beside the wall: a ball, plates a fiftieth and an eighth of the radius
+   thick, and the top of a flat dome. */
+#define THINGS                                                                           \
+    "Shape \"disk\" \"float radius\" 0.15 \"float height\" 0.002 "                       \
+    "AttributeBegin Translate -0.5 0.3 0.0125 Shape \"disk\" \"float radius\" 0.15 "     \
+    "AttributeEnd AttributeBegin Translate -0.2 0.35 -0.99 Shape \"sphere\" \"float "    \
+    "radius\" 1 AttributeEnd Translate -0.5 -0.3 0 Shape \"sphere\" \"float radius\" "   \
+    "0.15\n"
+
+/* Mean over places of the share of the disc that is in sight, all lengths times as much;
+ *whole: of places where nothing is amiss. */
 static double coverage_at_size(float size, double *whole)
 {
-    enum { POINTS = 200 };
-    g_autofree char *text = g_strdup_printf(
-        CAMERA "WorldBegin\n" LAMP "Scale %g %g %g\n" FLOOR WALL
-               "Translate -0.3 0 0 Shape \"sphere\" \"float radius\" 0.25\n",
-        (double)size, (double)size, (double)size);
+    enum { POINTS = 1000 };
+    g_autofree char *text =
+        g_strdup_printf(CAMERA "WorldBegin\n" LAMP "Scale %g %g %g\n" FLOOR WALL THINGS,
+                        (double)size, (double)size, (double)size);
     g_autoptr(scene) s = scene_of(text);
     const kernel kappa = {KERNEL_EPANECHNIKOV, 1};
     double sum = 0;
