@@ -218,7 +218,7 @@ static void compare_maps(pair *maps, field_place place, float extent)
         if (i % 3)
             p += (i % 3 == 1 ? 0.01f : 1.5f) * extent * warp_sphere(sampler_2d(&s));
         photon_filter filter = {warp_sphere(sampler_2d(&s)), i % 4 > 1,
-                                flatten[i % 5 % 3], (int)(i % 7 % 3) - 1};
+                                flatten[i % 5 % 3], (int)(i % 7 % 3) - 1, i % 11 < 4};
         const photon_filter *used = i % 2 ? &filter : NULL;
         for (size_t r = 0; r < G_N_ELEMENTS(radii); r++) {
             compare_within(maps, p, radii[r] * extent, used);

@@ -33,6 +33,27 @@ static void test_furnace_by_final_gather(void)
                   "gather_rays=16");
 }
 
+/* A white ball within a glass ball in the furnace: inside glass radiance is η² times as
+   much, and what a gather ray brings out of it is two again. The camera looks past them,
+   at a wall. */
+static void test_furnace_gathers_within_glass(void)
+{
+    g_auto(GStrv) room = g_strsplit(FURNACE, "WorldBegin\n", 2);
+    g_autofree char *text = g_strconcat(
+        "LookAt -0.9 -0.9 -0.92  0 0 -1  0 0 1 Camera \"perspective\" \"float fov\" "
+        "6\n" SIZE(8) "WorldBegin Material \"dielectric\" Shape \"sphere\" \"float "
+                      "radius\" 0.8 Material \"diffuse\" \"rgb reflectance\" [1 1 1] "
+                      "Shape \"sphere\" \"float radius\" 0.7\n",
+        room[1], NULL);
+    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(image) img = render_with(
+        s, "passes=8 spp=2 photons=30000 radius=0.1 final_gather=on gather_rays=8 "
+           "max_backward_bounces=-1 max_forward_bounces=-1");
+    double found = mean_of(img, "");
+    g_test_message("radiance %g", found);
+    g_assert_cmpfloat(fabs(found / 2.0 - 1.0), <, 0.06);
+}
+
 /* Above the lamp and behind the ball it is dark, with hardly a photon. */
 #define DARK_PLACES(motion)                                                              \
     ROOM_CAMERA SIZE(8) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS                          \
@@ -241,6 +262,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/transport/furnace/map", test_furnace_by_the_map);
     g_test_add_func("/transport/furnace/final-gather", test_furnace_by_final_gather);
+    g_test_add_func("/transport/furnace/within-glass", test_furnace_gathers_within_glass);
     g_test_add_func("/transport/kept-irradiance", test_kept_irradiance);
     g_test_add_func("/transport/furnace/path", test_furnace_by_path);
     for (size_t i = 0; i < G_N_ELEMENTS(furnishings); i++) {

@@ -38,7 +38,7 @@ static inline photon_probe photon_probe_make(const photon_store *store, vec3 p,
     probe.z = store->z;
     probe.wi = store->wi;
     if (filter) {
-        probe.normal = store->normal;
+        probe.normal = filter->any_normal ? NULL : store->normal;
         probe.n = filter->n;
         probe.one_sided = filter->one_sided;
         probe.face = filter->face;

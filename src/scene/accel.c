@@ -215,6 +215,7 @@ static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit 
     hit->dpdv = (vec3){0};
     hit->footprint = 0.0f;
     hit->mesh = NULL;
+    hit->turns = false;
     if (query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
         fill_instance(a, &query, r, hit);
         return true;

@@ -12,8 +12,7 @@ ray instance_ray(const transform *to_world, const ray *r)
     return out;
 }
 
-/* The most that lengths grow by, or a little more. */
-static float largest_scale(const transform *t)
+float instance_largest_scale(const transform *t)
 {
     double sum = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -26,7 +25,8 @@ static float largest_scale(const transform *t)
 void instance_place_hit(const transform *to_world, surface_hit *hit)
 {
     float coordinates = max_component3(abs3(hit->p));
-    hit->error = maxf(hit->error, ROUNDING * coordinates) * largest_scale(to_world);
+    hit->error =
+        maxf(hit->error, ROUNDING * coordinates) * instance_largest_scale(to_world);
     hit->p = transform_point(to_world, hit->p);
     hit->n_geom = normalize3(transform_normal(to_world, hit->n_geom));
     hit->n = face_forward(normalize3(transform_normal(to_world, hit->n)), hit->n_geom);

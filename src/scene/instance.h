@@ -21,6 +21,8 @@ ray instance_ray(const transform *to_world, const ray *r);
 void instance_place_hit(const transform *to_world, surface_hit *hit);
 /** @brief Moves a placed hit on by a motion of the world. */
 void instance_move_hit(const transform *by, surface_hit *hit);
+/** @brief The most that lengths grow by, or a little more. */
+float instance_largest_scale(const transform *t);
 /** @brief The area in the world of a small piece of the object's surface that has area 1
  * there, by its unit normal n in the world: |det M| / |Mᵀ n|. */
 double instance_area_factor(const transform *to_world, vec3 n);

@@ -233,6 +233,12 @@ static inline bool scene_hit_moves(const scene *s, const surface_hit *hit)
 /** @brief How what a hit is on moves from the hit's time to another one: identity for
  * what stands still. */
 transform scene_motion_to(const scene *s, const surface_hit *hit, float time);
+/** @brief Where the axis is that the surface at the hit turns about (surface_hit.turns).
+ */
+vec3 scene_axis_at(const scene *s, const surface_hit *hit);
+/** @brief Pieces of that surface, of all whose axis is within radius of p. */
+void scene_pieces_near(const scene *s, const surface_hit *hit, vec3 p, float radius,
+                       shape_piece piece, void *data);
 /** @brief How many times an area around the hit becomes by that. */
 double scene_area_change(const scene *s, const surface_hit *hit, float time);
 

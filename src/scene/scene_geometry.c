@@ -241,6 +241,49 @@ double scene_caustic_density(const scene *s, const surface_hit *hit)
     return p * instance_mean_area_factor(&open) / instance_area_factor(&at, hit->n_geom);
 }
 
+/* ---- What turns ---- */
+
+vec3 scene_axis_at(const scene *s, const surface_hit *hit)
+{
+    const shape *on = s->shapes->pdata[hit->shape];
+    vec3 p = on->kind->axis_at(on->self, hit);
+    if (hit->instance == NO_INDEX)
+        return p;
+    transform to_world = accel_instance_at(s->accel, hit->instance, hit->time);
+    return transform_point(&to_world, p);
+}
+
+/* Takes pieces from the space of an object to the world. */
+typedef struct placed_pieces {
+    transform to_world;
+    float area_factor;
+    shape_piece piece;
+    void *data;
+} placed_pieces;
+
+static void place_piece(vec3 middle, float area, void *data)
+{
+    const placed_pieces *to = data;
+    to->piece(transform_point(&to->to_world, middle), area * to->area_factor, to->data);
+}
+
+void scene_pieces_near(const scene *s, const surface_hit *hit, vec3 p, float radius,
+                       shape_piece piece, void *data)
+{
+    const shape *on = s->shapes->pdata[hit->shape];
+    if (hit->instance == NO_INDEX) {
+        on->kind->pieces_near(on->self, p, radius, piece, data);
+        return;
+    }
+    placed_pieces to = {.to_world = accel_instance_at(s->accel, hit->instance, hit->time),
+                        .piece = piece,
+                        .data = data};
+    to.area_factor = (float)instance_mean_area_factor(&to.to_world);
+    transform to_object = transform_inverse(&to.to_world);
+    on->kind->pieces_near(on->self, transform_point(&to_object, p),
+                          radius * instance_largest_scale(&to_object), place_piece, &to);
+}
+
 /* ---- Time ---- */
 
 transform scene_motion_to(const scene *s, const surface_hit *hit, float time)

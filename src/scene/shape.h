@@ -48,6 +48,10 @@ typedef struct shape_sample {
 
 typedef struct shape shape;
 
+/** @brief Takes a piece of what turns about an axis: the middle of the piece of axis and
+ * the area that it shows to a ray across it, m². */
+typedef void (*shape_piece)(vec3 middle, float area, void *data);
+
 /** @brief What a kind of shape must do; one of traced by Embree as triangles or by
  * intersect. */
 typedef struct shape_kind {
@@ -79,6 +83,13 @@ typedef struct shape_kind {
     /** pdf_solid_angle of sample_toward for a hit on the shape seen from ref. NULL as
      * above. */
     float (*pdf_toward)(const void *self, vec3 ref, const surface_hit *hit);
+    /** Of surfaces that turn (surface_hit.turns), else NULL: where their axis is at a
+     * hit.
+     */
+    vec3 (*axis_at)(const void *self, const surface_hit *hit);
+    /** ... and short pieces of them, of all whose axis is within radius of p. */
+    void (*pieces_near)(const void *self, vec3 p, float radius, shape_piece piece,
+                        void *data);
 } shape_kind;
 
 struct shape {

@@ -6,8 +6,9 @@
  * Unlike pbrt's "cylinder", which is a flat ribbon with the normals of a tube, this one
  * is a tube, so that glass fibres and the light behind wires come out right; its v goes
  * around. "flat" curves turn to every ray, so a place seen from two sides is not the same
- * place: light tracing and camera rays differ by about a width there. As in pbrt, rays
- * that leave a flat curve start two widths above it, and no curve can be a lamp.
+ * place: light tracing and camera rays differ by about a width there (surface_hit.turns).
+ * As in pbrt, rays that leave a flat curve start two widths above it, and no curve can be
+ * a lamp.
  *
  * Places for aimed photons are drawn on the tube, of flat curves too: uniform along and
  * around, exact where the curve is straight.
@@ -15,6 +16,7 @@
 #include "base/memory.h"
 #include "math/distribution.h"
 #include "scene/curve_segment.h"
+#include "scene/instance.h"
 #include "scene/shape_kinds.h"
 #include "scene/shape_quadric.h"
 
@@ -22,6 +24,9 @@
 #include <string.h>
 
 enum { MOST_SPLITS = 8, AREA_CELLS = 32 /* a segment */, MEAN_STEPS = 16 };
+
+/* Of a segment, to look for pieces near a place. */
+enum { MOST_HALVINGS = 20 };
 
 typedef struct curve_shape {
     quadric q; /* object space, orientation, area */
@@ -368,8 +373,74 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
         dpdv[i] = h.across[i];
     }
     quadric_fill_hit(&c->q, &point, dpdu, dpdv, hit);
-    if (c->type == CURVE_FLAT)
+    hit->turns = c->type == CURVE_FLAT;
+    if (hit->turns)
         hit->error = (float)(4.0 * at.r / dvec3_length(d)) * length3(r->direction);
+}
+
+/* ---- The axis ---- */
+
+static vec3 axis_at(const void *self, const surface_hit *hit)
+{
+    const curve_shape *c = self;
+    curve_point at = segment_at(span_of(c, hit->primitive).segment, (double)hit->uv.x);
+    return transform_point(&c->q.to_world, dvec3_to_float(at.c));
+}
+
+/* Which pieces are wanted, and of what size. */
+typedef struct piece_search {
+    const curve_shape *c;
+    vec3 p;
+    float radius;
+    double to_world; /* a length over that in object space */
+    shape_piece piece;
+    void *data;
+} piece_search;
+
+/* No point of a span is further from its middle than the longest side of its control
+   polygon, times one and a half. */
+static double reach_of(const curve_span *span)
+{
+    dvec3 p[4];
+    double longest = 0.0;
+    span_control(span, p);
+    for (int i = 0; i < 3; i++)
+        longest = fmax(longest, dvec3_length(p[i + 1] - p[i]));
+    return 1.5 * longest;
+}
+
+static void search_pieces(const piece_search *s, curve_span span, int depth)
+{
+    const double fine = 0.2;
+    curve_point at = segment_at(span.segment, 0.5 * (span.low + span.high));
+    vec3 middle = transform_point(&s->c->q.to_world, dvec3_to_float(at.c));
+    double reach = reach_of(&span) * s->to_world;
+    if ((double)length3(middle - s->p) > (double)s->radius + reach)
+        return;
+    if (reach > fine * (double)s->radius && depth > 0) {
+        double half = 0.5 * (span.low + span.high);
+        search_pieces(s, (curve_span){span.segment, span.low, half}, depth - 1);
+        search_pieces(s, (curve_span){span.segment, half, span.high}, depth - 1);
+        return;
+    }
+    double length = dvec3_length(at.d1) * (span.high - span.low);
+    s->piece(middle, (float)(2.0 * at.r * length * s->to_world * s->to_world), s->data);
+}
+
+static void pieces_near(const void *self, vec3 p, float radius, shape_piece piece,
+                        void *data)
+{
+    const curve_shape *c = self;
+    const piece_search s = {
+        .c = c,
+        .p = p,
+        .radius = radius,
+        .to_world = sqrt(instance_mean_area_factor(&c->q.to_world)),
+        .piece = piece,
+        .data = data,
+    };
+    for (size_t i = 0; i < c->n_segments; i++)
+        search_pieces(&s, (curve_span){&c->segments[i], 0.0, 1.0}, MOST_HALVINGS);
 }
 
 const shape_kind curve_kind = {
@@ -384,4 +455,6 @@ const shape_kind curve_kind = {
     .fill_hit = fill_hit,
     .area = quadric_area,
     .sample_area = quadric_sample_area,
+    .axis_at = axis_at,
+    .pieces_near = pieces_near,
 };

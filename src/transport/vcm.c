@@ -88,7 +88,8 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
         const light_vertex *v = &paths->vertices[i];
         vec3 n = face_forward(v->hit.n_geom, v->wi);
         bool behind = dot3(v->wi, v->hit.n_geom) < 0.0f;
-        photon p = {.p = v->hit.p,
+        pass->some_turn |= v->hit.turns;
+        photon p = {.p = vcm_place(pass, &v->hit),
                     .wi = v->wi,
                     .flux = vcm_payload(i),
                     .flags = behind ? PHOTON_BEHIND : 0,
@@ -155,6 +156,8 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
     for (guint i = 0; i < plan->scene->shapes->len; i++)
         pass->camera_hides |=
             ((const shape *)plan->scene->shapes->pdata[i])->camera_hidden;
+    pass->turning_ends = pass->strategies.connect ||
+                         (pass->strategies.merge && !pass->strategies.end_here);
     pass->strategies.splat &= camera_connects(&plan->scene->camera);
     if (pass->strategies.merge)
         pass->ratios.merge = (float)discs;

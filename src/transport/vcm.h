@@ -22,6 +22,11 @@
  * To an orthographic camera light vertices are not connected; the other strategies then
  * share its paths.
  *
+ * A flat curve turns to face every ray, so that light and eye see two surfaces there.
+ * What it scatters is defined by rays from the eye. So light subpaths end at it, to be
+ * merged with; what goes on from there is found from the eye alone. Vertices of one curve
+ * merge as far as they lie along its axis, over the area that it shows across it.
+ *
  * How the weights are known without looking back along a path: vcm_weights.h.
  *
  * Where something moves all vertices of a path must be of one time: light subpath i has
@@ -88,6 +93,8 @@ typedef struct vcm_pass {
     float radius;           /**< of merging, m */
     int n_slices;           /**< of the shutter's time, that merge apart */
     bool camera_hides;      /**< some shape is not seen by the camera */
+    bool turning_ends;      /**< light subpaths end at what turns to face rays */
+    bool some_turn;         /**< vertices in the map are on such surfaces */
     float camera_per_light; /**< camera samples of a pixel over light subpaths, spp / N */
     light_paths light;
     photon_map *map; /**< flux of a photon in it: see vcm_payload; NULL: no merging */
@@ -100,12 +107,24 @@ static inline transform vcm_motion_to_map(const vcm_pass *pass, const surface_hi
     return scene_motion_to(pass->scene, hit, time_of_slice(slice, pass->n_slices));
 }
 
+/** @brief Where a vertex is, for merging: of what turns to face rays, on its axis. */
+static inline vec3 vcm_place(const vcm_pass *pass, const surface_hit *hit)
+{
+    return hit->turns ? scene_axis_at(pass->scene, hit) : hit->p;
+}
+
+/** @brief True if light subpaths go no further than the hit. */
+static inline bool vcm_ends_light(const vcm_pass *pass, const surface_hit *hit)
+{
+    return hit->turns && pass->turning_ends;
+}
+
 /** @brief Traces a few light subpaths and keeps in plan->density how close they lie. */
 bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **error);
 
-/** @brief Of a vertex at p that chance has led to: one over one more than the light
+/** @brief Of a vertex that chance has led to: one over one more than the light
  * vertices that merging finds there. @param hits scratch */
-float vcm_alone_at(const vcm_pass *pass, vec3 p, photon_hits *hits);
+float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, photon_hits *hits);
 
 /** @brief The strategies of a vcm_choice. */
 vcm_strategies vcm_strategies_of(int choice);
@@ -162,6 +181,21 @@ static inline float vcm_pdf_reverse(const vcm_vertex *v, vec3 wi, transport_mode
         mode == TRANSPORT_RADIANCE ? TRANSPORT_IMPORTANCE : TRANSPORT_RADIANCE;
     return bsdf_pdf(&v->bsdf, wi, v->wo, LOBE_ALL, other);
 }
+
+/** @brief The geometric cosine under which a surface is seen from direction w: the area
+ * that it shows over its own. What turns to face every ray shows all but what its axis is
+ * foreshortened by. */
+static inline float vcm_cosine(const surface_hit *hit, vec3 w)
+{
+    return hit->turns ? length3(cross3(w, normalize3(hit->dpdu)))
+                      : fabsf(dot3(w, hit->n_geom));
+}
+
+/** @brief Lists in scratch->hits the light vertices that v merges with: those in the map
+ * within reach that are on its surface. @param first the eye sees v: edges are minded
+ * @return the kernel's area that they are a density over, m²; 0: none, or no memory */
+float vcm_find_vertices(const vcm_pass *pass, const vcm_vertex *v, const kernel *kappa,
+                        bool first, estimate_scratch *scratch);
 
 /** @brief A subpath on its way. */
 typedef struct vcm_walk {

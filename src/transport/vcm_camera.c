@@ -1,5 +1,4 @@
 /* Camera subpaths: each vertex meets lamps, is connected, and merges. */
-#include "photon/neighbourhood.h"
 #include "transport/vcm.h"
 
 enum { ROULETTE_BOUNCES = 4 };
@@ -13,6 +12,7 @@ typedef struct camera_walk {
     transport_scratch *scratch;
     radiance_sample *out;
     size_t first_light, end_light; /* the light subpath that it connects to */
+    partial_weights at_curve;      /* see leave_curve */
 } camera_walk;
 
 static void add(camera_walk *c, scattering_counts counts, int lamp, spectrum radiance)
@@ -118,7 +118,7 @@ static float lamp_weight(const camera_walk *c, const vcm_vertex *v, int index,
         .direction = -to_light->wi,
         .distance2 = square(to_light->distance),
         .pdf = to_light->pdf,
-        .cosine = fabsf(dot3(to_light->wi, v->hit->n_geom)),
+        .cosine = vcm_cosine(v->hit, to_light->wi),
     };
     float met =
         l->is_unmet ? 0.0f : vcm_pdf(v, to_light->wi, TRANSPORT_RADIANCE) / to_light->pdf;
@@ -162,7 +162,7 @@ typedef struct vertex_pair {
 static float pair_weight(const camera_walk *c, const vertex_pair *p)
 {
     vec3 d = p->direction;
-    float eye_area = fabsf(dot3(d, p->eye->hit->n_geom)) / p->distance2;
+    float eye_area = vcm_cosine(p->eye->hit, d) / p->distance2;
     float lamp_area = fabsf(dot3(d, p->lamp->hit->n_geom)) / p->distance2;
     float lamp_side = weights_connected(
         &p->light->weights, lamp_area * vcm_pdf(p->eye, d, TRANSPORT_RADIANCE),
@@ -203,7 +203,7 @@ static void connect_to_vertex(camera_walk *c, const vcm_vertex *v, const light_v
     vec3 to = l->hit.p - v->hit->p;
     float distance2 = length3_2(to);
     if (!vcm_length_allowed(pass, c->walk.counts.n + l->before.n + 2) ||
-        !(distance2 > 0.0f))
+        !(distance2 > 0.0f) || vcm_ends_light(pass, &l->hit))
         return;
     vcm_vertex lamp = {.hit = &l->hit, .wo = l->wi, .alone = l->alone};
     scene_bsdf(pass->scene, &l->hit, &pass->w, ALL_LANES, &options, &lamp.bsdf);
@@ -211,11 +211,15 @@ static void connect_to_vertex(camera_walk *c, const vcm_vertex *v, const light_v
     add_pair(c, &p);
 }
 
+/* What is connected where light subpaths end, nothing is merged (see leave_curve). */
 static void connect(camera_walk *c, const vcm_vertex *v)
 {
-    connect_to_lamp(c, v);
+    vcm_vertex at = *v;
+    if (vcm_ends_light(c->pass, v->hit))
+        at.alone = 0.0f;
+    connect_to_lamp(c, &at);
     for (size_t i = c->first_light; i < c->end_light; i++)
-        connect_to_vertex(c, v, &c->pass->light.vertices[i]);
+        connect_to_vertex(c, &at, &c->pass->light.vertices[i]);
 }
 
 /* ---- Merging ---- */
@@ -240,11 +244,14 @@ static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *
 {
     int n_slices = c->pass->n_slices;
     vec3 wi = l->wi;
+    if (vcm_ends_light(c->pass, v->hit) && c->pass->strategies.connect &&
+        l->weights.vcm > 0.0f)
+        return;
     if (scene_hit_moves(c->pass->scene, &l->hit)) {
         transform by = scene_motion_to(c->pass->scene, &l->hit, v->hit->time);
         wi = normalize3(transform_vector(&by, wi));
     }
-    float cosine = fabsf(dot3(wi, v->hit->n_geom));
+    float cosine = vcm_cosine(v->hit, wi);
     if (!(cosine > 0.0f) ||
         time_slice(l->hit.time, n_slices) != time_slice(v->hit->time, n_slices) ||
         !vcm_length_allowed(c->pass, c->walk.counts.n + l->before.n + 1))
@@ -258,60 +265,6 @@ static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *
                   l->flux * (merge_weight(c, v, l, wi) * density));
 }
 
-/* The light vertices around a place. @return false: none, or memory is refused. */
-static bool find_vertices(camera_walk *c, const surface_hit *at,
-                          const photon_filter *filter)
-{
-    photon_hits *hits = &c->scratch->estimate.hits;
-    bool done = photon_map_within(c->pass->map, at->p, c->pass->radius, filter, hits);
-    c->scratch->estimate.failed |= !done;
-    return done && hits->n > 0;
-}
-
-/* Where the camera looks, only the part of the disc counts that is surface in sight.
-   @return its share; the hits are then those of that part. */
-static float keep_surface(camera_walk *c, const surface_hit *at, photon_filter *filter,
-                          const kernel *kappa)
-{
-    photon_hits *hits = &c->scratch->estimate.hits;
-    neighbourhood hood = {.scene = c->pass->scene,
-                          .p = at->p,
-                          .n = filter->n,
-                          .radius = c->pass->radius,
-                          .time = at->time};
-    if (!c->pass->plan->how.edges || c->walk.counts.n_diffuse > 0 ||
-        neighbourhood_is_whole(&hood))
-        return 1.0f;
-    float share = neighbourhood_coverage(&hood, kappa);
-    filter->flatten = NEIGHBOURHOOD_FLATTEN;
-    if (!find_vertices(c, at, filter))
-        return 1.0f;
-    size_t kept = 0;
-    for (size_t i = 0; i < hits->n; i++) {
-        photon p = photon_store_get(photon_map_store(c->pass->map), hits->index[i]);
-        if (!neighbourhood_sees(&hood, p.p))
-            continue;
-        hits->index[kept] = hits->index[i];
-        hits->distance2[kept++] = hits->distance2[i];
-    }
-    hits->n = kept;
-    return share;
-}
-
-/* A hit, and its wo, where the map has it. */
-static surface_hit place_in_map(const vcm_pass *pass, const surface_hit *hit, vec3 *wo)
-{
-    surface_hit at = *hit;
-    if (pass->n_slices > 1)
-        at.time = time_of_slice(time_slice(hit->time, pass->n_slices), pass->n_slices);
-    if (scene_hit_moves(pass->scene, hit)) {
-        transform by = vcm_motion_to_map(pass, hit);
-        instance_move_hit(&by, &at);
-        *wo = transform_vector(&by, *wo);
-    }
-    return at;
-}
-
 static void merge(camera_walk *c, const vcm_vertex *v)
 {
     const vcm_pass *pass = c->pass;
@@ -319,23 +272,12 @@ static void merge(camera_walk *c, const vcm_vertex *v)
     const photon_hits *hits = &c->scratch->estimate.hits;
     const kernel kappa = {(kernel_choice)how->class_kernel[PHOTON_INDIRECT],
                           (float)how->class_cone_k[PHOTON_INDIRECT]};
-    vec3 wo = v->wo;
-    const surface_hit at = place_in_map(pass, v->hit, &wo);
-    bool transmits = v->bsdf.lobes & LOBE_TRANSMISSION;
-    int face = dot3(at.n_geom, wo) < 0.0f ? -1 : 1;
-    photon_filter filter = {
-        .n = face < 0 ? -at.n_geom : at.n_geom,
-        .one_sided = !transmits,
-        .face = transmits ? face : 0,
-        .flatten = (float)how->flatten,
-    };
     float r2 = square(pass->radius);
     c->scratch->n_gathers++;
-    if (!find_vertices(c, &at, &filter))
-        return;
-    float area = kernel_area(&kappa, r2) * keep_surface(c, &at, &filter, &kappa);
+    float area = vcm_find_vertices(pass, v, &kappa, c->walk.counts.n_diffuse == 0,
+                                   &c->scratch->estimate);
     const photon_store *store = photon_map_store(pass->map);
-    for (size_t i = 0; i < hits->n; i++) {
+    for (size_t i = 0; i < hits->n && area > 0.0f; i++) {
         size_t vertex = vcm_payload_vertex(store->flux[hits->index[i]]);
         merge_with(c, v, &pass->light.vertices[vertex],
                    kernel_eval(&kappa, hits->distance2[i], r2) / area);
@@ -365,13 +307,42 @@ static void shade(camera_walk *c, const vcm_vertex *v)
         merge(c, v);
 }
 
+/* Where light subpaths end, a curve that turns to face rays, connections find all light
+   but that which comes by a mirror: only that is merged, for rays to and from the curve
+   differ by its width. So what merging there adds to the weights, at_curve, counts once
+   the path has met a mirror next. */
+static void arrive_past_curve(camera_walk *c, const surface_hit *hit, float cosine)
+{
+    weights_arrive(&c->at_curve, length3_2(hit->p - c->walk.from), cosine);
+    if (vcm_ends_light(c->pass, hit))
+        c->walk.weights = c->at_curve = (partial_weights){0};
+}
+
+static void leave_curve(camera_walk *c, const vcm_vertex *v)
+{
+    partial_weights *w = &c->walk.weights;
+    if (!(w->vcm > 0.0f)) {
+        weights_bounce_specular(&c->at_curve, vcm_cosine(v->hit, c->walk.ray.direction));
+        w->vc += c->at_curve.vc;
+        w->vm += c->at_curve.vm;
+    }
+    c->at_curve = (partial_weights){0};
+    if (vcm_ends_light(c->pass, v->hit) && c->pass->strategies.connect) {
+        c->at_curve = (partial_weights){.vc = w->vc, .vm = w->vm};
+        w->vc = w->vm = 0.0f;
+    }
+}
+
 /* Goes on from v, by mirrors only if all else has been merged. */
 static bool go_on(camera_walk *c, const vcm_vertex *v)
 {
     const vcm_strategies *how = &c->pass->strategies;
     unsigned lobes = how->end_here ? LOBE_SPECULAR | LOBE_ANY_SIDE : LOBE_ALL;
-    return (how->connect || how->merge) &&
-           vcm_bounce(c->pass, &c->walk, v, lobes, c->random) && survives(c);
+    if ((!how->connect && !how->merge) ||
+        !vcm_bounce(c->pass, &c->walk, v, lobes, c->random))
+        return false;
+    leave_curve(c, v);
+    return survives(c);
 }
 
 static void follow(camera_walk *c)
@@ -390,7 +361,7 @@ static void follow(camera_walk *c)
         }
         walk->carried *= hit_transmittance(&hit, &pass->w);
         vcm_vertex v = {.hit = &hit, .wo = -walk->ray.direction};
-        float cosine = fabsf(dot3(v.wo, hit.n_geom));
+        float cosine = vcm_cosine(&hit, v.wo);
         bool surface =
             scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf);
         if (hit.light != NO_INDEX)
@@ -404,9 +375,10 @@ static void follow(camera_walk *c)
         if (!vcm_length_allowed(pass, walk->counts.n + 1) || !(cosine > 0.0f))
             return;
         weights_arrive(&walk->weights, length3_2(hit.p - walk->from), cosine);
+        arrive_past_curve(c, &hit, cosine);
         v.alone = walk->mirrors_only
                       ? 1.0f
-                      : vcm_alone_at(pass, hit.p, &c->scratch->estimate.hits);
+                      : vcm_alone_at(pass, &hit, &c->scratch->estimate.hits);
         shade(c, &v);
         if (!go_on(c, &v))
             return;

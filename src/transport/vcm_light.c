@@ -152,7 +152,7 @@ static void connect_to_eye(light_walk *l, const vcm_vertex *v)
         return;
     spectrum left = hit_transmittance_to(v->hit, eye.direction, eye.distance, &pass->w);
     float density = eye.pdf / square(eye.distance);
-    float cosine = fabsf(dot3(eye.direction, v->hit->n_geom));
+    float cosine = vcm_cosine(v->hit, eye.direction);
     float weight = weight_to_eye(l, v, &eye, density * cosine);
     for (int i = 0; i < 2; i++) {
         scattering_counts scattered = vcm_count((scattering_counts){0}, i == 0);
@@ -233,7 +233,7 @@ static void arrive_first(light_walk *l, const surface_hit *hit, float cosine,
 
 static void arrive(light_walk *l, const surface_hit *hit)
 {
-    float cosine = fabsf(dot3(l->walk.ray.direction, hit->n_geom));
+    float cosine = vcm_cosine(hit, l->walk.ray.direction);
     float distance2 = length3_2(hit->p - l->walk.from);
     if (l->walk.counts.n == 0)
         arrive_first(l, hit, cosine, distance2);
@@ -256,9 +256,10 @@ static void land(light_walk *l, const vcm_vertex *v)
     if (!(lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)) ||
         !vcm_length_allowed(l->pass, l->walk.counts.n + 1))
         return;
-    if (l->pass->strategies.connect || l->pass->strategies.merge)
+    bool ends = vcm_ends_light(l->pass, v->hit);
+    if ((l->pass->strategies.connect && !ends) || l->pass->strategies.merge)
         keep(l, v);
-    if (l->pass->strategies.splat)
+    if (l->pass->strategies.splat && !ends)
         connect_to_eye(l, v);
 }
 
@@ -280,10 +281,11 @@ static void follow(light_walk *l)
         if (!(fabsf(dot3(v.wo, hit.n_geom)) > 0.0f))
             return;
         arrive(l, &hit);
-        v.alone = vcm_alone_at(pass, hit.p, &l->out->hits);
+        v.alone = vcm_alone_at(pass, &hit, &l->out->hits);
         land(l, &v);
         spectrum before = l->walk.carried;
-        if (!vcm_length_allowed(pass, l->walk.counts.n + 2) ||
+        if (vcm_ends_light(pass, &hit) ||
+            !vcm_length_allowed(pass, l->walk.counts.n + 2) ||
             !vcm_bounce(pass, &l->walk, &v, LOBE_ALL, &l->random) || !survives(l, before))
             return;
     }
