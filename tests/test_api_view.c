@@ -129,7 +129,7 @@ static void test_camera_set(void)
 static void test_camera_refused(void)
 {
     g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
-    NephCamera before, after, bad[5];
+    NephCamera before, after, bad[8];
     neph_scene_camera(scene, &before);
     for (size_t i = 0; i < G_N_ELEMENTS(bad); i++)
         bad[i] = elsewhere;
@@ -138,6 +138,9 @@ static void test_camera_refused(void)
     memcpy(bad[2].up, bad[2].direction, sizeof bad[2].up);
     bad[3].fov = 180.0;
     bad[4].focal_distance = 0.0;
+    bad[5].lens_radius = -0.01;
+    bad[6].lens_radius = (double)INFINITY;
+    bad[7].lens_radius = (double)NAN;
     for (size_t i = 0; i < G_N_ELEMENTS(bad); i++) {
         g_autoptr(GError) error = NULL;
         g_assert_false(neph_scene_set_camera(scene, &bad[i], &error));

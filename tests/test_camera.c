@@ -408,6 +408,28 @@ static void test_filter_values(void)
     filter_clear(&standard);
 }
 
+/* A place on the raster reaches a film if it lies within the filter of some pixel. */
+static void test_filter_reach(void)
+{
+    enum { WIDTH = 5, HEIGHT = 3, N = 4000 };
+    pixel_filter f = make_filter("triangle");
+    unsigned n_reached = 0;
+    for (uint32_t n = 0; n < N; n++) {
+        sampler random = sampler_make(12, n);
+        vec2 u = sampler_2d(&random);
+        vec2 at = {20.0f * u.x - 8.0f, 20.0f * u.y - 8.0f};
+        bool expected = false;
+        for (int i = 0; i < WIDTH * HEIGHT; i++)
+            expected |= fabsf(at.x - (float)(i % WIDTH) - 0.5f) <= f.x_radius &&
+                        fabsf(at.y - (float)(i / WIDTH) - 0.5f) <= f.y_radius;
+        g_assert_cmpint(filter_reaches(&f, at, WIDTH, HEIGHT), ==, expected);
+        n_reached += expected;
+    }
+    g_assert_cmpuint(n_reached, >, N / 10);
+    g_assert_cmpuint(n_reached, <, N / 2);
+    filter_clear(&f);
+}
+
 /* The mean weight is one, and the mean of weight * test is the filter's own integral of
  * the test, within five standard errors (false alarm 6e-7 each; deterministic by seed).
  */
@@ -568,6 +590,7 @@ int main(int argc, char **argv)
     g_test_add_func("/camera/shutter", test_shutter);
     g_test_add_func("/camera/refuses", test_camera_refuses);
     g_test_add_func("/filter/values", test_filter_values);
+    g_test_add_func("/filter/reach", test_filter_reach);
     g_test_add_func("/filter/weights", test_weights_integrate);
     g_test_add_func("/filter/unit-weight", test_positive_filters_have_unit_weight);
     g_test_add_func("/filter/triangle", test_triangle_is_inverted);

@@ -49,7 +49,8 @@ static void add(numbers *to, const void *data, size_t size, int type, int count,
 /* A tetrahedron, accessors by number: 0 positions, 1 joints (bytes) and 2 weights (that
    add up to 2: they are scaled), 3 inverse bind matrices of two joints (the second stood
    at (0, 0, 1)), 4 and 5 changes of the positions, 6 normals, 7 changes of the normals, 8
-   joints that are not there. */
+   joints that are not there; behind them document adds 9 the corners of triangles, 10
+   joints and 11 weights of two vertices only. */
 static numbers subject(void)
 {
     static const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -79,7 +80,11 @@ static char *document(const char *middle)
 {
     static const uint16_t corners[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
     numbers all = subject();
+    static const uint8_t few_joints[8] = {0};
+    static const float few_weights[8] = {1, 0, 0, 0, 1, 0, 0, 0};
     add(&all, corners, sizeof corners, 5123, 12, "SCALAR");
+    add(&all, few_joints, sizeof few_joints, 5121, 2, "VEC4");
+    add(&all, few_weights, sizeof few_weights, 5126, 2, "VEC4");
     g_autofree char *code = g_base64_encode(all.bytes->data, all.bytes->len);
     char *text = g_strdup_printf(
         "{\"asset\":{\"version\":\"2.0\"},%s,\"buffers\":[{\"byteLength\":%u,\"uri\":"
@@ -286,6 +291,12 @@ static void test_refused(void)
          "meshes[0].primitives[0].attributes: vertex 1 hangs on a joint that its skin "
          "has "
          "not"},
+        {MESH(PRIMITIVE(",\"JOINTS_0\":10,\"WEIGHTS_0\":2")) SKIN
+         "\"nodes\":[{\"mesh\":0,\"skin\":0}," JOINTS "]",
+         "expected a JOINTS_0 and a WEIGHTS_0 of 4 elements, found 2 and 4"},
+        {MESH(PRIMITIVE(",\"JOINTS_0\":1,\"WEIGHTS_0\":11")) SKIN
+         "\"nodes\":[{\"mesh\":0,\"skin\":0}," JOINTS "]",
+         "expected a JOINTS_0 and a WEIGHTS_0 of 4 elements, found 4 and 2"},
         {MESH(PRIMITIVE(SKINNED)) "\"skins\":[{\"joints\":[0,0,0],"
                                   "\"inverseBindMatrices\":3}],\"nodes\":[{\"mesh\":0,"
                                   "\"skin\":0}]",

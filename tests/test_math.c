@@ -5,11 +5,13 @@
 #include "math/distribution.h"
 #include "math/frame.h"
 #include "math/median.h"
+#include "math/noise.h"
 #include "math/sampler.h"
 #include "math/transform.h"
 #include "math/warp.h"
 
 #include <glib.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void test_transform_inverts(void)
@@ -172,6 +174,33 @@ static void test_distribution_follows_its_weights(void)
     distribution_clear(&d);
 }
 
+/* Perlin's gradients (2002): at whole points noise is zero and rises along one of the
+   twelve directions to the edges of a cube, all of which occur. */
+static void test_noise_has_perlins_gradients(void)
+{
+    bool seen[3][3][3] = {{{false}}};
+    int n_seen = 0;
+    for (int i = 0; i < 1000; i++) {
+        vec3 p = vec3_make((float)(i % 10), (float)(i / 10 % 10), (float)(i / 100));
+        int component[3], n_zero = 0;
+        g_assert_cmpfloat(fabsf(noise3(p)), <, 1e-6f);
+        for (int k = 0; k < 3; k++) {
+            vec3 step = {0};
+            step[k] = 1.0f / 64;
+            float slope = 32 * (noise3(p + step) - noise3(p - step));
+            component[k] = (int)roundf(slope);
+            g_assert_cmpfloat(fabsf(slope - (float)component[k]), <, 0.05f);
+            g_assert_cmpint(abs(component[k]), <=, 1);
+            n_zero += component[k] == 0;
+        }
+        g_assert_cmpint(n_zero, ==, 1);
+        bool *one = &seen[component[0] + 1][component[1] + 1][component[2] + 1];
+        n_seen += !*one;
+        *one = true;
+    }
+    g_assert_cmpint(n_seen, ==, 12);
+}
+
 /* As many values are below the median as above, or one more. */
 static void test_median_is_in_the_middle(void)
 {
@@ -204,6 +233,7 @@ int main(int argc, char **argv)
     g_test_add_func("/math/warp/integrals", test_warps_integrate);
     g_test_add_func("/math/frame/orthonormal", test_frames_are_orthonormal);
     g_test_add_func("/math/distribution/weights", test_distribution_follows_its_weights);
+    g_test_add_func("/math/noise/gradients", test_noise_has_perlins_gradients);
     g_test_add_func("/math/median/middle", test_median_is_in_the_middle);
     return g_test_run();
 }
