@@ -201,13 +201,19 @@ static bool find_hands(hands *h)
     return h->move && h->press && h->key && h->code && h->sync;
 }
 
-/* Lets events arrive and frames pass. */
+/* Lets events arrive and frames pass: so long at least, and until nothing has happened
+   for longer than a frame lasts, on a busy machine too. */
 static void pause_for(int ms)
 {
-    gint64 until = g_get_monotonic_time() + 1000 * ms;
-    while (g_get_monotonic_time() < until) {
-        g_main_context_iteration(NULL, FALSE);
-        g_usleep(500);
+    const gint64 frame = 25000, patience = 150000; /* µs */
+    gint64 now = g_get_monotonic_time(), until = now + 1000 * ms, busy = now;
+    for (gint64 limit = until + patience;
+         now < until || (now < busy + frame && now < limit);
+         now = g_get_monotonic_time()) {
+        if (g_main_context_iteration(NULL, FALSE))
+            busy = g_get_monotonic_time();
+        else
+            g_usleep(500);
     }
 }
 
