@@ -141,8 +141,6 @@ int main(int argc, char **argv)
     g_test_add_func("/vcm-weights/lamp-in-solid", test_lamp_in_solid);
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
         g_autofree char *sky = g_strconcat("/vcm-weights/curve/sky/", ways[i].name, NULL);
-        g_autofree char *room =
-            g_strconcat("/vcm-weights/curve/room/", ways[i].name, NULL);
         g_test_add_data_func(sky, &ways[i], test_flat_curve_under_sky);
     }
     g_test_add_func("/vcm-weights/curve/room", test_flat_curves_in_room);
