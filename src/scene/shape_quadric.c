@@ -94,7 +94,7 @@ static double midpoint_mean(const quadric *q, int n)
 static double mean_factor(const quadric *q)
 {
     const double settled = 1e-6;
-    double row[ROMBERG_ROWS];
+    double row[ROMBERG_ROWS] = {0};
     for (int k = 0; k < ROMBERG_ROWS && LEAST_STEPS << k <= q->mean_steps; k++) {
         double above = k > 0 ? row[k - 1] : 0.0, power = 1.0;
         double better = midpoint_mean(q, LEAST_STEPS << k);
