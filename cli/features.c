@@ -1,5 +1,5 @@
 /*
- * nephroid features: what of pbrt-v4 is read.
+ * nephroid features: what of pbrt-v4 and glTF 2.0 is read.
  */
 #include "arguments.h"
 #include "command.h"

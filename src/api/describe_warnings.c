@@ -1,8 +1,7 @@
 /*
- * What is allowed, but seldom meant: glass that encloses nothing, is turned inside out
- * or has a surface where another body has one,
- * lamps shut into bodies that let no light out, skies seen from behind their portal,
- * scenes of strange size.
+ * What is allowed, but seldom meant: glass that encloses nothing, is turned inside out or
+ * has a surface where another body has one, lamps shut into bodies that let no light out,
+ * skies seen from behind their portal, scenes of strange size.
  */
 #include "api/describe.h"
 
