@@ -105,15 +105,24 @@ static photon field_photon(field_place place, uint64_t key, uint32_t i)
     return p;
 }
 
-static photon_store make_store(field_place place, uint32_t n)
+/* @param empty what the photons keep */
+static photon_store fill_store(photon_store empty, field_place place, uint32_t n)
 {
-    photon_store store = {0};
+    photon_store store = empty;
     g_assert_true(photon_store_reserve(&store, n, NULL));
     for (uint32_t i = 0; i < n; i++) {
         photon p = field_photon(place, 11, i);
+        sampler own = sampler_make(17, i);
+        p.n = warp_sphere(sampler_2d(&own));
+        p.curve = i % 3;
         photon_store_put(&store, &p);
     }
     return store;
+}
+
+static photon_store make_store(field_place place, uint32_t n)
+{
+    return fill_store((photon_store){0}, place, n);
 }
 
 static photon_map *build_map(map_choice choice, photon_store *store, float radius,
@@ -326,6 +335,38 @@ static void test_list_by_definition(void)
     photon_hits_clear(&hits);
 }
 
+/* Of a curve only its photons, however they lie; else only those on no curve, of surfaces
+   that lie alike. */
+static void test_curves_by_definition(void)
+{
+    enum { N = 2000 };
+    static const map_choice kinds[] = {MAP_LIST, MAP_KDTREE, MAP_GRID};
+    vec3 p = vec3_make(0.4f, 0.5f, 0.6f), n = normalize3(vec3_make(1, 2, 2));
+    for (uint32_t i = 0; i < 9; i++) {
+        photon_filter filter = {.n = n, .one_sided = true, .flatten = 1, .curve = i % 3};
+        photon_store store =
+            fill_store((photon_store){.oriented = true, .curved = true}, place_cube, N);
+        size_t expected = 0;
+        for (size_t k = 0; k < N; k++) {
+            photon q = photon_store_get(&store, k);
+            bool alike = q.curve || fabsf(dot3(q.n, n)) > 0.5f;
+            expected += length3(q.p - p) < 0.3f && dot3(q.wi, n) > 0.0f && alike &&
+                        q.curve == filter.curve;
+        }
+        g_autoptr(photon_map) map = build_map(kinds[i / 3], &store, 0.1f, 2);
+        photon_hits hits = {0};
+        g_assert_true(photon_map_within(map, p, 0.3f, &filter, &hits));
+        g_assert_cmpuint(hits.n, ==, expected);
+        g_assert_cmpuint(expected, >, 5);
+        g_assert_true(photon_map_nearest(map, p, expected - 3, 1.0f, &filter, &hits));
+        for (size_t k = 0; k < hits.n; k++) {
+            g_assert_cmpfloat(hits.distance2[k], <, 0.09f);
+            g_assert_cmpuint(photon_map_store(map)->curve[hits.index[k]], ==, i % 3);
+        }
+        photon_hits_clear(&hits);
+    }
+}
+
 /* Of a surface seen from behind, only photons on faces that lie alike. */
 static void test_faces_by_definition(void)
 {
@@ -455,6 +496,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/map/list/by-definition", test_list_by_definition);
+    g_test_add_func("/map/curves-by-definition", test_curves_by_definition);
     g_test_add_func("/map/list/faces", test_faces_by_definition);
     g_test_add_func("/map/kdtree/same-as-list", test_kdtree_same_as_list);
     g_test_add_func("/map/grid/same-as-list", test_grid_same_as_list);

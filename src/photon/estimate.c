@@ -20,6 +20,10 @@
  * the variance would not be finite; the light cut off is below 1/2000. */
 #define MAX_GRAZING_RATIO 1000.0f
 
+/* A thin curve may hold fewer photons than are asked for: the nearest of it are looked
+   for no further than this many times as far as lie so many of all. */
+#define CURVE_REACH 3.0f
+
 enum { BLOCK = 64 };
 
 typedef struct gather gather;
@@ -59,10 +63,14 @@ static spectrum weigh_plain(const gather *g, size_t begin, size_t end)
     return even + odd;
 }
 
-/* |wi·n| / |wi·n_geom| */
-static float cosine_ratio(const bsdf *b, vec3 wi)
+/* |wi·n| / |wi·n_geom|; of a curve, over what it showed to the light. wi need not be
+   unit. */
+static float cosine_ratio(const gather *g, vec3 wi)
 {
-    return fminf(fabsf(dot3(wi, b->shading.n) / dot3(wi, b->n_geom)), MAX_GRAZING_RATIO);
+    const bsdf *b = g->b;
+    const flat_curve *flat = g->options->curve;
+    float shown = flat ? hit_cosine(flat->hit, wi) : fabsf(dot3(wi, b->n_geom));
+    return fminf(fabsf(dot3(wi, b->shading.n)) / shown, MAX_GRAZING_RATIO);
 }
 
 /* Σ κ Φ |wi·n| / |wi·n_geom|, of those on the same side of both normals */
@@ -72,7 +80,7 @@ static spectrum weigh_bent(const gather *g, size_t begin, size_t end)
     spectrum sum = {0};
     for (size_t i = begin; i < end; i++) {
         vec3 wi = direction_octahedron(s->wi[g->index[i]]);
-        float weight = g->weight[i] * cosine_ratio(g->b, wi);
+        float weight = g->weight[i] * cosine_ratio(g, wi);
         if (dot3(wi, g->b->shading.n) * dot3(wi, g->b->n_geom) > 0.0f)
             sum += weight * s->flux[g->index[i]];
     }
@@ -92,7 +100,7 @@ static spectrum weigh_bsdf(const gather *g, size_t begin, size_t end)
         unsigned lobes = options->lobes | (delta ? options->delta_lobes : 0);
         spectrum f = bsdf_eval(g->b, g->wo, wi, lobes, TRANSPORT_RADIANCE);
         if (!spectrum_is_black(f))
-            sum += g->weight[i] * cosine_ratio(g->b, wi) * f * store->flux[g->index[i]];
+            sum += g->weight[i] * cosine_ratio(g, wi) * f * store->flux[g->index[i]];
     }
     return sum;
 }
@@ -212,17 +220,36 @@ static size_t furthest(const photon_hits *hits)
     return last;
 }
 
+/* How far the k nearest are looked for. */
+static bool search_radius(const gather *g, const photon_map *map, size_t k,
+                          photon_hits *hits, float *radius)
+{
+    photon_probe any = g->probe;
+    any.curve = NULL;
+    *radius = g->options->radius;
+    if (!g->options->curve)
+        return true;
+    if (!map->kind->nearest(map, &any, k, *radius, hits))
+        return false;
+    if (hits->n == k)
+        *radius = minf(*radius, CURVE_REACH * sqrtf(hits->distance2[furthest(hits)]));
+    hits->n = 0;
+    return true;
+}
+
 static bool gather_nearest(gather *g, const photon_map *map, estimate_scratch *scratch)
 {
     const estimate_options *options = g->options;
     photon_hits *hits = &scratch->hits;
+    float radius = options->radius;
     hits->n = 0;
     size_t k = MIN(options->nearest, map->store.n);
-    if (k > 0 && !map->kind->nearest(map, &g->probe, k, options->radius, hits))
+    if (k > 0 && (!search_radius(g, map, k, hits, &radius) ||
+                  !map->kind->nearest(map, &g->probe, k, radius, hits)))
         return false;
-    set_radius2(g, options->radius * options->radius);
+    set_radius2(g, radius * radius);
     bool all_found = hits->n == options->nearest;
-    if (hits->n > 0 && (all_found || isinf(options->radius))) {
+    if (hits->n > 0 && (all_found || isinf(radius))) {
         size_t last = furthest(hits);
         set_radius2(g, hits->distance2[last]);
         if (options->unbiased_nearest) {
@@ -289,8 +316,10 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
                           .n = g->probe.n,
                           .radius = sqrtf(g->r2),
                           .time = options->time};
-    if (options->scene && g->n > 0 && isfinite(hood.radius) &&
-        !neighbourhood_is_whole(&hood))
+    bool bounded = g->n > 0 && isfinite(hood.radius);
+    if (options->curve && bounded)
+        area = flat_curve_area(options->curve, g->probe.p, hood.radius, &options->kernel);
+    else if (options->scene && bounded && !neighbourhood_is_whole(&hood))
         done = gather_part(g, map, &hood, scratch, &area) && done;
     scratch->failed |= !done;
     if (info)
@@ -300,9 +329,9 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
     return usable ? g->sum / area : (spectrum){0};
 }
 
-static bool is_bent(const bsdf *b)
+static bool is_bent(const bsdf *b, const estimate_options *options)
 {
-    return dot3(b->shading.n, b->n_geom) < 1.0f - 1e-6f;
+    return options->curve || dot3(b->shading.n, b->n_geom) < 1.0f - 1e-6f;
 }
 
 /* True if all the lobes in use are rho/pi. */
@@ -318,14 +347,16 @@ spectrum photon_estimate(const photon_map *map, vec3 p, const bsdf *b, vec3 wo,
 {
     unsigned lobes = options->lobes | options->delta_lobes;
     bool lambertian = is_lambertian(b, options->lobes) && is_lambertian(b, lobes);
-    bool bent = is_bent(b);
+    bool bent = is_bent(b, options);
     bool transmits = lobes & b->lobes & LOBE_TRANSMISSION;
     int face = dot3(b->n_geom, wo) < 0.0f ? -1 : 1;
+    const flat_curve *flat = options->curve;
     photon_filter filter = {
         .n = face < 0 ? -b->n_geom : b->n_geom,
         .one_sided = !transmits,
-        .face = transmits ? face : 0,
-        .flatten = options->flatten,
+        .face = transmits && !flat ? face : 0,
+        .flatten = flat ? 1.0f : options->flatten,
+        .curve = flat ? scene_curve_of(flat->scene, flat->hit) : 0,
     };
     gather g;
     g.probe = photon_probe_make(&map->store, p, &filter);

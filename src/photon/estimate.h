@@ -11,9 +11,8 @@
  */
 #pragma once
 
-#include "photon/kernel.h"
+#include "photon/flat_curve.h"
 #include "photon/map.h"
-#include "scene/scene.h"
 
 /** @brief How to estimate. */
 typedef struct estimate_options {
@@ -23,12 +22,13 @@ typedef struct estimate_options {
                        one used when fewer than k are found in it */
     float flatten;  /**< photons further than flatten * r from the tangent plane are left
                        out, without shrinking r (see photon_filter); 1: a ball */
-    bool unbiased_nearest; /**< k nearest: r reaches to the k-th, which itself is not
-                              counted */
-    const scene *scene;    /**< to probe edges, corners and thin walls with (see
-                              neighbourhood.h); NULL: the disc is taken as whole */
-    float time;            /**< of the shutter, at which they are probed */
-    unsigned lobes;        /**< used for all photons, e.g. LOBE_GATHERED */
+    bool unbiased_nearest;   /**< k nearest: r reaches to the k-th, which itself is not
+                                counted */
+    const scene *scene;      /**< to probe edges, corners and thin walls with (see
+                                neighbourhood.h); NULL: the disc is taken as whole */
+    float time;              /**< of the shutter, at which they are probed */
+    const flat_curve *curve; /**< that the point is on; NULL: on none */
+    unsigned lobes;          /**< used for all photons, e.g. LOBE_GATHERED */
     unsigned
         delta_lobes; /**< added for photons flagged PHOTON_FROM_DELTA, e.g. LOBE_GLOSSY */
 } estimate_options;

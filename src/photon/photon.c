@@ -40,7 +40,9 @@ static void free_arrays(photon_store *store)
     big_free(store->flux);
     big_free(store->normal);
     big_free(store->tag);
-    *store = (photon_store){.oriented = store->oriented, .tagged = store->tagged};
+    big_free(store->curve);
+    *store = (photon_store){
+        .oriented = store->oriented, .tagged = store->tagged, .curved = store->curved};
 }
 
 bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
@@ -52,14 +54,16 @@ bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
         return false;
     }
     size_t n = store->n, room = padded(capacity);
-    bool ok = grow(&store->x, n, room, sizeof *store->x, error) &&
-              grow(&store->y, n, room, sizeof *store->y, error) &&
-              grow(&store->z, n, room, sizeof *store->z, error) &&
-              grow(&store->wi, n, room, sizeof *store->wi, error) &&
-              grow(&store->flux, n, room, sizeof *store->flux, error) &&
-              (!store->oriented ||
-               grow(&store->normal, n, room, sizeof *store->normal, error)) &&
-              (!store->tagged || grow(&store->tag, n, room, sizeof *store->tag, error));
+    bool ok =
+        grow(&store->x, n, room, sizeof *store->x, error) &&
+        grow(&store->y, n, room, sizeof *store->y, error) &&
+        grow(&store->z, n, room, sizeof *store->z, error) &&
+        grow(&store->wi, n, room, sizeof *store->wi, error) &&
+        grow(&store->flux, n, room, sizeof *store->flux, error) &&
+        (!store->oriented ||
+         grow(&store->normal, n, room, sizeof *store->normal, error)) &&
+        (!store->tagged || grow(&store->tag, n, room, sizeof *store->tag, error)) &&
+        (!store->curved || grow(&store->curve, n, room, sizeof *store->curve, error));
     if (ok)
         store->capacity = room - STORE_BLOCK;
     else if (store->capacity == 0)
@@ -79,6 +83,8 @@ void photon_store_put(photon_store *store, const photon *p)
         store->normal[i] = direction_pack(p->n, 0);
     if (store->tagged)
         store->tag[i] = p->tag;
+    if (store->curved)
+        store->curve[i] = p->curve;
 }
 
 photon photon_store_get(const photon_store *store, size_t i)
@@ -90,6 +96,7 @@ photon photon_store_get(const photon_store *store, size_t i)
         .flags = direction_flags(store->wi[i]),
         .n = store->oriented ? direction_unpack(store->normal[i]) : (vec3){0},
         .tag = store->tagged ? store->tag[i] : 0,
+        .curve = store->curved ? store->curve[i] : 0,
     };
 }
 
@@ -104,6 +111,7 @@ size_t photon_store_bytes(const photon_store *store)
     size_t each = 3 * sizeof(float) + sizeof(uint32_t) + sizeof(spectrum);
     each += store->oriented ? sizeof(uint32_t) : 0;
     each += store->tagged ? sizeof(uint32_t) : 0;
+    each += store->curved ? sizeof(uint32_t) : 0;
     return store->x ? (store->capacity + STORE_BLOCK) * each : 0;
 }
 
@@ -160,7 +168,9 @@ bool photon_store_permute(photon_store *store, const size_t *order, unsigned thr
               (!store->oriented || permute(&store->normal, store, order,
                                            sizeof *store->normal, threads, error)) &&
               (!store->tagged ||
-               permute(&store->tag, store, order, sizeof *store->tag, threads, error));
+               permute(&store->tag, store, order, sizeof *store->tag, threads, error)) &&
+              (!store->curved || permute(&store->curve, store, order,
+                                         sizeof *store->curve, threads, error));
     if (ok)
         store->capacity = padded(store->n) - STORE_BLOCK;
     return ok;

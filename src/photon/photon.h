@@ -9,7 +9,8 @@
  *   wi[]          4 bytes        octahedral and flags, read for blocks with some in reach
  *   flux[]        32 bytes       eight wavelengths, read for those in reach
  *
- * 48 bytes a photon, and four more each for normals and tags where they are asked for.
+ * 48 bytes a photon, and four more each for normals, tags and curves where they are asked
+ * for.
  * Indices are size_t throughout: 2³² photons are a matter of patience.
  */
 #pragma once
@@ -45,7 +46,9 @@ typedef struct photon {
     unsigned flags; /**< PHOTON_FROM_DELTA, PHOTON_BEHIND */
     vec3 n; /**< kept by oriented stores only: the surface's unit geometric normal on
                the side it arrived */
-    uint32_t tag; /**< kept by tagged stores only: the light's group */
+    uint32_t tag;   /**< kept by tagged stores only: the light's group */
+    uint32_t curve; /**< kept by curved stores only: the flat curve that it is on, see
+                       scene_curve_of; 0: it is on none */
 } photon;
 
 /** @brief Photons as arrays of n, big_alloc'ed; capacity >= n. The arrays go on behind
@@ -60,6 +63,8 @@ typedef struct photon_store {
     uint32_t *normal; /**< packed (direction_pack); NULL unless oriented */
     bool tagged;      /**< set before room is made: photons keep their tags */
     uint32_t *tag;    /**< NULL unless tagged */
+    bool curved;      /**< set before room is made: photons keep their curves */
+    uint32_t *curve;  /**< NULL unless curved */
 } photon_store;
 
 /** @brief Makes room for capacity photons in all; on failure the store holds what it did:

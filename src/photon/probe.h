@@ -3,7 +3,8 @@
  * is what "found" means; the form for eight gives the same bits.
  *
  *   distance2   (dx² + dy²) + dz², or (d·n / flatten)² where that is larger
- *   accepted    where photons keep normals: the photon's surface is not turned by more
+ *   accepted    where photons keep curves: it is on the same one, or on none
+ *               where photons keep normals: the photon's surface is not turned by more
  *               than 60 degrees, so that walls at a corner are told apart
  *               one-sided: the photon's direction lies on the side of n
  *               of one face: its direction and its flag say that its own surface lies
@@ -20,12 +21,14 @@
 
 typedef struct photon_probe {
     const photon_store *store;
-    const float *x, *y, *z;      /* of the store */
-    const uint32_t *wi, *normal; /* normal: NULL if they keep none */
+    const float *x, *y, *z; /* of the store */
+    const uint32_t *wi;
+    const uint32_t *normal, *curve; /* NULL if they keep none */
     vec3 p;
     vec3 n;
     bool one_sided, flat;
     int face;
+    uint32_t on_curve;
     float inv_flatten;
 } photon_probe;
 
@@ -38,7 +41,9 @@ static inline photon_probe photon_probe_make(const photon_store *store, vec3 p,
     probe.z = store->z;
     probe.wi = store->wi;
     if (filter) {
-        probe.normal = filter->any_normal ? NULL : store->normal;
+        probe.normal = filter->curve ? NULL : store->normal;
+        probe.curve = store->curve;
+        probe.on_curve = filter->curve;
         probe.n = filter->n;
         probe.one_sided = filter->one_sided;
         probe.face = filter->face;
@@ -92,6 +97,8 @@ static inline bool probe_is_alike(const photon_probe *probe, size_t i)
 
 static inline bool probe_accepts(const photon_probe *probe, size_t i)
 {
+    if (probe->curve && probe->curve[i] != probe->on_curve)
+        return false;
     if (probe->normal && !probe_is_alike(probe, i))
         return false;
     if (probe->face && !probe_is_face(probe, i))
@@ -131,9 +138,11 @@ static inline unsigned probe_block(const photon_probe *probe, size_t i, size_t e
         floats8 length2 = fused8(n.z, n.z, fused8(n.y, n.y, n.x * n.x));
         bits &= bits8(dot * dot > SAME_SURFACE * length2);
     }
-    for (unsigned left = probe->face ? bits : 0u; left; left &= left - 1u) {
+    for (unsigned left = probe->curve || probe->face ? bits : 0u; left;
+         left &= left - 1u) {
         size_t lane = (size_t)__builtin_ctz(left);
-        if (!probe_is_face(probe, i + lane))
+        bool alike = !probe->curve || probe->curve[i + lane] == probe->on_curve;
+        if (!alike || (probe->face && !probe_is_face(probe, i + lane)))
             bits &= ~(1u << lane);
     }
     return bits;

@@ -171,13 +171,15 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
         return;
     if (dot3(path->ray.direction, hit->n_geom) > 0.0f)
         flags |= PHOTON_BEHIND;
-    photon p = {.p = hit->p,
+    const scene *s = path->task->scene;
+    photon p = {.p = scene_hit_place(s, hit),
                 .wi = -path->ray.direction,
                 .flux = path->flux,
                 .flags = flags,
                 .n = face_forward(hit->n_geom, -path->ray.direction),
-                .tag = (uint32_t)scene_light_group(path->task->scene, path->light)};
-    if (scene_hit_moves(path->task->scene, hit))
+                .tag = (uint32_t)scene_light_group(s, path->light),
+                .curve = scene_curve_of(s, hit)};
+    if (scene_hit_moves(s, hit))
         keep_for_slice(path->task, hit, &p);
     photon_store_put(&out->photons, &p);
 }
@@ -324,7 +326,7 @@ void photon_tell(const trace_task *task, uint64_t index,
 
 typedef struct trace_loop {
     const trace_task *task;
-    bool oriented;
+    photon_store empty; /* what each chunk starts from */
     chunk_store *chunks;
 } trace_loop;
 
@@ -333,8 +335,7 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
     (void)thread;
     trace_loop *loop = data;
     chunk_store *out = &loop->chunks[begin / CHUNK];
-    out->photons.oriented = loop->oriented;
-    out->photons.tagged = loop->task->scene->n_light_groups > 0;
+    out->photons = loop->empty;
     for (size_t i = begin; i < end && !out->error; i++) {
         photon_path path = {
             .task = loop->task, .index = loop->task->first + i, .out = out};
@@ -365,6 +366,8 @@ static void join_chunk(size_t i, size_t end, unsigned thread, void *data)
             memcpy(to->normal + at, p->normal, p->n * sizeof *p->normal);
         if (to->tagged)
             memcpy(to->tag + at, p->tag, p->n * sizeof *p->tag);
+        if (to->curved)
+            memcpy(to->curve + at, p->curve, p->n * sizeof *p->curve);
     }
     photon_store_clear(&chunk->photons);
 }
@@ -404,13 +407,15 @@ static bool join(chunk_store *chunks, size_t n, const trace_loop *traced,
 bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
                   GError **error)
 {
-    *result = (trace_result){
-        .photons = {.oriented = oriented, .tagged = task->scene->n_light_groups > 0}};
+    const photon_store empty = {.oriented = oriented,
+                                .tagged = task->scene->n_light_groups > 0,
+                                .curved = task->scene->turns};
+    *result = (trace_result){.photons = empty};
     size_t n_chunks = ((size_t)task->n_photons + CHUNK - 1) / CHUNK;
     chunk_store *chunks = big_alloc(n_chunks, sizeof *chunks, "photon chunks", error);
     if (!chunks)
         return false;
-    trace_loop loop = {task, oriented, chunks};
+    trace_loop loop = {task, empty, chunks};
     bool done = parallel_for((size_t)task->n_photons, CHUNK, (unsigned)task->how->threads,
                              task->cancel, trace_chunk, &loop);
     if (!done)

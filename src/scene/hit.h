@@ -54,6 +54,15 @@ typedef struct surface_hit {
     bool from_inside;         /**< the ray came from behind; only where interior is set */
 } surface_hit;
 
+/** @brief The area that a surface shows to direction w, unit, over its own: the cosine to
+ * n_geom. What turns to face every ray shows all but what its axis is foreshortened by.
+ */
+static inline float hit_cosine(const surface_hit *hit, vec3 w)
+{
+    return hit->turns ? length3(cross3(w, normalize3(hit->dpdu)))
+                      : fabsf(dot3(w, hit->n_geom));
+}
+
 /** @brief Where a ray that leaves p in the given direction must start so as not to meet
  * the same surface: moved along n_geom by a distance that scales with the coordinates.
  * @param t,error as in surface_hit; 0 where nothing is known */

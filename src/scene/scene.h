@@ -102,6 +102,7 @@ typedef struct scene {
     int n_environments;
     interior *interiors; /**< per material; NULL: nothing in the scene absorbs */
     bool moves;          /**< some instance does while the shutter is open */
+    bool turns;          /**< some shape may (surface_hit.turns) */
     caustic_caster *casters;
     int n_casters;
     distribution caustic_area;  /**< over casters, by area */
@@ -236,6 +237,15 @@ transform scene_motion_to(const scene *s, const surface_hit *hit, float time);
 /** @brief Where the axis is that the surface at the hit turns about (surface_hit.turns).
  */
 vec3 scene_axis_at(const scene *s, const surface_hit *hit);
+/** @brief Where light that arrives at the hit is kept: on that axis, of what turns; else
+ * at the hit. */
+static inline vec3 scene_hit_place(const scene *s, const surface_hit *hit)
+{
+    return hit->turns ? scene_axis_at(s, hit) : hit->p;
+}
+/** @brief Which of the surfaces that turn a hit is on, from 1; 0: it is on none. (The
+ * number goes round after 2³² of shapes times instances.) */
+uint32_t scene_curve_of(const scene *s, const surface_hit *hit);
 /** @brief Pieces of that surface, of all whose axis is within radius of p. */
 void scene_pieces_near(const scene *s, const surface_hit *hit, vec3 p, float radius,
                        shape_piece piece, void *data);

@@ -253,6 +253,15 @@ vec3 scene_axis_at(const scene *s, const surface_hit *hit)
     return transform_point(&to_world, p);
 }
 
+uint32_t scene_curve_of(const scene *s, const surface_hit *hit)
+{
+    if (!hit->turns)
+        return 0;
+    uint32_t placed = (uint32_t)(hit->instance - NO_INDEX);
+    uint32_t number = placed * s->shapes->len + (uint32_t)hit->shape + 1;
+    return MAX(number, 1);
+}
+
 /* Takes pieces from the space of an object to the world. */
 typedef struct placed_pieces {
     transform to_world;
@@ -318,7 +327,9 @@ bool scene_build_accel(scene *s, unsigned threads, GError **error)
         .shutter = {(double)s->camera.shutter_open, (double)s->camera.shutter_close},
     };
     s->accel = accel_build(&in, threads, error);
-    s->moves = false;
+    s->moves = s->turns = false;
+    for (guint i = 0; i < s->shapes->len; i++)
+        s->turns |= in.shapes[i]->kind->axis_at != NULL;
     for (guint i = 0; i < s->instances->len && s->accel; i++)
         s->moves |= accel_instance_moves(s->accel, (int)i);
     return s->accel != NULL;

@@ -149,7 +149,8 @@ static bool build_class(const slice_task *s, trace_result *result,
 
 /* Every fourth photon becomes a place to keep irradiance at; the others make the map and
    carry the light of all. Places that were photons of the map would find themselves
-   there, and the estimate be too bright by one photon in so many. */
+   there, and the estimate be too bright by one photon in so many. What flat curves get
+   depends on where one looks from, so it is kept nowhere on them. */
 static bool set_points_apart(trace_result *from, trace_result *points, GError **error)
 {
     photon_store *photons = &from->photons;
@@ -161,12 +162,12 @@ static bool set_points_apart(trace_result *from, trace_result *points, GError **
     photons->n = 0;
     for (size_t i = 0; i < n; i++) {
         photon p = photon_store_get(photons, i);
-        if (i % 4 == 3) {
-            photon_store_put(&points->photons, &p);
-        } else {
-            p.flux *= share;
+        bool apart = i % 4 == 3;
+        p.flux *= share;
+        if (!apart)
             photon_store_put(photons, &p);
-        }
+        else if (!p.curve)
+            photon_store_put(&points->photons, &p);
     }
     return true;
 }
@@ -296,21 +297,31 @@ static void turn_bsdf(const transform *by, vec3 n_geom, bsdf *b)
     b->n_geom = n_geom;
 }
 
-/* What the map of a slice says: of what moves, where its photons are kept. */
+/* What the map of a slice says: of what moves or turns, where its photons are kept. */
 static spectrum gather_at(const photonmap_pass *pass, const photon_map *map,
                           const shading_point *at, const estimate_options *options,
                           transport_scratch *scratch)
 {
-    if (!scene_hit_moves(pass->scene, at->hit))
+    const scene *s = pass->scene;
+    bool moves = scene_hit_moves(s, at->hit);
+    if (!moves && !at->hit->turns)
         return photon_estimate(map, at->hit->p, at->bsdf, at->wo, options,
                                &scratch->estimate, NULL);
-    transform by = scene_motion_to(pass->scene, at->hit, options->time);
     surface_hit hit = *at->hit;
     bsdf turned = *at->bsdf;
-    instance_move_hit(&by, &hit);
-    turn_bsdf(&by, hit.n_geom, &turned);
-    vec3 wo = normalize3(transform_vector(&by, at->wo));
-    return photon_estimate(map, hit.p, &turned, wo, options, &scratch->estimate, NULL);
+    vec3 wo = at->wo;
+    if (moves) {
+        transform by = scene_motion_to(s, &hit, options->time);
+        instance_move_hit(&by, &hit);
+        hit.time = options->time;
+        turn_bsdf(&by, hit.n_geom, &turned);
+        wo = normalize3(transform_vector(&by, wo));
+    }
+    const flat_curve flat = {s, &hit};
+    estimate_options there = *options;
+    there.curve = hit.turns ? &flat : NULL;
+    return photon_estimate(map, scene_hit_place(s, &hit), &turned, wo, &there,
+                           &scratch->estimate, NULL);
 }
 
 float photonmap_slice_time(const photonmap_pass *pass, int slice)

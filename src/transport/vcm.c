@@ -80,7 +80,7 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
 {
     const settings *how = &pass->plan->how;
     const light_paths *paths = &pass->light;
-    photon_store store = {.oriented = how->edges};
+    photon_store store = {.oriented = how->edges, .curved = pass->scene->turns};
     double start = seconds();
     if (!photon_store_reserve(&store, paths->n_vertices, error))
         return false;
@@ -88,12 +88,12 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
         const light_vertex *v = &paths->vertices[i];
         vec3 n = face_forward(v->hit.n_geom, v->wi);
         bool behind = dot3(v->wi, v->hit.n_geom) < 0.0f;
-        pass->some_turn |= v->hit.turns;
-        photon p = {.p = vcm_place(pass, &v->hit),
+        photon p = {.p = scene_hit_place(pass->scene, &v->hit),
                     .wi = v->wi,
                     .flux = vcm_payload(i),
                     .flags = behind ? PHOTON_BEHIND : 0,
-                    .n = n};
+                    .n = n,
+                    .curve = scene_curve_of(pass->scene, &v->hit)};
         if (scene_hit_moves(pass->scene, &v->hit)) {
             transform by = vcm_motion_to_map(pass, &v->hit);
             p.p = transform_point(&by, p.p);

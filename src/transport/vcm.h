@@ -94,7 +94,6 @@ typedef struct vcm_pass {
     int n_slices;           /**< of the shutter's time, that merge apart */
     bool camera_hides;      /**< some shape is not seen by the camera */
     bool turning_ends;      /**< light subpaths end at what turns to face rays */
-    bool some_turn;         /**< vertices in the map are on such surfaces */
     float camera_per_light; /**< camera samples of a pixel over light subpaths, spp / N */
     light_paths light;
     photon_map *map; /**< flux of a photon in it: see vcm_payload; NULL: no merging */
@@ -105,12 +104,6 @@ static inline transform vcm_motion_to_map(const vcm_pass *pass, const surface_hi
 {
     int slice = time_slice(hit->time, pass->n_slices);
     return scene_motion_to(pass->scene, hit, time_of_slice(slice, pass->n_slices));
-}
-
-/** @brief Where a vertex is, for merging: of what turns to face rays, on its axis. */
-static inline vec3 vcm_place(const vcm_pass *pass, const surface_hit *hit)
-{
-    return hit->turns ? scene_axis_at(pass->scene, hit) : hit->p;
 }
 
 /** @brief True if light subpaths go no further than the hit. */
@@ -180,15 +173,6 @@ static inline float vcm_pdf_reverse(const vcm_vertex *v, vec3 wi, transport_mode
     transport_mode other =
         mode == TRANSPORT_RADIANCE ? TRANSPORT_IMPORTANCE : TRANSPORT_RADIANCE;
     return bsdf_pdf(&v->bsdf, wi, v->wo, LOBE_ALL, other);
-}
-
-/** @brief The geometric cosine under which a surface is seen from direction w: the area
- * that it shows over its own. What turns to face every ray shows all but what its axis is
- * foreshortened by. */
-static inline float vcm_cosine(const surface_hit *hit, vec3 w)
-{
-    return hit->turns ? length3(cross3(w, normalize3(hit->dpdu)))
-                      : fabsf(dot3(w, hit->n_geom));
 }
 
 /** @brief Lists in scratch->hits the light vertices that v merges with: those in the map

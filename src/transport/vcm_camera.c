@@ -118,7 +118,7 @@ static float lamp_weight(const camera_walk *c, const vcm_vertex *v, int index,
         .direction = -to_light->wi,
         .distance2 = square(to_light->distance),
         .pdf = to_light->pdf,
-        .cosine = vcm_cosine(v->hit, to_light->wi),
+        .cosine = hit_cosine(v->hit, to_light->wi),
     };
     float met =
         l->is_unmet ? 0.0f : vcm_pdf(v, to_light->wi, TRANSPORT_RADIANCE) / to_light->pdf;
@@ -162,7 +162,7 @@ typedef struct vertex_pair {
 static float pair_weight(const camera_walk *c, const vertex_pair *p)
 {
     vec3 d = p->direction;
-    float eye_area = vcm_cosine(p->eye->hit, d) / p->distance2;
+    float eye_area = hit_cosine(p->eye->hit, d) / p->distance2;
     float lamp_area = fabsf(dot3(d, p->lamp->hit->n_geom)) / p->distance2;
     float lamp_side = weights_connected(
         &p->light->weights, lamp_area * vcm_pdf(p->eye, d, TRANSPORT_RADIANCE),
@@ -251,7 +251,7 @@ static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *
         transform by = scene_motion_to(c->pass->scene, &l->hit, v->hit->time);
         wi = normalize3(transform_vector(&by, wi));
     }
-    float cosine = vcm_cosine(v->hit, wi);
+    float cosine = hit_cosine(v->hit, wi);
     if (!(cosine > 0.0f) ||
         time_slice(l->hit.time, n_slices) != time_slice(v->hit->time, n_slices) ||
         !vcm_length_allowed(c->pass, c->walk.counts.n + l->before.n + 1))
@@ -322,7 +322,7 @@ static void leave_curve(camera_walk *c, const vcm_vertex *v)
 {
     partial_weights *w = &c->walk.weights;
     if (!(w->vcm > 0.0f)) {
-        weights_bounce_specular(&c->at_curve, vcm_cosine(v->hit, c->walk.ray.direction));
+        weights_bounce_specular(&c->at_curve, hit_cosine(v->hit, c->walk.ray.direction));
         w->vc += c->at_curve.vc;
         w->vm += c->at_curve.vm;
     }
@@ -361,7 +361,7 @@ static void follow(camera_walk *c)
         }
         walk->carried *= hit_transmittance(&hit, &pass->w);
         vcm_vertex v = {.hit = &hit, .wo = -walk->ray.direction};
-        float cosine = vcm_cosine(&hit, v.wo);
+        float cosine = hit_cosine(&hit, v.wo);
         bool surface =
             scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf);
         if (hit.light != NO_INDEX)

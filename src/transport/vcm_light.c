@@ -152,7 +152,7 @@ static void connect_to_eye(light_walk *l, const vcm_vertex *v)
         return;
     spectrum left = hit_transmittance_to(v->hit, eye.direction, eye.distance, &pass->w);
     float density = eye.pdf / square(eye.distance);
-    float cosine = vcm_cosine(v->hit, eye.direction);
+    float cosine = hit_cosine(v->hit, eye.direction);
     float weight = weight_to_eye(l, v, &eye, density * cosine);
     for (int i = 0; i < 2; i++) {
         scattering_counts scattered = vcm_count((scattering_counts){0}, i == 0);
@@ -233,7 +233,7 @@ static void arrive_first(light_walk *l, const surface_hit *hit, float cosine,
 
 static void arrive(light_walk *l, const surface_hit *hit)
 {
-    float cosine = vcm_cosine(hit, l->walk.ray.direction);
+    float cosine = hit_cosine(hit, l->walk.ray.direction);
     float distance2 = length3_2(hit->p - l->walk.from);
     if (l->walk.counts.n == 0)
         arrive_first(l, hit, cosine, distance2);

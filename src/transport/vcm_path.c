@@ -61,7 +61,7 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
     bsdf_sample next;
     if (!sample_direction(pass, walk, v, lobes, random, &next))
         return false;
-    float cosine = vcm_cosine(v->hit, next.wi);
+    float cosine = hit_cosine(v->hit, next.wi);
     if (next.lobe & LOBE_SPECULAR)
         weights_bounce_specular(&walk->weights, cosine);
     else

@@ -12,14 +12,14 @@
 enum { MAX_STEPS = 16, MAX_PIXELS = 1024 };
 
 /* Squared error after so many passes, summed over seeds. */
-typedef struct curve {
+typedef struct convergence {
     const render *render;
     const char *layer; /* "" for the beauty */
     double truth[MAX_PIXELS];
     int64_t passes[MAX_STEPS];
     double error[MAX_STEPS];
     size_t n;
-} curve;
+} convergence;
 
 static double pixel_of(const image *img, const char *layer, size_t pixel)
 {
@@ -30,7 +30,7 @@ static double pixel_of(const image *img, const char *layer, size_t pixel)
 static bool note_error(double fraction, const render_statistics *st, void *data)
 {
     (void)fraction;
-    curve *c = data;
+    convergence *c = data;
     for (size_t k = 0; k < c->n; k++) {
         if (c->passes[k] != st->passes || c->error[k] < 0)
             continue;
@@ -46,9 +46,9 @@ static bool note_error(double fraction, const render_statistics *st, void *data)
 }
 
 /* Adds one seed's errors. */
-static void run_seed(const scene *s, const char *words, int seed, curve *c)
+static void run_seed(const scene *s, const char *words, int seed, convergence *c)
 {
-    curve own = *c;
+    convergence own = *c;
     g_autofree char *all =
         g_strdup_printf("%s passes=%d seed=%d", words, (int)c->passes[c->n - 1], seed);
     g_autoptr(render) r = render_of(s, all);
@@ -60,7 +60,7 @@ static void run_seed(const scene *s, const char *words, int seed, curve *c)
         c->error[k] -= own.error[k];
 }
 
-static double slope_of(const curve *c)
+static double slope_of(const convergence *c)
 {
     double x[MAX_STEPS];
     for (size_t k = 0; k < c->n; k++) {
@@ -74,7 +74,7 @@ static void test_path(void)
 {
     g_autoptr(scene) s = scene_of(ROOM);
     int seeds = VERIFY_SHORT_LONG(2, 8);
-    curve c = {.layer = "direct", .n = 4, .passes = {4, 16, 64, 256}};
+    convergence c = {.layer = "direct", .n = 4, .passes = {4, 16, 64, 256}};
     g_autoptr(image) truth =
         render_with(s, "integrator=path spp=64 passes=64 max_backward_bounces=1 seed=99");
     for (size_t i = 0; i < pixels_of(truth); i++)
@@ -125,7 +125,7 @@ static void test_sppm(void)
 {
     g_autoptr(scene) s = scene_of(MIRRORED_LIGHT), twin = image_of_light();
     int seeds = VERIFY_SHORT_LONG(8, 64);
-    curve c = {.layer = "caustic", .n = 6, .passes = {4, 8, 16, 32, 64, 128}};
+    convergence c = {.layer = "caustic", .n = 6, .passes = {4, 8, 16, 32, 64, 128}};
     g_autoptr(image) truth =
         render_with(twin, "integrator=path spp=64 passes=64 seed=99");
     for (size_t i = 0; i < pixels_of(truth); i++)
