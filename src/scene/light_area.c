@@ -14,7 +14,7 @@ typedef struct area_light {
     const shape *on; /* borrowed */
     bool two_sided;
     spectrum_input colors; /* textured: times radiance.scale, in place of its spectrum */
-    picture pic;           /* the same as pbrt has it: over the whole of u and v */
+    picture *pic;          /* the same as pbrt has it: over the whole of u and v */
 } area_light;
 
 enum { N_MEAN = 1024 };
@@ -24,13 +24,13 @@ static void free_area(void *self)
     area_light *l = self;
     emitter_clear(&l->radiance);
     spectrum_input_clear(&l->colors);
-    picture_clear(&l->pic);
+    picture_unref(l->pic);
     g_free(l);
 }
 
 static bool is_textured(const area_light *l)
 {
-    return l->colors.texture || l->pic.n_levels;
+    return l->colors.texture || l->pic;
 }
 
 static spectrum pictured(const area_light *l, const surface_hit *hit,
@@ -38,14 +38,14 @@ static spectrum pictured(const area_light *l, const surface_hit *hit,
 {
     float rgb[3];
     vec2 st = {hit->uv.x, 1.0f - hit->uv.y};
-    texel_mix mix = picture_bilinear(&l->pic, 0, st, WRAP_CLAMP);
-    picture_rgb(&l->pic, &mix, rgb);
-    return l->radiance.scale * rgb_eval(l->pic.space, rgb, CURVE_EMISSION, w);
+    texel_mix mix = picture_bilinear(l->pic, 0, st, WRAP_CLAMP);
+    picture_rgb(l->pic, &mix, rgb);
+    return l->radiance.scale * rgb_eval(l->pic->space, rgb, CURVE_EMISSION, w);
 }
 
 static spectrum shines(const area_light *l, const surface_hit *hit, const wavelengths *w)
 {
-    if (l->pic.n_levels)
+    if (l->pic)
         return pictured(l, hit, w);
     if (!l->colors.texture)
         return emitter_eval(&l->radiance, w);
@@ -118,9 +118,10 @@ static bool read_picture(area_light *l, const struct scene *s, const params *p,
                  "an area light has either 'L' or 'filename'");
         return false;
     }
-    return picture_read(&l->pic, s, p, "filename", NULL, error) &&
-           picture_check_light(&l->pic, params_find(p, "filename")->place, error) &&
-           emitter_init(&l->radiance, p, NULL, l->pic.space, error);
+    l->pic = picture_read(s, p, "filename", NULL, error);
+    return l->pic &&
+           picture_check_light(l->pic, params_find(p, "filename")->place, error) &&
+           emitter_init(&l->radiance, p, NULL, l->pic->space, error);
 }
 
 /* The emitter is white where it is textured, for its scale. */

@@ -53,12 +53,10 @@ static image *resampled(const ies_profile *ies, GError **error)
 static bool take_profile(goniometric_light *l, const ies_profile *ies, source_place place,
                          GError **error)
 {
-    picture pic;
     image *img = resampled(ies, error);
     if (!img)
         return false;
-    picture_from_grey(&pic, img);
-    if (!sphere_map_init(&l->map, &pic, place, error))
+    if (!sphere_map_init(&l->map, picture_from_grey(img, error), place, error))
         return false;
     l->intensity.scale *= (float)(ies_lumens(ies) / (l->map.integral * LUMENS_PER_WATT));
     return true;
@@ -84,20 +82,17 @@ static bool read_profile(goniometric_light *l, const char *path, source_place pl
 static bool even_map(goniometric_light *l, source_place place, GError **error)
 {
     static const char *const channel[] = {"Y"};
-    picture pic;
     image *img = image_new(1, 1, 1, channel, error);
     if (!img)
         return false;
     img->pixels[0] = 1.0f;
-    picture_from_grey(&pic, img);
-    return sphere_map_init(&l->map, &pic, place, error);
+    return sphere_map_init(&l->map, picture_from_grey(img, error), place, error);
 }
 
 static bool read_map(goniometric_light *l, const struct scene *s, const params *p,
                      GError **error)
 {
     g_autofree char *path = NULL;
-    picture pic;
     if (!params_path(p, "filename", &path, error))
         return false;
     if (!path)
@@ -109,8 +104,8 @@ static bool read_map(goniometric_light *l, const struct scene *s, const params *
             scene_sources_add(s->sources, path);
         return read_profile(l, path, place, error);
     }
-    return picture_read(&pic, s, p, "filename", NULL, error) &&
-           sphere_map_init(&l->map, &pic, place, error);
+    return sphere_map_init(&l->map, picture_read(s, p, "filename", NULL, error), place,
+                           error);
 }
 
 static float value_in(const goniometric_light *l, vec3 local)

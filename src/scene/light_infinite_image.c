@@ -96,7 +96,7 @@ typedef struct sky_sum {
 static void add_part(void *data, vec3 d, const float rgb[3], float solid_angle)
 {
     sky_sum *sum = data;
-    const color_space *space = sum->light->map.pic.space;
+    const color_space *space = sum->light->map.pic->space;
     float xyz[3], mean = (rgb[0] + rgb[1] + rgb[2]) * (1.0f / 3.0f);
     emission_sum_add(&sum->emission, space, rgb, (double)solid_angle);
     float cosine = dot3(frame_to_world(&sum->light->axes, d), sum->light->portal.n);
@@ -112,7 +112,7 @@ static void add_part(void *data, vec3 d, const float rgb[3], float solid_angle)
 static bool read_scale(image_sky *l, const sky_sum *sum, const params *p, GError **error)
 {
     emitter white;
-    if (!emitter_init(&white, p, NULL, l->map.pic.space, error))
+    if (!emitter_init(&white, p, NULL, l->map.pic->space, error))
         return false;
     bool done = sum->illuminance > 0.0 || !params_has(p, "illuminance");
     if (done)
@@ -144,16 +144,16 @@ static bool sum_up(image_sky *l, const params *p, GError **error)
 static bool read_picture(image_sky *l, const struct scene *s, const params *p,
                          GError **error)
 {
-    picture pic;
     if (params_has(p, "L")) {
         error_at(error, params_find(p, "L")->place,
                  "an infinite light has either 'L' or 'filename'");
         return false;
     }
-    if (!picture_read(&pic, s, p, "filename", NULL, error))
+    picture *pic = picture_read(s, p, "filename", NULL, error);
+    if (!pic)
         return false;
     source_place place = params_find(p, "filename")->place;
-    if (!sphere_map_init(&l->map, &pic, place, error))
+    if (!sphere_map_init(&l->map, pic, place, error))
         return false;
     if (s && place.line > 0) /* a reader that made it knows */
         log_message(&s->log, LOG_NOTE, "%s:%d: the sky's picture is read as %s map",
@@ -204,7 +204,7 @@ static spectrum radiance_from(const image_sky *l, vec3 d, const wavelengths *w)
 {
     float rgb[3];
     sphere_map_rgb(&l->map, d, rgb);
-    return l->scale * rgb_eval(l->map.pic.space, rgb, CURVE_EMISSION, w);
+    return l->scale * rgb_eval(l->map.pic->space, rgb, CURVE_EMISSION, w);
 }
 
 /* A direction in the world from where light comes; *radiance from there. */

@@ -11,7 +11,7 @@
 #include "scene/picture.h"
 
 typedef struct projection_light {
-    picture pic;
+    picture *pic;
     distribution2 drawn;
     frame axes;
     vec3 p;
@@ -23,7 +23,7 @@ typedef struct projection_light {
 static void free_projection(void *self)
 {
     projection_light *l = self;
-    picture_clear(&l->pic);
+    picture_unref(l->pic);
     distribution2_clear(&l->drawn);
     curve_unref(l->total);
     g_free(l);
@@ -55,7 +55,7 @@ static bool place_of(const projection_light *l, vec3 d, vec2 *st)
 
 static bool read_fov(projection_light *l, const params *p, GError **error)
 {
-    const image *img = l->pic.levels[0];
+    const texels *img = l->pic->levels[0];
     float fov = 90.0f, aspect = (float)img->width / (float)img->height;
     if (!params_float(p, "fov", &fov, error))
         return false;
@@ -79,26 +79,26 @@ typedef struct projected_sum {
 /* One texel: its weight for drawing, and its part of the sums. */
 static float add_texel(projection_light *l, int x, int y, projected_sum *sum)
 {
-    const image *img = l->pic.levels[0];
+    const texels *img = l->pic->levels[0];
     vec2 st = {((float)x + 0.5f) / (float)img->width,
                ((float)y + 0.5f) / (float)img->height};
     float c = direction_of(l, st)[2], rgb[3], xyz[3];
-    picture_texel_mean(&l->pic, WRAP_CLAMP, x, y, rgb);
+    picture_texel_mean(l->pic, WRAP_CLAMP, x, y, rgb);
     double share =
         (double)(plane_area(l) * c * c * c) / ((double)img->width * (double)img->height);
-    color_space_to_xyz(l->pic.space, rgb, xyz);
+    color_space_to_xyz(l->pic->space, rgb, xyz);
     sum->y += share * (double)xyz[1];
     float mean = (rgb[0] + rgb[1] + rgb[2]) * (1.0f / 3.0f);
     l->peak = maxf(l->peak, mean);
     if (mean > 0.0f)
-        emission_sum_add(&sum->emission, l->pic.space, rgb, share);
+        emission_sum_add(&sum->emission, l->pic->space, rgb, share);
     return mean * c * c * c;
 }
 
 static bool sum_up(projection_light *l, projected_sum *sum, source_place place,
                    GError **error)
 {
-    const image *img = l->pic.levels[0];
+    const texels *img = l->pic->levels[0];
     size_t width = (size_t)img->width, height = (size_t)img->height;
     float *weights = big_alloc(width * height, sizeof *weights, "a light", error);
     if (!weights)
@@ -120,12 +120,13 @@ static bool read_light(projection_light *l, const struct scene *s, const params 
 {
     projected_sum sum = {0};
     emitter white;
-    if (!picture_read(&l->pic, s, p, "filename", NULL, error))
+    l->pic = picture_read(s, p, "filename", NULL, error);
+    if (!l->pic)
         return false;
     source_place place = params_find(p, "filename")->place;
-    if (!read_fov(l, p, error) || !picture_check_light(&l->pic, place, error) ||
+    if (!read_fov(l, p, error) || !picture_check_light(l->pic, place, error) ||
         !sum_up(l, &sum, place, error) ||
-        !emitter_init(&white, p, NULL, l->pic.space, error))
+        !emitter_init(&white, p, NULL, l->pic->space, error))
         return false;
     bool done = emitter_set_total(&white, p, "power", (float)sum.y, error);
     l->scale = white.scale;
@@ -151,9 +152,9 @@ static void *create(const struct scene *s, const params *p, const transform *to_
 static spectrum intensity_at(const projection_light *l, vec2 st, const wavelengths *w)
 {
     float rgb[3];
-    texel_mix mix = picture_bilinear(&l->pic, 0, st, WRAP_CLAMP);
-    picture_rgb(&l->pic, &mix, rgb);
-    return l->scale * rgb_eval(l->pic.space, rgb, CURVE_EMISSION, w);
+    texel_mix mix = picture_bilinear(l->pic, 0, st, WRAP_CLAMP);
+    picture_rgb(l->pic, &mix, rgb);
+    return l->scale * rgb_eval(l->pic->space, rgb, CURVE_EMISSION, w);
 }
 
 static spectrum power(const void *self, const wavelengths *w)
@@ -167,7 +168,7 @@ static light_bound bound(const void *self, const wavelengths *w)
     const projection_light *l = self;
     const float white[3] = {l->peak, l->peak, l->peak};
     float peak =
-        l->scale * spectrum_mean(rgb_eval(l->pic.space, white, CURVE_EMISSION, w));
+        l->scale * spectrum_mean(rgb_eval(l->pic->space, white, CURVE_EMISSION, w));
     /* between what the brightest direction and what all together get */
     float mean = spectrum_mean(power(self, w));
     return (light_bound){

@@ -17,7 +17,7 @@
 #define STEP 0.0005f
 
 struct bump {
-    picture normals;        /* no levels: it is something else */
+    picture *normals;       /* NULL: it is something else */
     const texture *texture; /* borrowed: a map that is a texture; NULL */
     float scale;            /* of the map's x and y */
     float_input displacement;
@@ -43,7 +43,8 @@ static bool read_normals(bump *b, const struct scene *s, const params *p, GError
         return false;
     if (q->type == PARAM_TEXTURE)
         return read_texture(b, s, q, error);
-    return picture_read(&b->normals, s, p, "normalmap", &linear, error);
+    b->normals = picture_read(s, p, "normalmap", &linear, error);
+    return b->normals != NULL;
 }
 
 bool bump_new(bump **out, const struct scene *s, const params *p, GError **error)
@@ -71,15 +72,15 @@ void bump_free(bump *b)
 {
     if (!b)
         return;
-    picture_clear(&b->normals);
+    picture_unref(b->normals);
     g_free(b);
 }
 
 static void look_up(const bump *b, const surface_hit *hit, float rgb[3])
 {
     vec2 st = {hit->uv.x, 1.0f - hit->uv.y};
-    texel_mix mix = picture_bilinear(&b->normals, 0, st, WRAP_REPEAT);
-    picture_rgb(&b->normals, &mix, rgb);
+    texel_mix mix = picture_bilinear(b->normals, 0, st, WRAP_REPEAT);
+    picture_rgb(b->normals, &mix, rgb);
 }
 
 static vec3 mapped_normal(const bump *b, const surface_hit *hit)
@@ -125,8 +126,8 @@ static vec3 displaced_normal(const bump *b, const surface_hit *hit)
 
 frame bump_frame(const bump *b, const surface_hit *hit)
 {
-    vec3 n = normalize3(b->normals.n_levels || b->texture ? mapped_normal(b, hit)
-                                                          : displaced_normal(b, hit));
+    vec3 n = normalize3(b->normals || b->texture ? mapped_normal(b, hit)
+                                                 : displaced_normal(b, hit));
     if (!(length3_2(n) > 0.5f) || !finite3(n))
         n = hit->n;
     return frame_from_tangent(n, hit->dpdu);

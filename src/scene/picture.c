@@ -15,7 +15,8 @@ static bool has_chromaticities(const color_space *space, const float xy[8])
     return off < 2e-3f;
 }
 
-/* The space that the image says it is in; sRGB if it says nothing. */
+/* The space that the image says it is in; sRGB if it says nothing; NULL if we know none
+   such. */
 static const color_space *space_of(const image *img)
 {
     static const char *const names[] = {"srgb", "rec2020", "dci-p3", "aces2065-1"};
@@ -29,90 +30,136 @@ static const color_space *space_of(const image *img)
     return NULL;
 }
 
-static bool find_channels(picture *pic)
+static bool find_channels(picture *pic, const image *img)
 {
     static const char *const names[] = {"R", "G", "B", "A"};
     for (int i = 0; i < 4; i++)
-        pic->channels[i] = image_channel(pic->levels[0], names[i]);
+        pic->channels[i] = image_channel(img, names[i]);
     if (pic->channels[0] >= 0 && pic->channels[1] >= 0 && pic->channels[2] >= 0)
         return true;
-    int grey = image_channel(pic->levels[0], "Y");
-    if (grey < 0 && pic->levels[0]->n_channels == 1)
+    int grey = image_channel(img, "Y");
+    if (grey < 0 && img->n_channels == 1)
         grey = 0;
     pic->channels[0] = pic->channels[1] = pic->channels[2] = grey;
     pic->grey = true;
     return grey >= 0;
 }
 
-/* Channels and colour space; false with an error at the place. */
-static bool understand(picture *pic, const char *path, source_place place, GError **error)
+/* Channels and colour space. */
+static bool understand(picture *pic, const image *img, const char *path, GError **error)
 {
-    if (!find_channels(pic)) {
-        error_at(error, place, "%s: expected channels R, G, B or one channel", path);
+    if (!find_channels(pic, img)) {
+        error_set(error, ERROR_INPUT, "%s: expected channels R, G, B or one channel",
+                  path);
         return false;
     }
-    pic->space = space_of(pic->levels[0]);
+    pic->space = space_of(img);
     if (!pic->space)
-        error_at(error, place, "%s: its primaries belong to no colour space we know",
-                 path);
+        error_set(error, ERROR_INPUT,
+                  "%s: its primaries belong to no colour space we know", path);
     return pic->space != NULL;
 }
 
-bool picture_read(picture *out, const struct scene *s, const params *p, const char *name,
-                  const image_read_options *options, GError **error)
+/* The picture, with the image as its texels; both are taken. @return NULL: no memory */
+static picture *picture_of(picture *pic, image *taken, GError **error)
+{
+    pic->levels[0] = texels_from_image(taken, error);
+    pic->n_levels = 1;
+    if (pic->levels[0])
+        return pic;
+    picture_unref(pic);
+    return NULL;
+}
+
+static picture *read_path(const struct scene *s, const char *path,
+                          const image_read_options *options, GError **error)
+{
+    image *img = scene_read_image(s, path, options, error);
+    if (!img)
+        return NULL;
+    picture *pic = g_rc_box_new0(picture);
+    if (!understand(pic, img, path, error)) {
+        image_free(img);
+        picture_unref(pic);
+        return NULL;
+    }
+    return picture_of(pic, img, error);
+}
+
+/* Reads it, if nobody has read it alike. */
+static picture *find_or_read(const struct scene *s, const char *path,
+                             const image_read_options *options, GError **error)
+{
+    if (!s)
+        return read_path(s, path, options, error);
+    image_encoding encoding = options ? options->encoding : ENCODING_AUTO;
+    float gamma = encoding == ENCODING_GAMMA ? options->gamma : 1.0f;
+    g_autofree char *key =
+        g_strdup_printf("%d %a %s", (int)encoding, (double)gamma, path);
+    picture *pic = g_hash_table_lookup(s->pictures, key);
+    if (pic)
+        return g_rc_box_acquire(pic);
+    pic = read_path(s, path, options, error);
+    if (pic)
+        g_hash_table_insert(s->pictures, g_steal_pointer(&key), g_rc_box_acquire(pic));
+    return pic;
+}
+
+picture *picture_read(const struct scene *s, const params *p, const char *name,
+                      const image_read_options *options, GError **error)
 {
     g_autofree char *path = NULL;
-    *out = (picture){0};
     if (!params_path(p, name, &path, error))
-        return false;
+        return NULL;
     if (!path) {
         error_at(error, p->place, "expected \"string %s\", found none", name);
-        return false;
+        return NULL;
     }
-    source_place place = params_find(p, name)->place;
     g_autoptr(GError) inner = NULL;
-    out->levels[0] = scene_read_image(s, path, options, &inner);
-    out->n_levels = 1;
-    if (!out->levels[0])
-        error_at(error, place, "%s", inner->message);
-    else if (understand(out, path, place, error))
-        return true;
-    picture_clear(out);
-    return false;
+    picture *pic = find_or_read(s, path, options, &inner);
+    if (!pic)
+        error_at(error, params_find(p, name)->place, "%s", inner->message);
+    return pic;
 }
 
-void picture_from_grey(picture *out, image *taken)
+picture *picture_from_grey(image *taken, GError **error)
 {
-    *out = (picture){.levels = {taken},
-                     .n_levels = 1,
-                     .channels = {0, 0, 0, -1},
-                     .grey = true,
-                     .space = color_space_srgb()};
+    picture *pic = g_rc_box_new0(picture);
+    pic->channels[3] = -1;
+    pic->grey = true;
+    pic->space = color_space_srgb();
+    return picture_of(pic, taken, error);
 }
 
-void picture_clear(picture *pic)
+static void clear(void *data)
 {
+    picture *pic = data;
     for (int i = 0; i < pic->n_levels; i++)
-        image_free(pic->levels[i]);
-    *pic = (picture){0};
+        texels_free(pic->levels[i]);
 }
 
-static size_t n_texels(const image *img)
+void picture_unref(picture *pic)
 {
-    return (size_t)img->width * (size_t)img->height;
+    if (pic)
+        g_rc_box_release_full(pic, clear);
+}
+
+static size_t n_texels(const texels *t)
+{
+    return (size_t)t->width * (size_t)t->height;
 }
 
 bool picture_check_light(const picture *pic, source_place place, GError **error)
 {
-    const image *img = pic->levels[0];
-    for (size_t i = 0; i < n_texels(img); i++)
+    const texels *t = pic->levels[0];
+    for (size_t i = 0; i < n_texels(t); i++)
         for (int c = 0; c < 3; c++) {
-            float x = img->pixels[i * (size_t)img->n_channels + (size_t)pic->channels[c]];
+            float x = texels_value(t, i, pic->channels[c]);
             if (isfinite(x) && x >= 0.0f)
                 continue;
             error_at(error, place,
                      "expected an image of a light, found %g in it (column %zu, row %zu)",
-                     (double)x, i % (size_t)img->width, i / (size_t)img->width);
+                     (double)x, i % (size_t)t->width, i / (size_t)t->width);
             return false;
         }
     return true;
@@ -120,57 +167,26 @@ bool picture_check_light(const picture *pic, source_place place, GError **error)
 
 bool picture_has_alpha(const picture *pic)
 {
-    const image *img = pic->levels[0];
+    const texels *t = pic->levels[0];
     if (pic->channels[3] < 0)
         return false;
-    size_t step = (size_t)img->n_channels;
-    for (size_t i = 0; i < n_texels(img); i++)
-        if (img->pixels[i * step + (size_t)pic->channels[3]] < 1.0f)
+    for (size_t i = 0; i < n_texels(t); i++)
+        if (texels_value(t, i, pic->channels[3]) < 1.0f)
             return true;
     return false;
 }
 
 /* ---- The pyramid ---- */
 
-/* The source texels that a texel of the next level covers, of n for n / 2 rounded up. */
-static void children(int i, int n, int *first, int *last)
-{
-    *first = 2 * i;
-    *last = MIN(2 * i + 1, n - 1);
-}
-
-static void fill_level(image *small, const image *large)
-{
-    size_t step = (size_t)large->n_channels;
-    for (int y = 0; y < small->height; y++)
-        for (int x = 0; x < small->width; x++) {
-            float *to =
-                small->pixels + ((size_t)y * (size_t)small->width + (size_t)x) * step;
-            int x0, x1, y0, y1;
-            children(x, large->width, &x0, &x1);
-            children(y, large->height, &y0, &y1);
-            const float *rows[2] = {
-                large->pixels + (size_t)y0 * (size_t)large->width * step,
-                large->pixels + (size_t)y1 * (size_t)large->width * step};
-            for (size_t c = 0; c < step; c++)
-                to[c] = 0.25f *
-                        (rows[0][(size_t)x0 * step + c] + rows[0][(size_t)x1 * step + c] +
-                         rows[1][(size_t)x0 * step + c] + rows[1][(size_t)x1 * step + c]);
-        }
-}
-
 bool picture_build_levels(picture *pic, GError **error)
 {
     while (pic->n_levels < MAX_PICTURE_LEVELS) {
-        const image *large = pic->levels[pic->n_levels - 1];
+        const texels *large = pic->levels[pic->n_levels - 1];
         if (large->width == 1 && large->height == 1)
             break;
-        image *small =
-            image_new((large->width + 1) / 2, (large->height + 1) / 2, large->n_channels,
-                      (const char *const *)large->channels, error);
+        texels *small = texels_halved(large, error);
         if (!small)
             return false;
-        fill_level(small, large);
         pic->levels[pic->n_levels++] = small;
     }
     return true;
@@ -185,31 +201,31 @@ static int modulo(int i, int n)
 }
 
 /* Each moves texel coordinates into the image; false: black. */
-typedef bool (*wrap_function)(int *x, int *y, const image *img);
+typedef bool (*wrap_function)(int *x, int *y, const texels *t);
 
-static bool wrap_repeat(int *x, int *y, const image *img)
+static bool wrap_repeat(int *x, int *y, const texels *t)
 {
-    *x = modulo(*x, img->width);
-    *y = modulo(*y, img->height);
+    *x = modulo(*x, t->width);
+    *y = modulo(*y, t->height);
     return true;
 }
 
-static bool wrap_black(int *x, int *y, const image *img)
+static bool wrap_black(int *x, int *y, const texels *t)
 {
-    return *x >= 0 && *x < img->width && *y >= 0 && *y < img->height;
+    return *x >= 0 && *x < t->width && *y >= 0 && *y < t->height;
 }
 
-static bool wrap_clamp(int *x, int *y, const image *img)
+static bool wrap_clamp(int *x, int *y, const texels *t)
 {
-    *x = CLAMP(*x, 0, img->width - 1);
-    *y = CLAMP(*y, 0, img->height - 1);
+    *x = CLAMP(*x, 0, t->width - 1);
+    *y = CLAMP(*y, 0, t->height - 1);
     return true;
 }
 
 /* Beyond an edge of the square the sphere goes on at the edge's mirror image. */
-static bool wrap_octahedral(int *x, int *y, const image *img)
+static bool wrap_octahedral(int *x, int *y, const texels *t)
 {
-    int w = img->width, h = img->height;
+    int w = t->width, h = t->height;
     *x = modulo(*x, 2 * w);
     *y = modulo(*y, 2 * h);
     if (*x >= w) {
@@ -224,29 +240,29 @@ static bool wrap_octahedral(int *x, int *y, const image *img)
 }
 
 /* Beyond a pole lies the meridian on the other side. */
-static bool wrap_latlong(int *x, int *y, const image *img)
+static bool wrap_latlong(int *x, int *y, const texels *t)
 {
-    *y = modulo(*y, 2 * img->height);
-    if (*y >= img->height) {
-        *y = 2 * img->height - 1 - *y;
-        *x += img->width / 2;
+    *y = modulo(*y, 2 * t->height);
+    if (*y >= t->height) {
+        *y = 2 * t->height - 1 - *y;
+        *x += t->width / 2;
     }
-    *x = modulo(*x, img->width);
+    *x = modulo(*x, t->width);
     return true;
 }
 
-static const float *texel(const image *img, int x, int y, picture_wrap wrap)
+/* The number of the texel at column x, row y. */
+static size_t texel(const texels *t, int x, int y, picture_wrap wrap)
 {
     static const wrap_function wraps[] = {[WRAP_REPEAT] = wrap_repeat,
                                           [WRAP_BLACK] = wrap_black,
                                           [WRAP_CLAMP] = wrap_clamp,
                                           [WRAP_OCTAHEDRAL] = wrap_octahedral,
                                           [WRAP_LATLONG] = wrap_latlong};
-    bool inside = x >= 0 && x < img->width && y >= 0 && y < img->height;
-    if (!inside && !wraps[wrap](&x, &y, img))
-        return NULL;
-    size_t at = (size_t)y * (size_t)img->width + (size_t)x;
-    return img->pixels + at * (size_t)img->n_channels;
+    bool inside = x >= 0 && x < t->width && y >= 0 && y < t->height;
+    if (!inside && !wraps[wrap](&x, &y, t))
+        return NO_TEXEL;
+    return (size_t)y * (size_t)t->width + (size_t)x;
 }
 
 /* Keeps the integer part representable; at 2^24 texels a float has no fraction left. */
@@ -257,22 +273,27 @@ static float limited(float x)
 
 texel_mix picture_nearest(const picture *pic, int level, vec2 st, picture_wrap wrap)
 {
-    const image *img = pic->levels[level];
-    float x = limited(st.x * (float)img->width), y = limited(st.y * (float)img->height);
-    return (texel_mix){.texels = {texel(img, (int)floorf(x), (int)floorf(y), wrap)},
-                       .weights = {1.0f}};
+    const texels *t = pic->levels[level];
+    float x = limited(st.x * (float)t->width), y = limited(st.y * (float)t->height);
+    return (texel_mix){
+        .of = t,
+        .at = {texel(t, (int)floorf(x), (int)floorf(y), wrap), NO_TEXEL, NO_TEXEL,
+               NO_TEXEL},
+        .weights = {1.0f},
+    };
 }
 
 texel_mix picture_bilinear(const picture *pic, int level, vec2 st, picture_wrap wrap)
 {
-    const image *img = pic->levels[level];
-    float x = limited(st.x * (float)img->width) - 0.5f;
-    float y = limited(st.y * (float)img->height) - 0.5f;
+    const texels *t = pic->levels[level];
+    float x = limited(st.x * (float)t->width) - 0.5f;
+    float y = limited(st.y * (float)t->height) - 0.5f;
     int i = (int)floorf(x), j = (int)floorf(y);
     float dx = x - (float)i, dy = y - (float)j;
     return (texel_mix){
-        .texels = {texel(img, i, j, wrap), texel(img, i + 1, j, wrap),
-                   texel(img, i, j + 1, wrap), texel(img, i + 1, j + 1, wrap)},
+        .of = t,
+        .at = {texel(t, i, j, wrap), texel(t, i + 1, j, wrap), texel(t, i, j + 1, wrap),
+               texel(t, i + 1, j + 1, wrap)},
         .weights = {(1.0f - dx) * (1.0f - dy), dx * (1.0f - dy), (1.0f - dx) * dy,
                     dx * dy},
     };
@@ -282,8 +303,8 @@ float texel_mix_channel(const texel_mix *mix, int channel)
 {
     float sum = 0.0f;
     for (int i = 0; i < 4; i++)
-        if (mix->texels[i])
-            sum += mix->weights[i] * mix->texels[i][channel];
+        if (mix->at[i] != NO_TEXEL)
+            sum += mix->weights[i] * texels_value(mix->of, mix->at[i], channel);
     return sum;
 }
 
@@ -296,17 +317,19 @@ void picture_rgb(const picture *pic, const texel_mix *mix, float rgb[3])
 void picture_texel_mean(const picture *pic, picture_wrap wrap, int x, int y, float rgb[3])
 {
     static const float weights[3] = {0.125f, 0.75f, 0.125f};
+    const texels *t = pic->levels[0];
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
-            const float *t = texel(pic->levels[0], x + i, y + j, wrap);
-            for (int c = 0; c < 3 && t; c++)
-                rgb[c] += weights[i + 1] * weights[j + 1] * t[pic->channels[c]];
+            size_t at = texel(t, x + i, y + j, wrap);
+            for (int c = 0; c < 3 && at != NO_TEXEL; c++)
+                rgb[c] += weights[i + 1] * weights[j + 1] *
+                          texels_value(t, at, pic->channels[c]);
         }
 }
 
 float picture_level(const picture *pic, float width)
 {
-    const image *img = pic->levels[0];
-    return log2f(maxf(width * (float)MIN(img->width, img->height), 1e-8f));
+    const texels *t = pic->levels[0];
+    return log2f(maxf(width * (float)MIN(t->width, t->height), 1e-8f));
 }

@@ -9,9 +9,9 @@
 #pragma once
 
 #include "color/curve.h"
-#include "image/image.h"
 #include "math/vec.h"
 #include "scene/params.h"
+#include "scene/texels.h"
 
 struct scene;
 
@@ -26,33 +26,39 @@ typedef enum picture_wrap {
 
 enum { MAX_PICTURE_LEVELS = 32 };
 
-/** @brief An image with its colours found. Immutable once built. */
+/** @brief An image with its colours found. Shared by all that read it alike, and counted:
+ * who gets one gives it back (picture_unref). Immutable once built. */
 typedef struct picture {
-    image *levels[MAX_PICTURE_LEVELS]; /**< owned; [0] is the image */
-    int n_levels;                      /**< 1 unless built */
+    texels *levels[MAX_PICTURE_LEVELS]; /**< owned; [0] is the image */
+    int n_levels;                       /**< 1 unless built */
     int channels[4]; /**< of R, G, B and A; -1: there is none. Grey: R = G = B */
     bool grey;
     const color_space *space;
 } picture;
 
-/** @brief Reads the image that string parameter `name` names, which must be there.
- *  @param s for images within the scene's file; may be NULL
- *  @return false with ERROR_INPUT at the parameter (or the list, if it is missing) */
-bool picture_read(picture *out, const struct scene *s, const params *p, const char *name,
-                  const image_read_options *options, GError **error);
-/** @brief Wraps an image of one channel, which is taken. */
-void picture_from_grey(picture *out, image *taken);
+/** @brief Reads the image that string parameter `name` names, which must be there; once
+ * for all that read it alike.
+ *  @param s for images within the scene's file, and to share; may be NULL
+ *  @return NULL with ERROR_INPUT at the parameter (or the list, if it is missing) */
+picture *picture_read(const struct scene *s, const params *p, const char *name,
+                      const image_read_options *options, GError **error);
+/** @brief Wraps an image of one channel, which is taken, also on failure. @return NULL:
+ * no memory */
+picture *picture_from_grey(image *taken, GError **error);
 /** @brief Builds the pyramid. */
 bool picture_build_levels(picture *pic, GError **error);
-void picture_clear(picture *pic);
+void picture_unref(picture *pic); /**< NULL is allowed */
 /** @brief Refuses texels that no light can have: not finite, or negative. */
 bool picture_check_light(const picture *pic, source_place place, GError **error);
 /** @brief The alpha channel is there and not one everywhere. */
 bool picture_has_alpha(const picture *pic);
 
+#define NO_TEXEL SIZE_MAX
+
 /** @brief The texels that a look-up mixes. */
 typedef struct texel_mix {
-    const float *texels[4]; /**< NULL: black */
+    const texels *of;
+    size_t at[4]; /**< NO_TEXEL: black */
     float weights[4];
 } texel_mix;
 

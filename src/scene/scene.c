@@ -7,6 +7,7 @@
 #include "scene/scene.h"
 
 #include "scene/lenient.h"
+#include "scene/picture.h"
 #include "scene/scene_commit.h"
 #include "scene/scene_film.h"
 #include "scene/scene_geometry.h"
@@ -38,6 +39,11 @@ static void unref_bytes(void *data)
     g_bytes_unref(data);
 }
 
+static void unref_picture(void *data)
+{
+    picture_unref(data);
+}
+
 static GHashTable *texture_table(void)
 {
     return g_hash_table_new_full(g_str_hash, g_str_equal, g_free, free_texture);
@@ -54,6 +60,7 @@ scene *scene_new(const log_sink *log)
     s->spectrum_textures = texture_table();
     s->material_names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     s->files = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, unref_bytes);
+    s->pictures = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, unref_picture);
     s->film = film_default();
     s->settings = settings_default();
     if (log)
@@ -77,6 +84,7 @@ void scene_free(scene *s)
     scene_close_objects(s);
     g_hash_table_unref(s->material_names);
     g_hash_table_unref(s->files);
+    g_hash_table_unref(s->pictures);
     scene_sources_free(s->sources);
     g_hash_table_unref(s->float_textures);
     g_hash_table_unref(s->spectrum_textures);

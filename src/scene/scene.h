@@ -66,7 +66,9 @@ typedef struct scene {
     GPtrArray *lights;                              /**< light* */
     GHashTable *float_textures, *spectrum_textures; /**< name -> texture* */
     GHashTable *material_names;                     /**< name -> index + 1 */
-    GHashTable *files;      /**< path -> GBytes*: images that came within another file */
+    GHashTable *files; /**< path -> GBytes*: images that came within another file */
+    GHashTable
+        *pictures; /**< how and what was read -> picture*, while the scene is built */
     scene_sources *sources; /**< owned; NULL: nobody asks for them */
     GArray *objects;        /**< scene_object */
     GArray *instances;      /**< instance */

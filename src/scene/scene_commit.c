@@ -173,6 +173,7 @@ bool scene_commit(scene *s, unsigned threads, GError **error)
         find_pixel_width(s);
         scene_find_media(s);
         g_hash_table_remove_all(s->files);
+        g_hash_table_remove_all(s->pictures);
     } else {
         scene_forget_commit(s);
     }

@@ -83,7 +83,7 @@ static const sphere_layout latlong = {"latitude-longitude", WRAP_LATLONG,
 
 /* ---- Building ---- */
 
-static const sphere_layout *find_layout(const image *img)
+static const sphere_layout *find_layout(const texels *img)
 {
     float ratio = (float)img->width / (float)img->height;
     if (img->width == img->height)
@@ -98,13 +98,13 @@ static float mean_rgb(const float rgb[3])
 
 static float row_stretch(const sphere_map *map, int y)
 {
-    float n = (float)map->pic.levels[0]->height;
+    float n = (float)map->pic->levels[0]->height;
     return map->layout->stretch((float)y / n, ((float)y + 1.0f) / n);
 }
 
 static bool build(sphere_map *map, source_place place, GError **error)
 {
-    const image *img = map->pic.levels[0];
+    const texels *img = map->pic->levels[0];
     size_t width = (size_t)img->width, height = (size_t)img->height;
     float *weights = big_alloc(width * height, sizeof *weights, "a light", error);
     if (!weights)
@@ -112,7 +112,7 @@ static bool build(sphere_map *map, source_place place, GError **error)
     for (int y = 0; y < img->height; y++)
         for (int x = 0; x < img->width; x++) {
             float rgb[3];
-            picture_texel_mean(&map->pic, map->layout->wrap, x, y, rgb);
+            picture_texel_mean(map->pic, map->layout->wrap, x, y, rgb);
             weights[(size_t)y * width + (size_t)x] = row_stretch(map, y) * mean_rgb(rgb);
         }
     bool done = distribution2_init(&map->drawn, weights, width, height, error);
@@ -128,16 +128,17 @@ static bool build(sphere_map *map, source_place place, GError **error)
 
 bool sphere_map_init(sphere_map *map, picture *taken, source_place place, GError **error)
 {
-    *map = (sphere_map){.pic = *taken};
-    *taken = (picture){0};
-    const image *img = map->pic.levels[0];
+    *map = (sphere_map){.pic = taken};
+    if (!taken)
+        return false;
+    const texels *img = map->pic->levels[0];
     map->layout = find_layout(img);
     if (!map->layout)
         error_at(error, place,
                  "expected a square image (an equal-area map) or one twice as wide as "
                  "high (latitude-longitude), found %d x %d",
                  img->width, img->height);
-    else if (picture_check_light(&map->pic, place, error) && build(map, place, error))
+    else if (picture_check_light(map->pic, place, error) && build(map, place, error))
         return true;
     sphere_map_clear(map);
     return false;
@@ -145,7 +146,7 @@ bool sphere_map_init(sphere_map *map, picture *taken, source_place place, GError
 
 void sphere_map_clear(sphere_map *map)
 {
-    picture_clear(&map->pic);
+    picture_unref(map->pic);
     distribution2_clear(&map->drawn);
     *map = (sphere_map){0};
 }
@@ -160,8 +161,8 @@ const char *sphere_map_layout(const sphere_map *map)
 void sphere_map_rgb(const sphere_map *map, vec3 d, float rgb[3])
 {
     texel_mix mix =
-        picture_bilinear(&map->pic, 0, map->layout->to_square(d), map->layout->wrap);
-    picture_rgb(&map->pic, &mix, rgb);
+        picture_bilinear(map->pic, 0, map->layout->to_square(d), map->layout->wrap);
+    picture_rgb(map->pic, &mix, rgb);
 }
 
 /* Density over the sphere of a point of the square: the sine of its very own row. */
@@ -189,16 +190,16 @@ enum { MAX_PARTS = 128 };
 /* The mean over a block of texels, rows weighed by their solid angle. */
 static float block_mean(const sphere_map *map, const int box[4], float rgb[3])
 {
-    const image *img = map->pic.levels[0];
+    const texels *img = map->pic->levels[0];
     double sum[3] = {0}, weight = 0.0;
     for (int y = box[2]; y < box[3]; y++)
         for (int x = box[0]; x < box[1]; x++) {
             vec2 st = {((float)x + 0.5f) / (float)img->width,
                        ((float)y + 0.5f) / (float)img->height};
-            texel_mix mix = picture_nearest(&map->pic, 0, st, WRAP_CLAMP);
+            texel_mix mix = picture_nearest(map->pic, 0, st, WRAP_CLAMP);
             double w = (double)row_stretch(map, y);
             float texel[3];
-            picture_rgb(&map->pic, &mix, texel);
+            picture_rgb(map->pic, &mix, texel);
             for (int c = 0; c < 3; c++)
                 sum[c] += w * (double)texel[c];
             weight += w;
@@ -210,7 +211,7 @@ static float block_mean(const sphere_map *map, const int box[4], float rgb[3])
 
 void sphere_map_parts(const sphere_map *map, sphere_part tell, void *data)
 {
-    const image *img = map->pic.levels[0];
+    const texels *img = map->pic->levels[0];
     int nx = MIN(img->width, MAX_PARTS), ny = MIN(img->height, MAX_PARTS);
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++) {

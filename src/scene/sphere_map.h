@@ -22,14 +22,15 @@ vec2 equal_area_to_square(vec3 d);
 struct sphere_layout;
 
 typedef struct sphere_map {
-    picture pic; /**< owned */
+    picture *pic; /**< owned */
     const struct sphere_layout *layout;
     distribution2 drawn;
     double integral; /**< of R, G and B's mean over the sphere, sr */
 } sphere_map;
 
-/** @brief Takes a picture, also on failure. @return false with ERROR_INPUT at the place:
- * its shape fits no layout, it is black or has texels that no light can have. */
+/** @brief Takes a picture, also on failure; NULL fails. @return false with ERROR_INPUT at
+ * the place: its shape fits no layout, it is black or has texels that no light can have.
+ */
 bool sphere_map_init(sphere_map *map, picture *taken, source_place place, GError **error);
 void sphere_map_clear(sphere_map *map);
 /** @brief "equal-area" or "latitude-longitude". */

@@ -19,7 +19,7 @@ enum { AXIS_REPEAT, AXIS_CLAMP, AXIS_MIRROR };
 enum { FILTER_BILINEAR, FILTER_POINT };
 
 typedef struct gltf_texture {
-    picture pic;               /* no levels: white */
+    picture *pic;              /* NULL: white */
     int uv_set;                /* 0 or 1 */
     bool vertex_color, invert; /* invert: a number x becomes 1 - x */
     int channel;               /* of a number, 0..3 */
@@ -32,7 +32,7 @@ typedef struct gltf_texture {
 static void gltf_free(void *self)
 {
     gltf_texture *t = self;
-    picture_clear(&t->pic);
+    picture_unref(t->pic);
     g_free(t);
 }
 
@@ -116,7 +116,8 @@ static bool read_picture(gltf_texture *t, const struct scene *s, bool is_spectru
     const image_read_options options = {
         .encoding = is_spectrum && !linear ? ENCODING_AUTO : ENCODING_LINEAR,
         .gamma = 1.0f};
-    return picture_read(&t->pic, s, p, "filename", &options, error);
+    t->pic = picture_read(s, p, "filename", &options, error);
+    return t->pic != NULL;
 }
 
 static void *gltf_create(const struct scene *s, bool is_spectrum, const params *p,
@@ -152,15 +153,15 @@ static texel_mix look_up(const gltf_texture *t, const surface_hit *hit)
     if (!repeats)
         st = (vec2){folded(st.x, t->wrap_u), folded(st.y, t->wrap_v)};
     picture_wrap wrap = repeats ? WRAP_REPEAT : WRAP_CLAMP;
-    return t->filter == FILTER_POINT ? picture_nearest(&t->pic, 0, st, wrap)
-                                     : picture_bilinear(&t->pic, 0, st, wrap);
+    return t->filter == FILTER_POINT ? picture_nearest(t->pic, 0, st, wrap)
+                                     : picture_bilinear(t->pic, 0, st, wrap);
 }
 
 /* An image without alpha is opaque. */
 static float gltf_eval_float(const void *self, const surface_hit *hit)
 {
     const gltf_texture *t = self;
-    int channel = t->pic.n_levels ? t->pic.channels[t->channel] : -1;
+    int channel = t->pic ? t->pic->channels[t->channel] : -1;
     float value = t->factor[0];
     if (channel >= 0) {
         texel_mix mix = look_up(t, hit);
@@ -178,7 +179,7 @@ static float gltf_eval_float(const void *self, const surface_hit *hit)
 static void look_up_rgb(const gltf_texture *t, const surface_hit *hit, float rgb[3])
 {
     texel_mix mix = look_up(t, hit);
-    picture_rgb(&t->pic, &mix, rgb);
+    picture_rgb(t->pic, &mix, rgb);
 }
 
 static spectrum gltf_eval_spectrum(const void *self, const surface_hit *hit,
@@ -186,13 +187,13 @@ static spectrum gltf_eval_spectrum(const void *self, const surface_hit *hit,
 {
     const gltf_texture *t = self;
     float rgb[3] = {1.0f, 1.0f, 1.0f};
-    if (t->pic.n_levels)
+    if (t->pic)
         look_up_rgb(t, hit, rgb);
     for (int i = 0; i < 3; i++) {
         rgb[i] *= t->factor[i] * (t->vertex_color ? hit_vertex_color(hit, i) : 1.0f);
         rgb[i] = maxf(0.0f, rgb[i]);
     }
-    return rgb_eval(t->pic.n_levels ? t->pic.space : color_space_srgb(), rgb, role, w);
+    return rgb_eval(t->pic ? t->pic->space : color_space_srgb(), rgb, role, w);
 }
 
 /* Tangents that the mesh itself has are those of the map, wherever it takes its
@@ -203,7 +204,7 @@ static void gltf_eval_normal(const void *self, const surface_hit *hit, float rgb
     const gltf_texture *t = self;
     rgb[0] = rgb[1] = 0.5f;
     rgb[2] = 1.0f;
-    if (t->pic.n_levels)
+    if (t->pic)
         look_up_rgb(t, hit, rgb);
     if (hit->mesh && hit->mesh->tangents)
         return;

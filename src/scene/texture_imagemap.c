@@ -18,7 +18,7 @@
 enum { FILTER_BILINEAR, FILTER_POINT, FILTER_TRILINEAR, FILTER_EWA };
 
 typedef struct imagemap {
-    picture pic;
+    picture *pic;
     mapping2 mapping;
     bool use_alpha; /* as a number it is the alpha channel */
     int wrap, filter;
@@ -29,7 +29,7 @@ typedef struct imagemap {
 static void imagemap_free(void *self)
 {
     imagemap *m = self;
-    picture_clear(&m->pic);
+    picture_unref(m->pic);
     g_free(m);
 }
 
@@ -99,12 +99,12 @@ static void *imagemap_create(const struct scene *s, bool is_spectrum, const para
     image_read_options options;
     imagemap *m = g_new0(imagemap, 1);
     if (!read_options(m, p, error) || !read_encoding(p, &options, error) ||
-        !picture_read(&m->pic, s, p, "filename", &options, error) ||
-        (m->filter >= FILTER_TRILINEAR && !picture_build_levels(&m->pic, error))) {
+        !(m->pic = picture_read(s, p, "filename", &options, error)) ||
+        (m->filter >= FILTER_TRILINEAR && !picture_build_levels(m->pic, error))) {
         imagemap_free(m);
         return NULL;
     }
-    m->use_alpha = !is_spectrum && picture_has_alpha(&m->pic);
+    m->use_alpha = !is_spectrum && picture_has_alpha(m->pic);
     return m;
 }
 
@@ -120,17 +120,17 @@ static filtered look_up(const imagemap *m, const surface_hit *hit)
     vec2 st = {at.st.x, 1.0f - at.st.y};
     const picture_wrap wrap = (picture_wrap)m->wrap;
     if (m->filter == FILTER_POINT)
-        return (filtered){.near = picture_nearest(&m->pic, 0, st, wrap)};
+        return (filtered){.near = picture_nearest(m->pic, 0, st, wrap)};
     float level = m->filter == FILTER_BILINEAR
                       ? 0.0f
-                      : picture_level(&m->pic, 2.0f * maxf(at.ds, at.dt));
-    float last = (float)(m->pic.n_levels - 1);
+                      : picture_level(m->pic, 2.0f * maxf(at.ds, at.dt));
+    float last = (float)(m->pic->n_levels - 1);
     level = clampf(level, 0.0f, last);
     int whole = (int)level;
-    filtered out = {.near = picture_bilinear(&m->pic, whole, st, wrap),
+    filtered out = {.near = picture_bilinear(m->pic, whole, st, wrap),
                     .share = level - (float)whole};
     if (out.share > 0.0f)
-        out.far = picture_bilinear(&m->pic, whole + 1, st, wrap);
+        out.far = picture_bilinear(m->pic, whole + 1, st, wrap);
     return out;
 }
 
@@ -145,12 +145,12 @@ static float mixed(const filtered *f, int channel)
 static float imagemap_eval_float(const void *self, const surface_hit *hit)
 {
     const imagemap *m = self;
-    const int *channels = m->pic.channels;
+    const int *channels = m->pic->channels;
     filtered f = look_up(m, hit);
     float value;
     if (m->use_alpha)
         value = mixed(&f, channels[3]);
-    else if (m->pic.grey)
+    else if (m->pic->grey)
         value = mixed(&f, channels[0]);
     else
         value =
@@ -167,12 +167,12 @@ static spectrum imagemap_eval_spectrum(const void *self, const surface_hit *hit,
     filtered f = look_up(m, hit);
     float rgb[3];
     for (int i = 0; i < 3; i++) {
-        float value = m->scale * mixed(&f, m->pic.channels[i]);
+        float value = m->scale * mixed(&f, m->pic->channels[i]);
         rgb[i] = maxf(0.0f, m->invert ? 1.0f - value : value);
     }
-    if (m->pic.grey && role != CURVE_EMISSION)
+    if (m->pic->grey && role != CURVE_EMISSION)
         return spectrum_fill(rgb[0]);
-    return rgb_eval(m->pic.space, rgb, role, w);
+    return rgb_eval(m->pic->space, rgb, role, w);
 }
 
 const texture_kind texture_imagemap = {
