@@ -17,6 +17,7 @@
 #include "base/intern.h"
 #include "format/given.h"
 #include "format/height_map.h"
+#include "scene/picture.h"
 
 #include <assimp/cimport.h>
 #include <assimp/material.h>
@@ -131,14 +132,17 @@ static char *texture_path(assimp_reader *r, const struct aiMaterial *m,
     return NULL;
 }
 
-/* Images we do not decode (TGA, DDS ...) leave the plain colour. */
-static bool is_readable(assimp_reader *r, const char *path)
+/* Images we do not decode (DDS ...) leave the plain colour. What can be read is at hand
+   for the texture that reads it alike. */
+static bool is_readable(assimp_reader *r, const char *path, image_encoding encoding)
 {
+    const image_read_options options = {.encoding = encoding};
     g_autoptr(GError) error = NULL;
-    g_autoptr(image) img = scene_read_image(r->scene, path, NULL, &error);
-    if (!img)
+    picture *pic = picture_read_file(r->scene, path, &options, &error);
+    if (!pic)
         assimp_note(r, "a texture is left out: %s", error->message);
-    return img != NULL;
+    picture_unref(pic);
+    return pic != NULL;
 }
 
 /* The texture of a type as one of the scene; its name, or NULL if there is none. */
@@ -157,7 +161,7 @@ static char *add_texture(assimp_reader *r, const struct aiMaterial *m,
     give_text(p, PARAM_STRING, "filename", path);
     if (!is_spectrum)
         give_text(p, PARAM_STRING, "encoding", "linear");
-    if (is_readable(r, path) &&
+    if (is_readable(r, path, is_spectrum ? ENCODING_AUTO : ENCODING_LINEAR) &&
         scene_add_texture(r->scene, name, "imagemap", is_spectrum, p, error))
         return name;
     g_free(name);
@@ -230,7 +234,7 @@ static void give_heights(assimp_reader *r, params *p, const struct aiMaterial *m
     static const image_read_options linear = {.encoding = ENCODING_LINEAR};
     g_autofree char *path = texture_path(r, m, aiTextureType_HEIGHT);
     double strength = 1.0;
-    if (!path || !is_readable(r, path))
+    if (!path || !is_readable(r, path, linear.encoding))
         return;
     g_autoptr(image) heights = scene_read_image(r->scene, path, &linear, NULL);
     get_number(m, KEY_BUMP_STRENGTH, &strength);
@@ -249,7 +253,7 @@ static void give_heights(assimp_reader *r, params *p, const struct aiMaterial *m
 static void give_normals(assimp_reader *r, params *p, const struct aiMaterial *m)
 {
     g_autofree char *path = texture_path(r, m, aiTextureType_NORMALS);
-    if (path && is_readable(r, path))
+    if (path && is_readable(r, path, ENCODING_LINEAR))
         give_text(p, PARAM_STRING, "normalmap", path);
     else
         give_heights(r, p, m);

@@ -86,9 +86,8 @@ static picture *read_path(const struct scene *s, const char *path,
     return picture_of(pic, img, error);
 }
 
-/* Reads it, if nobody has read it alike. */
-static picture *find_or_read(const struct scene *s, const char *path,
-                             const image_read_options *options, GError **error)
+picture *picture_read_file(const struct scene *s, const char *path,
+                           const image_read_options *options, GError **error)
 {
     if (!s)
         return read_path(s, path, options, error);
@@ -116,7 +115,7 @@ picture *picture_read(const struct scene *s, const params *p, const char *name,
         return NULL;
     }
     g_autoptr(GError) inner = NULL;
-    picture *pic = find_or_read(s, path, options, &inner);
+    picture *pic = picture_read_file(s, path, options, &inner);
     if (!pic)
         error_at(error, params_find(p, name)->place, "%s", inner->message);
     return pic;

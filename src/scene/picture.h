@@ -42,6 +42,9 @@ typedef struct picture {
  *  @return NULL with ERROR_INPUT at the parameter (or the list, if it is missing) */
 picture *picture_read(const struct scene *s, const params *p, const char *name,
                       const image_read_options *options, GError **error);
+/** @brief The same of a file. @return NULL with ERROR_INPUT */
+picture *picture_read_file(const struct scene *s, const char *path,
+                           const image_read_options *options, GError **error);
 /** @brief Wraps an image of one channel, which is taken, also on failure. @return NULL:
  * no memory */
 picture *picture_from_grey(image *taken, GError **error);

@@ -103,7 +103,8 @@ static bool read_options(gltf_texture *t, bool is_spectrum, const params *p,
            read_factor(t, is_spectrum, p, error);
 }
 
-/* Colours are sRGB, unless they are no colours; numbers are written as they are. */
+/* Colours are sRGB, unless they are no colours; numbers are written as they are. Alpha is
+   so in any encoding: that of the colours is read with them. */
 static bool read_picture(gltf_texture *t, const struct scene *s, bool is_spectrum,
                          const params *p, GError **error)
 {
@@ -113,9 +114,9 @@ static bool read_picture(gltf_texture *t, const struct scene *s, bool is_spectru
         return false;
     if (t->vertex_color && !params_has(p, "filename"))
         return true;
+    bool with_colors = is_spectrum || t->channel == 3;
     const image_read_options options = {
-        .encoding = is_spectrum && !linear ? ENCODING_AUTO : ENCODING_LINEAR,
-        .gamma = 1.0f};
+        .encoding = with_colors && !linear ? ENCODING_AUTO : ENCODING_LINEAR};
     t->pic = picture_read(s, p, "filename", &options, error);
     return t->pic != NULL;
 }
