@@ -96,19 +96,18 @@ static spectrum rough_albedo(const bsdf *b, vec3 wo, unsigned lobes)
 {
     if (!lobe_wanted(lobes, b->lobes))
         return (spectrum){0};
-    enum { N = 8 };
     const conductor *c = data_of(b);
     vec3 o = flip_z(wo, wo[2] < 0.0f);
     spectrum sum = {0};
-    for (int x = 0; x < N; x++)
-        for (int y = 0; y < N; y++) {
-            vec2 u = {((float)x + 0.5f) / N, ((float)y + 0.5f) / N};
-            vec3 m = ggx_sample_visible(c->roughness, o, u), i = reflect3(o, m);
-            if (i[2] > 0.0f)
-                sum += fresnel_conductor(dot3(o, m), c->eta, c->k) *
-                       ggx_visible_weight(c->roughness, o, i);
-        }
-    return sum / (N * N);
+    vec2 u[GGX_FEW];
+    ggx_few_points(o, u);
+    for (int k = 0; k < GGX_FEW; k++) {
+        vec3 m = ggx_sample_visible(c->roughness, o, u[k]), i = reflect3(o, m);
+        if (i[2] > 0.0f)
+            sum += fresnel_conductor(dot3(o, m), c->eta, c->k) *
+                   ggx_visible_weight(c->roughness, o, i);
+    }
+    return sum / GGX_FEW;
 }
 
 void bsdf_make_conductor(bsdf *b, spectrum eta, spectrum k, ggx roughness)

@@ -158,19 +158,19 @@ static bool rough_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned 
     return s.pdf > 0.0f;
 }
 
-/* Share of light from o (above) that is reflected and transmitted, by 64 points. */
+/* Share of light from o (above) that is reflected and transmitted, by few points. */
 static void facet_shares(ggx g, vec3 wo, float eta, float *reflected, float *transmitted)
 {
-    enum { N = 8 };
+    vec2 u[GGX_FEW];
     *reflected = *transmitted = 0.0f;
-    for (int k = 0; k < N * N; k++) {
-        vec2 u = {((float)(k / N) + 0.5f) / N, ((float)(k % N) + 0.5f) / N};
-        vec3 m = ggx_sample_visible(g, wo, u), i = reflect3(wo, m);
+    ggx_few_points(wo, u);
+    for (int k = 0; k < GGX_FEW; k++) {
+        vec3 m = ggx_sample_visible(g, wo, u[k]), i = reflect3(wo, m);
         float r = fresnel_dielectric(dot3(wo, m), eta);
         if (i[2] > 0.0f)
-            *reflected += r * ggx_visible_weight(g, wo, i) / (N * N);
+            *reflected += r * ggx_visible_weight(g, wo, i) / GGX_FEW;
         if (refract_below(wo, m, eta, &i))
-            *transmitted += (1.0f - r) * ggx_visible_weight(g, wo, i) / (N * N);
+            *transmitted += (1.0f - r) * ggx_visible_weight(g, wo, i) / GGX_FEW;
     }
 }
 

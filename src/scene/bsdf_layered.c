@@ -272,14 +272,14 @@ static bool layered_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigne
 /* Of light from o, what rough facets reflect. */
 static float facets_albedo(const layered *c, vec3 o)
 {
-    enum { N = 6 };
     float sum = 0.0f;
-    for (int k = 0; k < N * N; k++) {
-        vec2 u = {((float)(k / N) + 0.5f) / N, ((float)(k % N) + 0.5f) / N};
-        vec3 m = ggx_sample_visible(c->l.coat, o, u), i = reflect3(o, m);
+    vec2 u[GGX_FEW];
+    ggx_few_points(o, u);
+    for (int k = 0; k < GGX_FEW; k++) {
+        vec3 m = ggx_sample_visible(c->l.coat, o, u[k]), i = reflect3(o, m);
         if (i[2] > 0.0f)
             sum += fresnel_dielectric(dot3(o, m), c->l.eta) *
-                   ggx_visible_weight(c->l.coat, o, i) / (N * N);
+                   ggx_visible_weight(c->l.coat, o, i) / GGX_FEW;
     }
     return sum;
 }

@@ -75,3 +75,9 @@ static inline float ggx_visible_weight(ggx g, vec3 wo, vec3 wi)
 
 /** @brief A normal in proportion to its area seen from wo (wo[2] > 0). */
 vec3 ggx_sample_visible(ggx g, vec3 wo, vec2 u);
+
+enum { GGX_FEW = 8 };
+
+/** @brief Few points u of ggx_sample_visible that stand for all: a lattice, shifted by
+ * numbers of wo's own, so that over many wo their mean is exact. */
+void ggx_few_points(vec3 wo, vec2 u[GGX_FEW]);
