@@ -174,6 +174,32 @@ static void test_distribution_follows_its_weights(void)
     distribution_clear(&d);
 }
 
+/* What a walk from the first weight finds, for many weights and numbers of all kinds. */
+static void test_distribution_picks_by_definition(void)
+{
+    static const size_t sizes[] = {1, 2, 3, 7, 64, 1000, 4097};
+    for (size_t k = 0; k < G_N_ELEMENTS(sizes); k++) {
+        g_autofree float *weights = g_new0(float, sizes[k]);
+        for (size_t i = 0; i < sizes[k]; i++)
+            weights[i] = i % 5 == 1 ? 0.0f : powf(10.0f, (float)(i * 7 % 11) - 5.0f);
+        distribution d;
+        g_assert_true(distribution_init(&d, weights, sizes[k], NULL));
+        for (uint32_t j = 0; j < 3000; j++) {
+            sampler s = sampler_make(5, j);
+            float u = j < 1024 ? (float)j / 1024.0f : sampler_1d(&s);
+            u = j == 1024 ? 0x1.fffffep-1f : u;
+            double target = (double)u * distribution_total(&d);
+            size_t expected = 0;
+            while (expected + 1 < d.n && d.cumulative[expected + 1] <= target)
+                expected++;
+            while (expected > 0 && !(weights[expected] > 0.0f))
+                expected--;
+            g_assert_cmpuint(distribution_sample(&d, &u), ==, expected);
+        }
+        distribution_clear(&d);
+    }
+}
+
 /* Perlin's gradients (2002): at whole points noise is zero and rises along one of the
    twelve directions to the edges of a cube, all of which occur. */
 static void test_noise_has_perlins_gradients(void)
@@ -233,6 +259,8 @@ int main(int argc, char **argv)
     g_test_add_func("/math/warp/integrals", test_warps_integrate);
     g_test_add_func("/math/frame/orthonormal", test_frames_are_orthonormal);
     g_test_add_func("/math/distribution/weights", test_distribution_follows_its_weights);
+    g_test_add_func("/math/distribution/definition",
+                    test_distribution_picks_by_definition);
     g_test_add_func("/math/noise/gradients", test_noise_has_perlins_gradients);
     g_test_add_func("/math/median/middle", test_median_is_in_the_middle);
     return g_test_run();

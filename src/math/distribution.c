@@ -2,20 +2,56 @@
 
 #include "base/memory.h"
 
+/* The last index from low to high - 1 whose step begins at or before target; that of low
+   does. */
+static size_t find_step(const distribution *d, double target, size_t low, size_t high)
+{
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        if (d->cumulative[middle] <= target)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* One cut for every four weights. */
+static bool make_cuts(distribution *d, GError **error)
+{
+    double total = distribution_total(d);
+    d->n_cuts = 1;
+    while (4 * d->n_cuts < d->n)
+        d->n_cuts *= 2;
+    d->cuts = big_alloc(d->n_cuts + 1, sizeof *d->cuts, "a sampling table", error);
+    if (!d->cuts)
+        return false;
+    for (size_t i = 0; i < d->n_cuts; i++) {
+        double target = (double)i / (double)d->n_cuts * total;
+        d->cuts[i] = (uint32_t)find_step(d, target, i > 0 ? d->cuts[i - 1] : 0, d->n);
+    }
+    d->cuts[d->n_cuts] = (uint32_t)d->n - 1;
+    return true;
+}
+
 bool distribution_init(distribution *d, const float *weights, size_t n, GError **error)
 {
-    d->n = n;
+    *d = (distribution){.n = n};
     d->cumulative = big_alloc(n + 1, sizeof(double), "a sampling table", error);
     if (!d->cumulative)
         return false;
     for (size_t i = 0; i < n; i++)
         d->cumulative[i + 1] = d->cumulative[i] + (double)weights[i];
-    return true;
+    if (n == 0 || make_cuts(d, error))
+        return true;
+    distribution_clear(d);
+    return false;
 }
 
 void distribution_clear(distribution *d)
 {
     big_free(d->cumulative);
+    big_free(d->cuts);
     *d = (distribution){0};
 }
 
@@ -34,14 +70,8 @@ float distribution_pdf(const distribution *d, size_t i)
 size_t distribution_sample(const distribution *d, float *u)
 {
     double target = (double)*u * distribution_total(d);
-    size_t low = 0, high = d->n;
-    while (high - low > 1) {
-        size_t middle = low + (high - low) / 2;
-        if (d->cumulative[middle] <= target)
-            low = middle;
-        else
-            high = middle;
-    }
+    size_t cut = MIN((size_t)(*u * (float)d->n_cuts), d->n_cuts - 1); /* exact */
+    size_t low = find_step(d, target, d->cuts[cut], (size_t)d->cuts[cut + 1] + 1);
     while (low > 0 && !(d->cumulative[low + 1] > d->cumulative[low]))
         low--;
     double step = d->cumulative[low + 1] - d->cumulative[low];
