@@ -401,13 +401,14 @@ static bool sample_toward(const void *self, vec3 ref, float u_primitive, vec2 u,
     size_t primitive = distribution_sample(&s->areas, &u_primitive);
     triangle t;
     triangle_get(&s->m, primitive, &t);
-    double b[3], solid_angle = triangle_solid_angle(&t, ref);
-    if (is_sampled_by_angle(solid_angle))
-        triangle_sample_solid_angle(&t, ref, u, b);
+    const seen_triangle seen = triangle_seen_from(&t, ref);
+    double b[3];
+    if (is_sampled_by_angle(seen.solid_angle))
+        triangle_sample_solid_angle(&t, &seen, ref, u, b);
     else
         weights_by_area(u, b);
     *out = sample_at(s, primitive, b);
-    out->pdf = pdf_of(s, &t, solid_angle, ref, out->p, out->n);
+    out->pdf = pdf_of(s, &t, seen.solid_angle, ref, out->p, out->n);
     return out->pdf > 0.0f;
 }
 
@@ -416,7 +417,8 @@ static float pdf_toward(const void *self, vec3 ref, const surface_hit *hit)
     const mesh_shape *s = self;
     triangle t;
     triangle_get(&s->m, hit->primitive, &t);
-    return pdf_of(s, &t, triangle_solid_angle(&t, ref), ref, hit->p, hit->n_geom);
+    return pdf_of(s, &t, triangle_seen_from(&t, ref).solid_angle, ref, hit->p,
+                  hit->n_geom);
 }
 
 const shape_kind mesh_kind = {

@@ -27,23 +27,19 @@ double triangle_area(const triangle *t)
     return 0.5 * dvec3_length(t->cross);
 }
 
-/* Unit directions from ref to the corners. */
-static void directions(const triangle *t, vec3 ref, dvec3 d[3])
+seen_triangle triangle_seen_from(const triangle *t, vec3 ref)
 {
+    seen_triangle seen;
     for (int i = 0; i < 3; i++) {
-        d[i] = t->p[i] - dvec3_from_float(ref);
-        d[i] /= dvec3_length(d[i]);
+        seen.d[i] = t->p[i] - dvec3_from_float(ref);
+        seen.d[i] /= dvec3_length(seen.d[i]);
     }
-}
-
-double triangle_solid_angle(const triangle *t, vec3 ref)
-{
-    dvec3 d[3];
-    directions(t, ref, d);
+    const dvec3 *d = seen.d;
     double volume = fabs(dvec3_dot(d[0], dvec3_cross(d[1], d[2])));
     double sum =
         1.0 + dvec3_dot(d[0], d[1]) + dvec3_dot(d[1], d[2]) + dvec3_dot(d[2], d[0]);
-    return 2.0 * atan2(volume, sum);
+    seen.solid_angle = 2.0 * atan2(volume, sum);
+    return seen;
 }
 
 /* The unit direction at cosine c from axis, in the plane of axis and v. */
@@ -54,32 +50,32 @@ static dvec3 turn_toward(dvec3 axis, dvec3 v, double c)
     return c * axis + s / dvec3_length(across) * across;
 }
 
-/* The angle at corner d[0] between the great circles to d[1] and d[2]. */
-static double corner_angle(const dvec3 d[3])
+static dvec3 sample_direction(const seen_triangle *seen, vec2 u)
 {
+    const dvec3 *d = seen->d;
+    /* The angle α at corner 0, between the great circles to the others ... */
     dvec3 n1 = dvec3_cross(d[0], d[1]), n2 = dvec3_cross(d[0], d[2]);
-    return atan2(dvec3_length(dvec3_cross(n1, n2)), dvec3_dot(n1, n2));
-}
-
-static dvec3 sample_direction(const dvec3 d[3], double solid_angle, vec2 u)
-{
-    /* The sub-triangle of area u.x Ω that shares corner 0 and side 0-1 ... */
-    double alpha = corner_angle(d), part = (double)u.x * solid_angle;
-    double s = sin(part - alpha), t = cos(part - alpha);
-    double a = t - cos(alpha);
-    double b = s + sin(alpha) * dvec3_dot(d[0], d[1]);
-    double q = ((b * t - a * s) * cos(alpha) - b) / ((b * s + a * t) * sin(alpha));
+    double scale = 1.0 / sqrt(dvec3_dot(n1, n1) * dvec3_dot(n2, n2));
+    double cos_alpha = dvec3_dot(n1, n2) * scale;
+    double sin_alpha = dvec3_length(dvec3_cross(n1, n2)) * scale;
+    /* ... and the sub-triangle of area u.x Ω that shares it and side 0-1 ... */
+    double part = (double)u.x * seen->solid_angle;
+    double sin_part = sin(part), cos_part = cos(part);
+    double s = sin_part * cos_alpha - cos_part * sin_alpha;
+    double t = cos_part * cos_alpha + sin_part * sin_alpha;
+    double a = t - cos_alpha;
+    double b = s + sin_alpha * dvec3_dot(d[0], d[1]);
+    double q = ((b * t - a * s) * cos_alpha - b) / ((b * s + a * t) * sin_alpha);
     dvec3 corner = turn_toward(d[0], d[2], isfinite(q) ? CLAMP(q, -1.0, 1.0) : 1.0);
     /* ... and a point between corner 1 and its far corner. */
     double z = 1.0 - (double)u.y * (1.0 - dvec3_dot(corner, d[1]));
     return turn_toward(d[1], corner, z);
 }
 
-void triangle_sample_solid_angle(const triangle *t, vec3 ref, vec2 u, double b[3])
+void triangle_sample_solid_angle(const triangle *t, const seen_triangle *seen, vec3 ref,
+                                 vec2 u, double b[3])
 {
-    dvec3 d[3];
-    directions(t, ref, d);
-    dvec3 w = sample_direction(d, triangle_solid_angle(t, ref), u);
+    dvec3 w = sample_direction(seen, u);
     dvec3 from = dvec3_from_float(ref) - t->p[0];
     dvec3 h = dvec3_cross(w, t->edge[1]), g = dvec3_cross(from, t->edge[0]);
     double scale = 1.0 / dvec3_dot(t->edge[0], h);

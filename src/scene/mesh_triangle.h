@@ -46,9 +46,16 @@ static inline dvec3 dvec3_from_float(vec3 a)
 
 void triangle_get(const mesh *m, size_t primitive, triangle *t);
 double triangle_area(const triangle *t);
-/** @brief The solid angle in which ref sees it, 0..2 pi (Van Oosterom & Strackee, "The
- * Solid Angle of a Plane Triangle", 1983). */
-double triangle_solid_angle(const triangle *t, vec3 ref);
+
+/** @brief A triangle as it is seen from a point. */
+typedef struct seen_triangle {
+    dvec3 d[3];         /**< unit, to the corners */
+    double solid_angle; /**< 0..2 pi (Van Oosterom & Strackee, "The Solid Angle of a Plane
+                           Triangle", 1983) */
+} seen_triangle;
+
+seen_triangle triangle_seen_from(const triangle *t, vec3 ref);
 /** @brief Barycentric weights of a point, uniform by solid angle at ref (Arvo,
- * "Stratified Sampling of Spherical Triangles", 1995). */
-void triangle_sample_solid_angle(const triangle *t, vec3 ref, vec2 u, double b[3]);
+ * "Stratified Sampling of Spherical Triangles", 1995). @param seen from ref */
+void triangle_sample_solid_angle(const triangle *t, const seen_triangle *seen, vec3 ref,
+                                 vec2 u, double b[3]);
