@@ -143,15 +143,10 @@ void picture_unref(picture *pic)
         g_rc_box_release_full(pic, clear);
 }
 
-static size_t n_texels(const texels *t)
-{
-    return (size_t)t->width * (size_t)t->height;
-}
-
 bool picture_check_light(const picture *pic, source_place place, GError **error)
 {
     const texels *t = pic->levels[0];
-    for (size_t i = 0; i < n_texels(t); i++)
+    for (size_t i = 0; i < texels_count(t); i++)
         for (int c = 0; c < 3; c++) {
             float x = texels_value(t, i, pic->channels[c]);
             if (isfinite(x) && x >= 0.0f)
@@ -169,7 +164,7 @@ bool picture_has_alpha(const picture *pic)
     const texels *t = pic->levels[0];
     if (pic->channels[3] < 0)
         return false;
-    for (size_t i = 0; i < n_texels(t); i++)
+    for (size_t i = 0; i < texels_count(t); i++)
         if (texels_value(t, i, pic->channels[3]) < 1.0f)
             return true;
     return false;

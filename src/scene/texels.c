@@ -38,17 +38,12 @@ static int code_of(code_book *book, float value, float table[TEXEL_CODES])
     return book->code[slot] - 1;
 }
 
-static size_t n_texels(const texels *t)
-{
-    return (size_t)t->width * (size_t)t->height;
-}
-
 /* @return false: some channel has too many values */
 static bool encode_with(texels *t, const float *pixels, code_book *books)
 {
     int n = t->n_channels;
     uint8_t *to = t->codes;
-    for (size_t i = 0; i < n_texels(t); i++, pixels += n, to += n)
+    for (size_t i = 0; i < texels_count(t); i++, pixels += n, to += n)
         for (int c = 0; c < n; c++) {
             int code = code_of(&books[c], pixels[c], t->tables[c]);
             if (code < 0)
@@ -71,8 +66,9 @@ static bool encode(texels *t, const float *pixels, GError **error)
 {
     size_t n = (size_t)t->n_channels;
     code_book *books = big_alloc(n, sizeof *books, "a picture", error);
-    t->codes =
-        books ? big_alloc(n_texels(t) * n, sizeof *t->codes, "a picture", error) : NULL;
+    t->codes = books
+                   ? big_alloc(texels_count(t) * n, sizeof *t->codes, "a picture", error)
+                   : NULL;
     t->tables = t->codes ? big_alloc(n, sizeof *t->tables, "a picture", error) : NULL;
     bool done = t->tables != NULL;
     if (done && !encode_with(t, pixels, books))
@@ -101,8 +97,8 @@ texels *texels_from_image(image *taken, GError **error)
  */
 static void children(int i, int n, size_t out[2])
 {
-    out[0] = (size_t)(2 * i);
-    out[1] = (size_t)MIN(2 * i + 1, n - 1);
+    out[0] = 2 * (size_t)i;
+    out[1] = MIN(out[0] + 1, (size_t)n - 1);
 }
 
 static void fill_halved(texels *small, const texels *large)
@@ -128,7 +124,7 @@ texels *texels_halved(const texels *large, GError **error)
     t->width = (large->width + 1) / 2;
     t->height = (large->height + 1) / 2;
     t->n_channels = large->n_channels;
-    size_t n = n_texels(t) * (size_t)t->n_channels;
+    size_t n = texels_count(t) * (size_t)t->n_channels;
     t->values = big_alloc(n, sizeof *t->values, "a picture", error);
     if (!t->values) {
         texels_free(t);

@@ -29,6 +29,11 @@ texels *texels_from_image(image *taken, GError **error);
 texels *texels_halved(const texels *large, GError **error);
 void texels_free(texels *t);
 
+static inline size_t texels_count(const texels *t)
+{
+    return (size_t)t->width * (size_t)t->height;
+}
+
 /** @brief A channel of texel number `at`, counted row by row. */
 static inline float texels_value(const texels *t, size_t at, int channel)
 {
