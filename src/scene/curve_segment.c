@@ -71,6 +71,7 @@ void span_control(const curve_span *span, dvec3 p[4])
 typedef struct search {
     const curve_segment *segment;
     double low, high; /* of the span, with its seams */
+    double stray;     /* how far pieces stray from their chords at most */
     dvec3 o, d;
     double range[2];
     double t, u, v; /* of the nearest hit */
@@ -79,14 +80,16 @@ typedef struct search {
 
 /* A chord is off by at most 1/8 of the second derivative, which is at most six times the
    second difference of control points. */
-static int n_pieces(const curve_span *span, double least_radius)
+static int n_pieces(const curve_span *span, double least_radius, double *stray)
 {
     dvec3 p[4];
     span_control(span, p);
     double bend = fmax(dvec3_length(p[0] - 2.0 * p[1] + p[2]),
                        dvec3_length(p[1] - 2.0 * p[2] + p[3]));
-    double n = sqrt(0.75 * bend / (STRAY * least_radius));
-    return n < MOST_PIECES ? 1 + (int)n : MOST_PIECES;
+    double wanted = sqrt(0.75 * bend / (STRAY * least_radius));
+    int n = wanted < MOST_PIECES ? 1 + (int)wanted : MOST_PIECES;
+    *stray = 0.75 * bend / (n * n);
+    return n;
 }
 
 static void take(search *s, double t, double u, double v)
@@ -129,12 +132,15 @@ static void search_flat(search *s, double u)
          0.5 + side * (at.r > 0.0 ? distance / at.r : 0.0));
 }
 
+/* Where the ray passes closest to the chord, unless that is too far off. */
 static void flat_piece(search *s, double low, double high)
 {
-    dvec3 from = across_ray(s, segment_at(s->segment, low).c - s->o);
-    dvec3 chord = across_ray(s, segment_at(s->segment, high).c - s->o) - from;
+    curve_point a = segment_at(s->segment, low), b = segment_at(s->segment, high);
+    dvec3 from = across_ray(s, a.c - s->o), chord = across_ray(s, b.c - s->o) - from;
     double x = -dvec3_dot(from, chord) / dvec3_dot(chord, chord);
-    search_flat(s, low + (high - low) * (isfinite(x) ? CLAMP(x, 0.0, 1.0) : 0.5));
+    x = isfinite(x) ? CLAMP(x, 0.0, 1.0) : 0.5;
+    if (dvec3_length(from + x * chord) <= fmax(a.r, b.r) + s->stray)
+        search_flat(s, low + (high - low) * x);
 }
 
 /* ---- Tube: x - c(u) stands across the curve and has length r(u) ---- */
@@ -264,9 +270,10 @@ bool curve_intersect(const curve_span *span, curve_type type, dvec3 o, dvec3 d,
                 .d = d,
                 .range = {range[0], range[1]}};
     double widest = fmax(span->segment->width[0], span->segment->width[1]);
-    int n =
-        n_pieces(span, 0.5 * fmax(fmin(span->segment->width[0], span->segment->width[1]),
-                                  0.1 * widest));
+    int n = n_pieces(
+        span,
+        0.5 * fmax(fmin(span->segment->width[0], span->segment->width[1]), 0.1 * widest),
+        &s.stray);
     double step = (span->high - span->low) / n;
     for (int i = 0; i < n; i++)
         pieces[type](&s, span->low + i * step, span->low + (i + 1) * step);
