@@ -141,8 +141,9 @@ static bool is_readable(assimp_reader *r, const char *path, image_encoding encod
     picture *pic = picture_read_file(r->scene, path, &options, &error);
     if (!pic)
         assimp_note(r, "a texture is left out: %s", error->message);
+    bool readable = pic != NULL;
     picture_unref(pic);
-    return pic != NULL;
+    return readable;
 }
 
 /* The texture of a type as one of the scene; its name, or NULL if there is none. */

@@ -16,7 +16,7 @@ static size_t find_step(const distribution *d, double target, size_t low, size_t
     return low;
 }
 
-/* One cut for every four weights. */
+/* At least one cut for every four weights. */
 static bool make_cuts(distribution *d, GError **error)
 {
     double total = distribution_total(d);
@@ -70,7 +70,8 @@ float distribution_pdf(const distribution *d, size_t i)
 size_t distribution_sample(const distribution *d, float *u)
 {
     double target = (double)*u * distribution_total(d);
-    size_t cut = MIN((size_t)(*u * (float)d->n_cuts), d->n_cuts - 1); /* exact */
+    /* Exact, since n_cuts is a power of two. */
+    size_t cut = MIN((size_t)(*u * (float)d->n_cuts), d->n_cuts - 1);
     size_t low = find_step(d, target, d->cuts[cut], (size_t)d->cuts[cut + 1] + 1);
     while (low > 0 && !(d->cumulative[low + 1] > d->cumulative[low]))
         low--;

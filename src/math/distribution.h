@@ -16,8 +16,8 @@ typedef struct distribution {
     size_t n;
     double *cumulative; /**< n + 1 values, 0 first, total last */
     size_t n_cuts;      /**< a power of two */
-    uint32_t *cuts; /**< n_cuts + 1 indices: what u = i / n_cuts picks; NULL: a total of
-                       zero */
+    uint32_t *cuts;     /**< n_cuts + 1 indices: what u = i / n_cuts picks; NULL if n is 0
+                         */
 } distribution;
 
 /** @brief Sums n weights (>= 0, finite). @return false when memory is refused. A total of

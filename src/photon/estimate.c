@@ -354,8 +354,8 @@ spectrum photon_estimate(const photon_map *map, vec3 p, const bsdf *b, vec3 wo,
     photon_filter filter = {
         .n = face < 0 ? -b->n_geom : b->n_geom,
         .one_sided = !transmits,
-        .face = transmits && !flat ? face : 0,
-        .flatten = flat ? 1.0f : options->flatten,
+        .face = transmits ? face : 0,
+        .flatten = options->flatten,
         .curve = flat ? scene_curve_of(flat->scene, flat->hit) : 0,
     };
     gather g;

@@ -33,8 +33,9 @@ typedef struct photon_filter {
                   of the surface itself, and photons off its plane count only if
                   theirs points alike (by PHOTON_BEHIND), so that those on the other
                   face of a thin pane do not; 0: all */
-    uint32_t curve; /**< where photons keep their curves: only those on this one, however
-                       their normals lie; 0: only those on none */
+    uint32_t curve; /**< where photons keep their curves: only those on this one, which
+                       has no plane, so flatten, face and normals say nothing; 0: only
+                       those on none */
 } photon_filter;
 
 /** @brief Photons found: indices into photon_map_store(map) and squared distances.

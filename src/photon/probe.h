@@ -41,13 +41,14 @@ static inline photon_probe photon_probe_make(const photon_store *store, vec3 p,
     probe.z = store->z;
     probe.wi = store->wi;
     if (filter) {
-        probe.normal = filter->curve ? NULL : store->normal;
+        bool on_curve = filter->curve != 0;
+        probe.normal = on_curve ? NULL : store->normal;
         probe.curve = store->curve;
         probe.on_curve = filter->curve;
         probe.n = filter->n;
         probe.one_sided = filter->one_sided;
-        probe.face = filter->face;
-        probe.flat = filter->flatten < 1.0f;
+        probe.face = on_curve ? 0 : filter->face;
+        probe.flat = !on_curve && filter->flatten < 1.0f;
         probe.inv_flatten = 1.0f / fmaxf(filter->flatten, 1e-3f);
     }
     return probe;

@@ -42,8 +42,8 @@ static vertex_search search_around(const vcm_pass *pass, const vcm_vertex *v)
     s.filter = (photon_filter){
         .n = face < 0 ? -s.at.n_geom : s.at.n_geom,
         .one_sided = !transmits,
-        .face = transmits && !s.at.turns ? face : 0,
-        .flatten = s.at.turns ? 1.0f : (float)pass->plan->how.flatten,
+        .face = transmits ? face : 0,
+        .flatten = (float)pass->plan->how.flatten,
         .curve = scene_curve_of(pass->scene, v->hit),
     };
     return s;
