@@ -10,6 +10,7 @@
 #include "api/objects.h"
 
 #include "scene/scene_media.h"
+#include "scene/scene_solids.h"
 
 #include <math.h>
 #include <string.h>
@@ -148,7 +149,8 @@ bool neph_scene_set_camera(NephScene *s, const NephCamera *c, GError **error)
     to->lens_radius = (float)c->lens_radius;
     to->focal_distance = (float)c->focal_distance;
     camera_resize(to, to->width, to->height);
-    scene_find_eye_media(s->scene);
+    scene_find_eye_solids(s->scene);
+    scene_find_eye_medium(s->scene);
     return true;
 }
 

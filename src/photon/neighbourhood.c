@@ -78,7 +78,7 @@ static vec3 lifted(const neighbourhood *hood, vec3 p)
 static float surface_height(const neighbourhood *hood, vec3 q)
 {
     float slab = NEIGHBOURHOOD_FLATTEN * hood->radius, height = hood->lift;
-    ray down = {lifted(hood, q), -hood->n, height + slab, hood->time, {{NULL}}};
+    ray down = {lifted(hood, q), -hood->n, height + slab, hood->time, {{NULL}}, NULL};
     surface_hit hit;
     bool found = scene_intersect(hood->scene, &down, &hit) &&
                  fabsf(dot3(hit.n_geom, hood->n)) > LEAST_ALIKE;
@@ -166,7 +166,8 @@ static bool stay_below(neighbourhood *hood)
               hood->n,
               2.0f * hood->lift,
               hood->time,
-              {{NULL}}};
+              {{NULL}},
+              NULL};
     surface_hit hit;
     if (!scene_intersect(hood->scene, &up, &hit))
         return false;

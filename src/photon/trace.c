@@ -105,7 +105,7 @@ static bool emit(photon_path *path)
     if (!start(task, &path->random, &at))
         return false;
     path->ray = at.ray;
-    path->ray.media = scene_light(task->scene, at.light)->media;
+    path->ray.solids = scene_light(task->scene, at.light)->solids;
     path->flux = at.flux / (float)task->n_photons;
     path->light = at.light;
     path->lane = ALL_LANES;

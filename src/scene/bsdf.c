@@ -85,6 +85,8 @@ static float per_cosine(const bsdf *b, vec3 wi, float cosine)
 spectrum bsdf_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes, transport_mode mode)
 {
     local_direction o, i;
+    if (b->is_phase)
+        return b->ops->eval(b, wo, wi, lobes, mode);
     if (!to_local(b, wo, &o) || !to_local(b, wi, &i))
         return (spectrum){0};
     bool photon = mode == TRANSPORT_IMPORTANCE;
@@ -97,6 +99,8 @@ spectrum bsdf_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes, transport_mo
 float bsdf_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes, transport_mode mode)
 {
     local_direction o, i;
+    if (b->is_phase)
+        return b->ops->pdf(b, wo, wi, lobes, mode);
     if (!to_local(b, wo, &o) || !to_local(b, wi, &i))
         return 0.0f;
     if (mode == TRANSPORT_IMPORTANCE)
@@ -124,12 +128,14 @@ bool bsdf_sample_direction(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigne
 {
     local_direction o, i;
     bool photon = mode == TRANSPORT_IMPORTANCE;
+    out->lane = b->lane; /* a model sets the rest, these only if it changes them */
+    out->eta = 1.0f;
+    if (b->is_phase)
+        return b->ops->sample(b, wo, u_lobe, u, lobes, mode, out);
     if (!to_local(b, wo, &o))
         return false;
     if (photon)
         lobes = lobes_lit(&o, lobes);
-    out->lane = b->lane; /* a model sets the rest, these only if it changes them */
-    out->eta = 1.0f;
     if (!b->ops->sample(b, o.w, u_lobe, u, lobes, mode, out))
         return false;
     vec3 world = normalize3(frame_to_world(&b->shading, out->wi));
@@ -146,6 +152,8 @@ bool bsdf_sample_direction(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigne
 spectrum bsdf_albedo(const bsdf *b, vec3 wo, unsigned lobes)
 {
     local_direction o;
+    if (b->is_phase)
+        return b->ops->albedo(b, wo, lobes);
     if (!to_local(b, wo, &o))
         return (spectrum){0};
     return b->ops->albedo(b, o.w, lobes);

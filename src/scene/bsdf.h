@@ -52,6 +52,8 @@ typedef struct bsdf {
     vec3 n_geom;
     unsigned lobes;  /**< the classes and sides present */
     int lane;        /**< the one lane a dispersed path keeps, or ALL_LANES */
+    bool is_phase;   /**< a phase function: of a point in a medium, which has no surface;
+                        it acts in world space, and its cosines are one */
     bool lambertian; /**< the DIFFUSE lobes are rho/pi, reflection only, both sides alike
                       */
     spectrum rho;    /**< if lambertian */
@@ -87,6 +89,13 @@ float bsdf_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes, transport_mode m
  *  @param u_lobe,u uniform in [0,1); @return false: absorbed or nothing in mask. */
 bool bsdf_sample_direction(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned lobes,
                            transport_mode mode, bsdf_sample *out);
+
+/** @brief |cos| between direction wi and the shading normal, by which light from there
+ * counts. */
+static inline float bsdf_cosine(const bsdf *b, vec3 wi)
+{
+    return b->is_phase ? 1.0f : fabsf(dot3(wi, b->shading.n));
+}
 
 /** @brief Share of the light going out to wo under uniform white illumination, lobes in
  * mask: exact where cheap, else close (used for Whitted splitting, the albedo layer and

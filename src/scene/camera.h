@@ -28,8 +28,11 @@ typedef struct camera {
     float aspect;      /**< frameaspectratio; 0 = the film's */
     bool has_window;   /**< a screenwindow is given, and the film's shape ignored */
     float window[4];   /**< x_min, x_max, y_min, y_max in half_screens */
-    media media;       /**< the solids that it is in; found by the scene */
-    bool equal_area;   /**< a spherical camera's mapping; else latitude and longitude */
+    solids solids;     /**< the solids that it is in; found by the scene */
+    const struct medium *medium; /**< the participating medium that it is in */
+    vec3 medium_at;              /**< a place in medium_there, where the scene put it */
+    const struct medium *medium_there;
+    bool equal_area; /**< a spherical camera's mapping; else latitude and longitude */
 } camera;
 
 /** @brief By kind ("perspective", "orthographic", "spherical") from pbrt's parameters:

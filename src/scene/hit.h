@@ -5,7 +5,7 @@
 
 #include "math/frame.h"
 #include "math/vec.h"
-#include "scene/media.h"
+#include "scene/solids.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -15,9 +15,17 @@ typedef struct ray {
     vec3 origin;
     vec3 direction; /**< unit */
     float t_max;
-    float time;  /**< of the shutter: 0 when it opens, 1 when it closes */
-    media media; /**< the solids that it travels in */
+    float time;                  /**< of the shutter: 0 when it opens, 1 when it closes */
+    solids solids;               /**< the solids that it travels in */
+    const struct medium *medium; /**< the participating medium that it travels in; NULL:
+                                    none */
 } ray;
+
+/** @brief Where a surface parts two participating media (pbrt's MediumInterface). */
+typedef struct medium_interface {
+    const struct medium *inside;  /**< against n_geom; NULL: none */
+    const struct medium *outside; /**< toward n_geom */
+} medium_interface;
 
 struct mesh;
 
@@ -43,15 +51,19 @@ typedef struct surface_hit {
     int shape;       /**< index in scene->shapes */
     int instance;    /**< index in scene->instances, or NO_INDEX */
     uint32_t primitive; /**< triangle of a mesh, else 0 */
-    int material; /**< index in scene->materials, or NO_INDEX: an invisible interface */
-    int light;    /**< index in scene->lights of the area light here, or NO_INDEX */
-    media media;  /**< the solids that the ray came through */
+    int material;  /**< index in scene->materials, or NO_INDEX: an invisible interface */
+    int light;     /**< index in scene->lights of the area light here, or NO_INDEX */
+    solids solids; /**< the solids that the ray came through */
     const struct mesh *mesh;  /**< that the triangle is of (mesh_attributes.h); NULL: on
                                  another shape */
     vec2 corners;             /**< weights of the triangle's second and third corner */
     const interior *interior; /**< behind the surface, against n_geom; NULL: it bounds no
                                  solid */
     bool from_inside;         /**< the ray came from behind; only where interior is set */
+    const struct medium *medium;      /**< the participating medium that the ray came
+                                         through */
+    const medium_interface *boundary; /**< what the surface parts; NULL: on both sides is
+                                         what the ray came through */
 } surface_hit;
 
 /** @brief The area that a surface shows to direction w, unit, over its own: the cosine to
@@ -80,20 +92,33 @@ static inline vec3 hit_offset(const surface_hit *hit, vec3 direction)
 }
 
 /** @brief The solids that a ray which leaves the hit in a direction travels in. */
-static inline media hit_media(const surface_hit *hit, vec3 direction)
+static inline solids hit_solids(const surface_hit *hit, vec3 direction)
 {
     bool inside = dot3(direction, hit->n_geom) < 0.0f;
     if (!hit->interior || inside == hit->from_inside)
-        return hit->media;
-    return inside ? media_enter(hit->media, hit->interior)
-                  : media_leave(hit->media, hit->interior);
+        return hit->solids;
+    return inside ? solids_enter(hit->solids, hit->interior)
+                  : solids_leave(hit->solids, hit->interior);
+}
+
+/** @brief The participating medium that it travels in. */
+static inline const struct medium *hit_medium(const surface_hit *hit, vec3 direction)
+{
+    if (!hit->boundary)
+        return hit->medium;
+    return dot3(direction, hit->n_geom) < 0.0f ? hit->boundary->inside
+                                               : hit->boundary->outside;
 }
 
 /** @brief The ray that leaves a hit. */
 static inline ray hit_ray(const surface_hit *hit, vec3 direction)
 {
-    return (ray){hit_offset(hit, direction), direction, INFINITY, hit->time,
-                 hit_media(hit, direction)};
+    return (ray){hit_offset(hit, direction),
+                 direction,
+                 INFINITY,
+                 hit->time,
+                 hit_solids(hit, direction),
+                 hit_medium(hit, direction)};
 }
 
 /** @brief The ray from a hit to a point at distance in direction. It ends short of the

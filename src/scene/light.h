@@ -92,12 +92,13 @@ struct light {
     const light_kind *kind;
     void *self;
     source_place place;
-    char *group;     /**< light group's name, NULL: the default one */
-    int group_index; /**< in scene->light_groups, if there are any */
-    media media;     /**< the solids that it shines in */
-    bool is_unmet;   /**< no ray can meet it: without an extent, or of alpha 0 */
-    bool is_apart;   /**< stands outside the sphere around what casts caustics: from it,
-                        that sphere is a cone */
+    char *group;            /**< light group's name, NULL: the default one */
+    int group_index;        /**< in scene->light_groups, if there are any */
+    solids solids;          /**< the solids that it shines in */
+    medium_interface media; /**< around it */
+    bool is_unmet;          /**< no ray can meet it: without an extent, or of alpha 0 */
+    bool is_apart; /**< stands outside the sphere around what casts caustics: from it,
+                      that sphere is a cone */
 };
 
 /** @brief Kind number i of the table; NULL behind the last. */

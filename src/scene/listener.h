@@ -20,6 +20,9 @@ typedef struct scene_listener {
     /** @param index that it gets */
     void (*material)(void *data, int index, const char *name, const char *kind,
                      const params *p);
+    void (*medium)(void *data, const char *name, const char *kind, const params *p);
+    /** @param inside,outside names; NULL: none */
+    void (*medium_interface)(void *data, const char *inside, const char *outside);
     void (*light)(void *data, const char *kind, const params *p,
                   const transform *to_world);
     void (*shape)(void *data, const char *kind, const params *p,

@@ -70,6 +70,7 @@ void material_bsdf(const material *m, const surface_hit *hit, const wavelengths 
         m->bump ? bump_frame(m->bump, hit) : frame_from_tangent(hit->n, hit->dpdu);
     out->n_geom = hit->n_geom;
     out->lane = lane;
+    out->is_phase = false;
     m->kind->make_bsdf(m->self, hit, w, options, out);
 }
 

@@ -11,8 +11,9 @@ struct scene;
 
 typedef struct bump bump;
 
-/** @brief Reads "normalmap" (a file, or ours: a texture), "normalscale" (ours) or "displacement". *out is NULL if none
- * is given; owned by the caller. @return false with ERROR_INPUT */
+/** @brief Reads "normalmap" (a file, or ours: a texture), "normalscale" (ours) or
+ * "displacement". *out is NULL if none is given; owned by the caller. @return false with
+ * ERROR_INPUT */
 bool bump_new(bump **out, const struct scene *s, const params *p, GError **error);
 void bump_free(bump *b); /**< NULL is allowed */
 

@@ -1,10 +1,13 @@
 /*
- * What fills a solid: coloured glass, which absorbs light along its way and scatters none
- * (Beer-Lambert's law).
+ * Media: what light meets on its way between surfaces.
  *
- * A ray knows the solids it travels in (media.h). It enters and leaves one where it
- * crosses a surface whose material bounds a solid; all other surfaces leave it where it
- * is.
+ * Two kinds of things are filled with one. A solid of coloured glass absorbs light and
+ * scatters none (Beer-Lambert's law); a ray knows the solids it travels in (solids.h). It
+ * enters and leaves one where it crosses a surface whose material bounds a solid; all
+ * other surfaces leave it where it is. Participating media, as fog or milk, scatter too,
+ * and fill what surfaces with a medium_interface (hit.h) bound.
+ *
+ *   σa absorption, σs scattering, σt = σa + σs extinction, m⁻¹ (Jensen 2001, chapter 10)
  */
 #pragma once
 
@@ -15,40 +18,82 @@
 #include "scene/hit.h"
 #include "scene/params.h"
 
-/** @brief Transmittance over t metres: color^(t / distance) exp(-absorption t). */
+/** @brief Transmittance over t metres: color^(t / distance) exp(-σt t). */
 typedef struct medium {
+    char *name;        /**< of a participating one, owned */
+    int index;         /**< of a participating one, in scene->media */
     curve *color;      /**< in 0..1, owned; NULL: 1 */
     float distance;    /**< m, > 0: over which light takes on the colour */
-    curve *absorption; /**< m⁻¹, owned; NULL: 0 */
+    curve *absorption; /**< σa over scale, owned; NULL: 0 */
+    curve *scattering; /**< σs over scale, owned; NULL: 0 */
+    float scale;
+    float g; /**< mean cosine of the angle by which light is scattered, -1 < g < 1 */
 } medium;
 
-/** @brief Reads "attenuationcolor", "attenuationdistance" and "absorption". *out is NULL
- * if there is none of them, else owned by the caller. ERROR_INPUT for a colour without a
- * distance, or numbers out of range. */
+/** @brief Reads what fills a solid: "attenuationcolor", "attenuationdistance" and
+ * "absorption". *out is NULL if there is none of them, else owned by the caller.
+ * ERROR_INPUT for a colour without a distance, or numbers out of range. */
 bool medium_read(const params *p, medium **out, GError **error);
+/** @brief A participating medium of pbrt's kinds: "homogeneous". NULL with ERROR_INPUT.
+ */
+medium *medium_new(const char *name, const char *kind, const params *p, GError **error);
+/** @brief Name of kind number i; NULL behind the last. */
+const char *medium_kind_name(size_t i);
+/** @brief What it may be given, blank-separated; NULL as above. */
+const char *medium_kind_parameters(size_t i);
 void medium_free(medium *m);
 
-/** @brief Share of light left after t metres. */
+/** @brief Share of light left after t metres; INFINITY is allowed. */
 spectrum medium_transmittance(const medium *m, float t, const wavelengths *w);
 
+/** @brief True if it scatters. */
+static inline bool medium_scatters(const medium *m)
+{
+    return m->scattering != NULL;
+}
+
+/** @brief Where light is scattered next. */
+typedef struct medium_sample {
+    bool scatters;   /**< false: not before t_max */
+    float t;         /**< m, < t_max */
+    spectrum weight; /**< to multiply a path's throughput with: σs T(t) over the density
+                        of t, or T(t_max) over the probability of getting there */
+} medium_sample;
+
+/**
+ * @brief Draws a free path in a medium that scatters.
+ *
+ * The density is a mixture of those of the wavelengths by what each carries, so the
+ * weighted throughput never exceeds its sum before (Wilkie et al., "Hero Wavelength
+ * Spectral Sampling", 2014, for distances).
+ * @param carried throughput by wavelength
+ * @param u uniform in [0,1)
+ */
+medium_sample medium_sample_free(const medium *m, const wavelengths *w, spectrum carried,
+                                 float t_max, float u);
+/** @brief The same, but always before t_max: weight is σs T(t) over that density. */
+medium_sample medium_sample_within(const medium *m, const wavelengths *w,
+                                   spectrum carried, float t_max, float u);
+
 /** @brief Share of light left after t metres in these solids. */
-static inline spectrum media_transmittance(const media *in, float t, const wavelengths *w)
+static inline spectrum solids_transmittance(const solids *in, float t,
+                                            const wavelengths *w)
 {
     const interior *first = in->of[0];
     return first && first->medium ? medium_transmittance(first->medium, t, w)
                                   : spectrum_fill(1.0f);
 }
 
-/** @brief Share of light left on the way from the ray's origin to the hit. */
+/** @brief Share of light left by solids on the way from the ray's origin to the hit. */
 static inline spectrum hit_transmittance(const surface_hit *hit, const wavelengths *w)
 {
-    return media_transmittance(&hit->media, hit->t, w);
+    return solids_transmittance(&hit->solids, hit->t, w);
 }
 
 /** @brief The same on the straight way from a hit to a point that nothing hides. */
 static inline spectrum hit_transmittance_to(const surface_hit *hit, vec3 direction,
                                             float distance, const wavelengths *w)
 {
-    const media in = hit_media(hit, direction);
-    return media_transmittance(&in, distance, w);
+    const solids in = hit_solids(hit, direction);
+    return solids_transmittance(&in, distance, w);
 }

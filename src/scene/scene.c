@@ -24,6 +24,11 @@ static void free_material(void *data)
     material_free(data);
 }
 
+static void free_medium(void *data)
+{
+    medium_free(data);
+}
+
 static void free_shape(void *data)
 {
     shape_free(data);
@@ -59,6 +64,8 @@ scene *scene_new(const log_sink *log)
     s->float_textures = texture_table();
     s->spectrum_textures = texture_table();
     s->material_names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    s->media = g_ptr_array_new_with_free_func(free_medium);
+    s->medium_names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     s->files = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, unref_bytes);
     s->pictures = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, unref_picture);
     s->film = film_default();
@@ -82,6 +89,8 @@ void scene_free(scene *s)
     g_ptr_array_unref(s->shapes);
     g_ptr_array_unref(s->materials);
     scene_close_objects(s);
+    g_ptr_array_unref(s->media);
+    g_hash_table_unref(s->medium_names);
     g_hash_table_unref(s->material_names);
     g_hash_table_unref(s->files);
     g_hash_table_unref(s->pictures);
@@ -179,9 +188,12 @@ bool scene_add_light(scene *s, const char *kind, const params *p,
         return false;
     LISTENER_TELL(s, light, kind, p, to_world);
     light *l = light_new(s, kind, p, to_world, NULL, error);
-    if (l)
-        g_ptr_array_add(s->lights, l);
-    return l != NULL;
+    if (!l)
+        return false;
+    if (!l->kind->is_environment && !l->kind->is_parallel) /* they are beyond all media */
+        l->media = (medium_interface){s->around.outside, s->around.outside};
+    g_ptr_array_add(s->lights, l);
+    return true;
 }
 
 /* Takes a new shape (NULL: it failed), with its light if it shines. */
@@ -196,6 +208,8 @@ static bool take_shape(scene *s, shape *made, const shape_place *at, GError **er
         return false;
     }
     made->object = s->open_object;
+    made->media = s->around;
+    made->parts_media = s->around.inside != s->around.outside;
     bool shines = at->area_light;
     if (shines && s->open_object != NO_INDEX) {
         shines = !scene_is_lenient(s, at->area_light->place,
@@ -214,6 +228,9 @@ static bool take_shape(scene *s, shape *made, const shape_place *at, GError **er
             shape_free(made);
             return false;
         }
+        l->media = s->around;
+        if (!made->parts_media)
+            l->media.inside = l->media.outside;
         made->light = (int)s->lights->len;
         g_ptr_array_add(s->lights, l);
     }
@@ -276,9 +293,12 @@ bool scene_set_camera(scene *s, const char *kind, const params *p,
     s->has_camera =
         scene_may_change(s, error) &&
         camera_init(&s->camera, kind, p, to_world, s->film.width, s->film.height, error);
-    if (s->has_camera)
-        LISTENER_TELL(s, camera, kind, p, to_world);
-    return s->has_camera;
+    if (!s->has_camera)
+        return false;
+    s->camera.medium = s->camera.medium_there = s->around.outside;
+    s->camera.medium_at = transform_point(to_world, vec3_make(0.0f, 0.0f, 0.0f));
+    LISTENER_TELL(s, camera, kind, p, to_world);
+    return true;
 }
 
 void scene_move_camera(scene *s, const motion *to_world)
@@ -315,7 +335,8 @@ bool scene_see(const scene *s, const ray *r, surface_hit *hit)
             return true;
         }
         left = hit_ray(hit, r->direction);
-        left.media = r->media; /* what is not seen absorbs nothing */
+        left.solids = r->solids; /* what is not seen absorbs nothing */
+        left.medium = r->medium;
     }
     return false;
 }

@@ -66,6 +66,9 @@ typedef struct scene {
     GPtrArray *lights;                              /**< light* */
     GHashTable *float_textures, *spectrum_textures; /**< name -> texture* */
     GHashTable *material_names;                     /**< name -> index + 1 */
+    GPtrArray *media;                               /**< medium*, participating */
+    GHashTable *medium_names;                       /**< name -> index + 1 */
+    medium_interface around;                        /**< what is added from here on */
     GHashTable *files; /**< path -> GBytes*: images that came within another file */
     GHashTable
         *pictures; /**< how and what was read -> picture*, while the scene is built */
@@ -140,6 +143,14 @@ int scene_add_material(scene *s, const char *name, const char *kind, const param
                        GError **error);
 /** @brief Index of a named material, or NO_INDEX. */
 int scene_find_material(const scene *s, const char *name);
+/** @brief A participating medium. @return index, or NO_INDEX. */
+int scene_add_medium(scene *s, const char *name, const char *kind, const params *p,
+                     GError **error);
+/** @brief Index of a named medium, or NO_INDEX. */
+int scene_find_medium(const scene *s, const char *name);
+/** @brief From here on shapes part these media, by index or NO_INDEX for none (the same
+ * twice: they part nothing), and lights and the camera stand in the outer one. */
+void scene_set_medium_interface(scene *s, int inside, int outside);
 bool scene_add_light(scene *s, const char *kind, const params *p,
                      const transform *to_world, GError **error);
 /** @brief A shape from parameters; with at->area_light also its light. */
@@ -183,9 +194,11 @@ static inline void scene_fill_hit(const scene *s, const ray *r, surface_hit *hit
     const shape *on = s->shapes->pdata[hit->shape];
     hit->material = on->material;
     hit->light = on->light;
-    hit->media = r->media;
+    hit->solids = r->solids;
     hit->interior = on->interior;
     hit->from_inside = on->interior && dot3(r->direction, hit->n_geom) > 0.0f;
+    hit->medium = r->medium;
+    hit->boundary = on->parts_media ? &on->media : NULL;
 }
 
 /** @brief Nearest hit of a ray, with material and light. */
@@ -219,7 +232,17 @@ static inline bool scene_occluded(const scene *s, const ray *r)
 /** @brief The solids that a point is in: those that more surfaces of are left than
  * entered on the way out, by most of a few ways. Bodies that are not closed may be
  * missed. */
-media scene_media_at(const scene *s, vec3 p);
+solids scene_solids_at(const scene *s, vec3 p);
+
+/** @brief True if something in the scene may be in a participating medium. */
+static inline bool scene_has_media(const scene *s)
+{
+    return s->media->len > 0;
+}
+
+/** @brief Share of light that participating media leave on a ray that nothing stands on
+ * (scene_occluded): it goes through interfaces between them. */
+spectrum scene_transmittance(const scene *s, const ray *r, const wavelengths *w);
 
 /** @brief A point on the surfaces that cast caustics, uniform by area but for instances
  * that are stretched. */
@@ -277,6 +300,15 @@ static inline float time_of_slice(int slice, int n_slices)
 static inline const light *scene_light(const scene *s, int i)
 {
     return s->lights->pdata[i];
+}
+
+/** @brief The participating medium that light leaves a lamp into. @param n normal there,
+ * as light_emission has it */
+static inline const medium *scene_light_medium(const scene *s, int i, vec3 n,
+                                               vec3 direction)
+{
+    const medium_interface *around = &scene_light(s, i)->media;
+    return dot3(direction, n) < 0.0f ? around->inside : around->outside;
 }
 
 /** @brief Index of a light's group, if the scene has groups. */

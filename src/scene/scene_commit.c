@@ -11,6 +11,7 @@
 #include "scene/light_lines.h"
 #include "scene/scene_geometry.h"
 #include "scene/scene_media.h"
+#include "scene/scene_solids.h"
 
 /* ---- Lights ---- */
 
@@ -171,7 +172,8 @@ bool scene_commit(scene *s, unsigned threads, GError **error)
     if (s->committed) {
         find_light_groups(s);
         find_pixel_width(s);
-        scene_find_media(s);
+        scene_find_solids(s);
+        scene_find_eye_medium(s);
         g_hash_table_remove_all(s->files);
         g_hash_table_remove_all(s->pictures);
     } else {

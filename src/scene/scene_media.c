@@ -1,139 +1,91 @@
 /*
- * The solids of a scene. Only where something absorbs are they followed at all: then
- * clear glass is one too, since it displaces what it stands in.
- *
- * Whether the camera or a lamp is inside a solid is found by leaving: a ray to the
- * outside crosses its surface from behind once more often than from the front.
+ * A scene's participating media: adding them, and ways through them.
  */
 #include "scene/scene_media.h"
 
-#include <string.h>
+#include "scene/scene_commit.h"
 
-enum { N_WAYS = 3, MOST_CROSSINGS = 1000 };
+/* A way crosses no more surfaces than this: a guard against endless loops only. */
+enum { MOST_CROSSINGS = 10000 };
 
-/* ---- Which there are ---- */
-
-static bool anything_absorbs(const scene *s)
+int scene_add_medium(scene *s, const char *name, const char *kind, const params *p,
+                     GError **error)
 {
-    for (guint i = 0; i < s->materials->len; i++)
-        if (material_interior(s->materials->pdata[i]))
-            return true;
-    return false;
+    if (!scene_may_change(s, error))
+        return NO_INDEX;
+    LISTENER_TELL(s, medium, name, kind, p);
+    medium *m = medium_new(name, kind, p, error);
+    if (!m)
+        return NO_INDEX;
+    m->index = (int)s->media->len;
+    g_ptr_array_add(s->media, m);
+    g_hash_table_insert(s->medium_names, g_strdup(name), GINT_TO_POINTER(m->index + 1));
+    return m->index;
 }
 
-/* The most that instances of an object grow it. */
-static float *object_scales(const scene *s)
+int scene_find_medium(const scene *s, const char *name)
 {
-    float *scales = g_new0(float, MAX(s->objects->len, 1));
-    for (guint i = 0; i < s->instances->len; i++) {
-        const instance *is = &g_array_index(s->instances, instance, i);
-        transform at = motion_at(&is->to_world, (double)s->camera.shutter_open);
-        float scale = sqrtf((float)instance_mean_area_factor(&at));
-        scales[is->object] = maxf(scales[is->object], scale);
-    }
-    return scales;
+    int found = GPOINTER_TO_INT(g_hash_table_lookup(s->medium_names, name));
+    return found ? found - 1 : NO_INDEX;
 }
 
-static void find_interiors(scene *s)
+static const medium *medium_at(const scene *s, int index)
 {
-    g_autofree float *scales = object_scales(s);
-    s->interiors = g_new0(interior, s->materials->len);
-    for (guint i = 0; i < s->shapes->len; i++) {
-        shape *on = s->shapes->pdata[i];
-        const material *of =
-            on->material == NO_INDEX ? NULL : s->materials->pdata[on->material];
-        if (!of || !(material_interior(of) || material_encloses(of)))
-            continue;
-        interior *in = &s->interiors[on->material];
-        float scale = on->object == NO_INDEX ? 1.0f : scales[on->object];
-        box3 box = on->kind->bounds(on->self);
-        in->medium = material_interior(of);
-        in->size = maxf(in->size, scale * length3(box.high - box.low));
-        on->interior = in;
-    }
+    return index == NO_INDEX ? NULL : s->media->pdata[index];
 }
 
-/* ---- What stands in them ---- */
-
-/* Crossings on the way out: from the front counts up, from behind down. */
-static media left_on_the_way(const scene *s, vec3 p, vec3 direction)
+static const char *name_of(const medium *m)
 {
-    g_autofree int *entered = g_new0(int, s->materials->len);
-    media found = {0};
-    ray r = {.origin = p, .direction = direction, .t_max = INFINITY, .time = 0.5f};
-    surface_hit hit;
-    for (int i = 0; i < MOST_CROSSINGS && scene_intersect_solid(s, &r, &hit); i++) {
-        if (hit.interior && !hit.from_inside)
-            entered[hit.material]++;
-        else if (hit.interior && entered[hit.material]-- <= 0) {
-            found = media_enter(found, hit.interior);
-            entered[hit.material] = 0;
-        }
-        r = hit_ray(&hit, direction);
-    }
-    return found;
+    return m ? m->name : NULL;
 }
 
-static bool is_among(const media *all, const interior *in, int n)
+void scene_set_medium_interface(scene *s, int inside, int outside)
 {
-    for (int i = 0; i < MEDIA_MOST && in; i++)
-        n -= all->of[i] == in;
-    return n <= 0;
-}
-
-media scene_media_at(const scene *s, vec3 p)
-{
-    /* Along no axis and no plane of symmetry, and not all to one side. */
-    static const vec3 ways[N_WAYS] = {{0.2711f, 0.5023f, 0.8211f},
-                                      {-0.7517f, 0.5531f, -0.3593f},
-                                      {0.3469f, -0.8363f, -0.4246f}};
-    media found[N_WAYS], most = {0};
-    if (!s->interiors)
-        return most;
-    for (int i = 0; i < N_WAYS; i++)
-        found[i] = left_on_the_way(s, p, normalize3(ways[i]));
-    for (int i = 0; i < N_WAYS - 1; i++)
-        for (int k = 0; k < MEDIA_MOST && found[i].of[k]; k++) {
-            const interior *in = found[i].of[k];
-            if (!is_among(&most, in, 1) && is_among(&found[0], in, 1) +
-                                                   is_among(&found[1], in, 1) +
-                                                   is_among(&found[2], in, 1) >=
-                                               2)
-                most = media_enter(most, in);
-        }
-    return most;
-}
-
-/* Where a lamp's photons start; of lamps that are not beyond the scene. */
-static media media_of_light(const scene *s, const light *l)
-{
-    const wavelengths w = wavelengths_at(0.5f);
-    const vec2 middle = {0.5f, 0.5f};
-    light_emission e = {0};
-    if (l->kind->is_environment || l->kind->is_parallel)
-        return (media){0};
-    l->kind->emit(l->self, &w, 0.5f, middle, (vec2){0.4f, 0.3f}, &e);
-    return finite3(e.ray.origin) ? scene_media_at(s, e.ray.origin) : (media){0};
-}
-
-void scene_find_eye_media(scene *s)
-{
-    transform at = motion_at(&s->camera.path, (double)s->camera.shutter_open);
-    const transform *to_world = s->camera.path.moves ? &at : &s->camera.to_world;
-    s->camera.media =
-        scene_media_at(s, transform_point(to_world, vec3_make(0.0f, 0.0f, 0.0f)));
-}
-
-void scene_find_media(scene *s)
-{
-    s->interiors = NULL;
-    s->camera.media = (media){0};
-    if (!anything_absorbs(s))
+    const medium_interface around = {medium_at(s, inside), medium_at(s, outside)};
+    if (around.inside == s->around.inside && around.outside == s->around.outside)
         return;
-    find_interiors(s);
-    scene_find_eye_media(s);
-    for (guint i = 0; i < s->lights->len; i++) {
-        light *l = s->lights->pdata[i];
-        l->media = media_of_light(s, l);
+    s->around = around;
+    LISTENER_TELL(s, medium_interface, name_of(around.inside), name_of(around.outside));
+}
+
+/* Takes a ray to the next surface on its way, and behind it.
+   @return how far that was; INFINITY: it meets none */
+static float cross(const scene *s, ray *r)
+{
+    surface_hit hit;
+    if (!scene_intersect_solid(s, r, &hit))
+        return INFINITY;
+    float left = r->t_max - hit.t;
+    *r = hit_ray(&hit, r->direction);
+    r->t_max = left;
+    return hit.t;
+}
+
+spectrum scene_transmittance(const scene *s, const ray *r, const wavelengths *w)
+{
+    spectrum out = spectrum_fill(1.0f);
+    ray left = *r;
+    for (int i = 0; i < MOST_CROSSINGS && scene_has_media(s); i++) {
+        const medium *through = left.medium;
+        float whole = left.t_max, t = cross(s, &left);
+        if (through)
+            out *= medium_transmittance(through, minf(t, whole), w);
+        if (isinf(t) || spectrum_is_black(out))
+            break;
     }
+    return out;
+}
+
+void scene_find_eye_medium(scene *s)
+{
+    camera *c = &s->camera;
+    vec3 from = c->medium_at, to = transform_point(&c->to_world, (vec3){0}) - from;
+    ray way = {.origin = from, .t_max = length3(to), .medium = c->medium_there};
+    c->medium = c->medium_there;
+    if (!scene_has_media(s) || !(way.t_max > 0.0f) || !isfinite(way.t_max))
+        return;
+    way.direction = to / way.t_max;
+    for (int i = 0; i < MOST_CROSSINGS && isfinite(cross(s, &way)); i++)
+        continue;
+    c->medium = way.medium;
 }

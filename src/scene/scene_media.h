@@ -1,12 +1,10 @@
 /*
- * Finding the solids of a scene, and what stands in them.
+ * The participating media of a scene.
  */
 #pragma once
 
 #include "scene/scene.h"
 
-/** @brief Tells the shapes of a scene with its acceleration structure what they bound,
- * and finds the solids that the camera and the lamps are in. */
-void scene_find_media(scene *s);
-/** @brief The camera's alone, after it was moved. */
-void scene_find_eye_media(scene *s);
+/** @brief Finds the medium that the camera is in, after it was moved: the one it was in,
+ * as changed by the interfaces on the straight way. */
+void scene_find_eye_medium(scene *s);

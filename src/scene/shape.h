@@ -99,6 +99,8 @@ struct shape {
     int light; /**< index in scene->lights or NO_INDEX */
     bool camera_hidden;
     const interior *interior; /**< its material's, once the scene is committed */
+    medium_interface media;   /**< around it when it was added */
+    bool parts_media;         /**< they differ */
     bool is_invisible; /**< alpha is 0 everywhere: no ray meets it, but it may shine */
     bool has_alpha;
     float_input alpha;

@@ -206,7 +206,7 @@ static bool emit(light_walk *l)
                              .n = e.n,
                              .direction = e.ray.direction};
     e.ray.time = l->time;
-    e.ray.media = scene_light(l->pass->scene, l->light)->media;
+    e.ray.solids = scene_light(l->pass->scene, l->light)->solids;
     l->walk = (vcm_walk){.ray = e.ray,
                          .from = e.ray.origin,
                          .carried = e.flux / p_light,

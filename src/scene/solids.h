@@ -22,16 +22,16 @@ typedef struct interior {
     float size;                  /**< m: diagonal of the largest such solid */
 } interior;
 
-enum { MEDIA_MOST = 4 };
+enum { SOLIDS_MOST = 4 };
 
 /** @brief The solids around a point, the smallest first; NULL behind the last. Of more
- * than MEDIA_MOST the largest are forgotten. A plain value. */
-typedef struct media {
-    const interior *of[MEDIA_MOST];
-} media;
+ * than SOLIDS_MOST the largest are forgotten. A plain value. */
+typedef struct solids {
+    const interior *of[SOLIDS_MOST];
+} solids;
 
 /** @brief The order in which solids stand. */
-static inline bool media_before(const interior *a, const interior *b)
+static inline bool solids_before(const interior *a, const interior *b)
 {
     if (a->size < b->size || b->size < a->size)
         return a->size < b->size;
@@ -39,10 +39,10 @@ static inline bool media_before(const interior *a, const interior *b)
 }
 
 /** @brief The solids beyond the surface of one, when entering it. */
-static inline media media_enter(media m, const interior *in)
+static inline solids solids_enter(solids m, const interior *in)
 {
-    for (int i = 0; i < MEDIA_MOST && in; i++)
-        if (!m.of[i] || media_before(in, m.of[i])) {
+    for (int i = 0; i < SOLIDS_MOST && in; i++)
+        if (!m.of[i] || solids_before(in, m.of[i])) {
             const interior *next = m.of[i];
             m.of[i] = in;
             in = next;
@@ -51,12 +51,12 @@ static inline media media_enter(media m, const interior *in)
 }
 
 /** @brief The same when leaving it; nothing changes if it was never entered. */
-static inline media media_leave(media m, const interior *in)
+static inline solids solids_leave(solids m, const interior *in)
 {
     int i = 0;
-    while (i < MEDIA_MOST && m.of[i] != in)
+    while (i < SOLIDS_MOST && m.of[i] != in)
         i++;
-    for (; i < MEDIA_MOST; i++)
-        m.of[i] = i + 1 < MEDIA_MOST ? m.of[i + 1] : NULL;
+    for (; i < SOLIDS_MOST; i++)
+        m.of[i] = i + 1 < SOLIDS_MOST ? m.of[i + 1] : NULL;
     return m;
 }
