@@ -81,6 +81,8 @@ medium_sample medium_sample_within(const medium *m, const wavelengths *w,
 {
     spectrum p, sigma_s = coefficient(m, m->scattering, w), sigma_t = extinction(m, w);
     spectrum ends = lost(sigma_t, t_max), density = {0};
+    for (int i = 0; i < N_LANES; i++) /* a clear lane has no path that ends within */
+        carried[i] = ends[i] > 0.0f ? carried[i] : 0.0f;
     int lane = choose_lane(carried, &u, &p);
     float t = sigma_t[lane] > 0.0f ? -log1pf(-u * ends[lane]) / sigma_t[lane] : 0.0f;
     spectrum left = transmittance(sigma_t, t);
