@@ -123,8 +123,9 @@ static void test_kinds_and_parameters(void)
     refuse(WORLD "Material \"interface\" \"float eta\" 1\n",
            "%s:4:22: unknown parameter 'eta' of material \"interface\"");
     refuse(WORLD "Attribute \"shapes\" \"float radius\" 1\n",
-           "%s:4:11: expected \"shape\", \"light\", \"material\" or \"texture\", found "
-           "\"shapes\"");
+           "%s:4:11: expected \"shape\", \"light\", \"material\", \"medium\" or "
+           "\"texture\", "
+           "found \"shapes\"");
     refuse("ColorSpace \"cmyk\"\n" WORLD,
            "%s:1:12: expected \"srgb\", \"rec2020\", \"dci-p3\" or \"aces2065-1\", found "
            "\"cmyk\"");
@@ -132,10 +133,6 @@ static void test_kinds_and_parameters(void)
 
 static void test_what_is_not_supported(void)
 {
-    refuse(WORLD "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n",
-           "%s:4:1: participating media are not supported, found \"fog\"");
-    refuse(WORLD "MediumInterface \"\" \"\"\nMediumInterface \"\" \"fog\"\n",
-           "%s:5:20: participating media are not supported, found \"fog\"");
     refuse(WORLD "ObjectBegin \"leaf\"\nObjectBegin \"twig\"\nObjectEnd\n"
                  "ObjectInstance \"tree\"\nObjectBegin \"leaf\"\n",
            "%s:5:1: expected ObjectEnd before another ObjectBegin\n"

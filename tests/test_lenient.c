@@ -66,23 +66,47 @@ static void test_materials(void)
     g_assert_cmpstr(material_of(measured), ==, "diffuse");
 }
 
+/* The name stays one that can be used: of no medium. */
 static void test_media(void)
 {
-    g_autoptr(scene) made = refused_or_replaced(
-        HEAD "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n",
-        "scene.pbrt:5:1: participating media are not supported, found \"fog\"",
-        "5:1: medium \"fog\" becomes empty space");
-    g_assert_nonnull(made);
-    g_autoptr(scene) used =
-        refused_or_replaced(HEAD "MediumInterface \"fog\" \"\"\nShape \"sphere\"\n",
-                            "scene.pbrt:5:17: participating media",
-                            "5:17: medium \"fog\" becomes empty space");
-    g_assert_nonnull(used);
-    g_autoptr(scene) given =
-        refused_or_replaced(HEAD "Attribute \"medium\" \"float g\" 0.5\n",
-                            "scene.pbrt:5:11: participating media",
-                            "5:11: medium \"medium\" becomes empty space");
-    g_assert_nonnull(given);
+    static const char *const kinds[] = {"cloud", "nanovdb", "uniformgrid", "rgbgrid"};
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {
+        g_autofree char *text = g_strdup_printf(
+            HEAD "MakeNamedMedium \"fog\" \"string type\" \"%s\" \"float density\" 3\n"
+                 "MakeNamedMedium \"air\" \"string type\" \"homogeneous\"\n"
+                 "MediumInterface \"fog\" \"air\"\nShape \"sphere\"\n",
+            kinds[i]);
+        g_autofree char *refused = g_strdup_printf(
+            "scene.pbrt:5:1: medium \"%s\" is not supported, \"homogeneous\" is; "
+            "--lenient takes empty space",
+            kinds[i]);
+        g_autofree char *replaced =
+            g_strdup_printf("5:1: medium \"fog\" (%s) becomes empty space", kinds[i]);
+        g_autoptr(scene) s = refused_or_replaced(text, refused, replaced);
+        const shape *ball = s->shapes->pdata[0];
+        g_assert_cmpuint(s->media->len, ==, 1);
+        g_assert_null(ball->media.inside);
+        g_assert_true(ball->media.outside == s->media->pdata[0]);
+    }
+}
+
+/* Mistakes stay mistakes. */
+static void test_wrong_media(void)
+{
+    static const char *const wrong[] = {
+        "MediumInterface \"fog\"\n",
+        "MakeNamedMedium \"fog\" \"string type\" \"haze\"\n",
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float g\" 2\n",
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(wrong); i++) {
+        g_autofree char *text = g_strconcat(HEAD, wrong[i], NULL);
+        scene_folder f = folder_new(text);
+        const load_options how = {.threads = 1, .lenient = true};
+        g_autoptr(GError) error = NULL;
+        g_assert_null(format_load_with(f.main, &how, &error));
+        g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
+        folder_remove(&f);
+    }
 }
 
 static void test_lights_of_objects(void)
@@ -142,6 +166,7 @@ int main(int argc, char **argv)
     g_test_add_func("/lenient/films", test_films);
     g_test_add_func("/lenient/textures", test_textures);
     g_test_add_func("/lenient/media", test_media);
+    g_test_add_func("/lenient/wrong-media", test_wrong_media);
     g_test_add_func("/lenient/lights", test_lights_of_objects);
     return g_test_run();
 }

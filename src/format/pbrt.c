@@ -255,6 +255,9 @@ static void parser_init(pbrt_parser *parser, scene *s, const char *path)
     parser->coordinate_systems =
         g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
     parser->interfaces = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    parser->empty_media = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    parser->missing_media = g_hash_table_new(g_str_hash, g_str_equal);
+    parser->awaited_media = g_array_new(FALSE, FALSE, sizeof(medium_name));
     parser->kept = g_ptr_array_new_with_free_func(free_params);
     parser->attributes = g_ptr_array_new_with_free_func(g_free);
     parser->state = (graphics_state){.ctm = transform_identity(),
@@ -273,6 +276,9 @@ static void parser_clear(pbrt_parser *parser)
     big_free(parser->values.data);
     g_ptr_array_unref(parser->attributes);
     g_ptr_array_unref(parser->kept);
+    g_array_unref(parser->awaited_media);
+    g_hash_table_unref(parser->missing_media);
+    g_hash_table_unref(parser->empty_media);
     g_hash_table_unref(parser->interfaces);
     g_hash_table_unref(parser->coordinate_systems);
     g_array_unref(parser->saved);
@@ -288,6 +294,7 @@ static void check_end(pbrt_parser *parser, source_place end)
     if (parser->object != NO_INDEX)
         pbrt_error(parser, parser->object_place,
                    "expected ObjectEnd for this ObjectBegin, found the end of the file");
+    pbrt_check_media(parser);
     if (pbrt_should_stop(parser))
         return;
     if (!parser->in_world)

@@ -54,6 +54,7 @@ bool pbrt_camera(pbrt_parser *parser, source_place place)
         return false;
     parser->camera.ctm = transform_inverse(&parser->state.ctm);
     parser->camera.ctm_end = transform_inverse(&parser->state.ctm_end);
+    parser->around_camera = parser->state.outside;
     pbrt_name_transform(parser, "camera", &parser->camera.ctm, &parser->camera.ctm_end);
     return true;
 }
@@ -297,6 +298,7 @@ static void finish_camera(pbrt_parser *parser, source_place place)
 {
     GError *error = NULL;
     const pending *c = &parser->camera;
+    pbrt_use_media(parser, &(medium_name){0}, &parser->around_camera);
     if (!c->kind)
         pbrt_error(parser, place, "expected a Camera before WorldBegin, found none");
     else if (scene_set_camera(parser->scene, c->kind, c->p, &c->ctm, &error))

@@ -5,6 +5,7 @@
  *   pbrt_params.c     "type name" values ... lists
  *   pbrt_transform.c  the current transform
  *   pbrt_state.c      attributes: what AttributeBegin keeps and AttributeEnd brings back
+ *   pbrt_medium.c     participating media, and which of them are around
  *   pbrt_options.c    what stands before WorldBegin, kept until then
  *   pbrt_integrator.c integrators and samplers as settings
  *   pbrt_world.c      materials, textures, lights and shapes, given to the scene
@@ -26,6 +27,7 @@ typedef enum attribute_target {
     TARGET_SHAPE,
     TARGET_LIGHT,
     TARGET_MATERIAL,
+    TARGET_MEDIUM,
     TARGET_TEXTURE,
     N_TARGETS
 } attribute_target;
@@ -50,6 +52,12 @@ typedef struct transform_pair {
     transform start, end;
 } transform_pair;
 
+/** A medium that MediumInterface names. */
+typedef struct medium_name {
+    const char *name; /**< interned; NULL: none */
+    source_place place;
+} medium_name;
+
 /** What AttributeBegin keeps. */
 typedef struct graphics_state {
     transform ctm;     /**< at the start time */
@@ -59,6 +67,7 @@ typedef struct graphics_state {
     int material;
     const params *area_light; /**< owned by the parser; NULL: none */
     const color_space *space;
+    medium_name inside, outside;
     const attribute *attributes[N_TARGETS];
 } graphics_state;
 
@@ -99,9 +108,13 @@ typedef struct pbrt_parser {
     GArray *saved;                  /**< saved_state */
     GHashTable *coordinate_systems; /**< name -> transform_pair* */
     GHashTable *interfaces;         /**< names of materials that are none */
-    int default_material;           /**< its index once made, or NO_INDEX */
-    GPtrArray *kept;                /**< params* that outlive their directive */
-    GPtrArray *attributes;          /**< attribute* */
+    GHashTable *empty_media;        /**< names of media that are none */
+    GHashTable *missing_media;      /**< names that an error told of */
+    GArray *awaited_media;          /**< medium_name, not made when it was named */
+    medium_name around_camera;
+    int default_material;  /**< its index once made, or NO_INDEX */
+    GPtrArray *kept;       /**< params* that outlive their directive */
+    GPtrArray *attributes; /**< attribute* */
     pending film, filter, sampler, integrator, camera;
     scratch values; /**< of the parameter being read */
 } pbrt_parser;
@@ -163,11 +176,19 @@ bool pbrt_attribute_begin(pbrt_parser *parser, source_place place);
 bool pbrt_attribute_end(pbrt_parser *parser, source_place place);
 bool pbrt_reverse_orientation(pbrt_parser *parser, source_place place);
 bool pbrt_color_space(pbrt_parser *parser, source_place place);
-bool pbrt_medium_interface(pbrt_parser *parser, source_place place);
-bool pbrt_make_named_medium(pbrt_parser *parser, source_place place);
 bool pbrt_object_begin(pbrt_parser *parser, source_place place);
 bool pbrt_object_end(pbrt_parser *parser, source_place place);
 bool pbrt_object_instance(pbrt_parser *parser, source_place place);
+
+bool pbrt_medium_interface(pbrt_parser *parser, source_place place);
+bool pbrt_make_named_medium(pbrt_parser *parser, source_place place);
+/** @brief What the scene is given from here on is between these; reports names of media
+ * that were not made. */
+void pbrt_use_media(pbrt_parser *parser, const medium_name *inside,
+                    const medium_name *outside);
+/** @brief Reports names that nothing used, of media that were never made. */
+void pbrt_check_media(pbrt_parser *parser);
+
 /** @brief Reports AttributeBegins that were never ended, down to a depth. */
 void pbrt_close_attributes(pbrt_parser *parser, guint depth);
 

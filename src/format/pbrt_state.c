@@ -1,10 +1,8 @@
 /*
  * The graphics state: what AttributeBegin keeps, AttributeEnd brings back, and the
- * directives that change nothing else. Media are refused here by name.
+ * directives that change nothing else.
  */
 #include "format/pbrt_parser.h"
-
-#include "scene/lenient.h"
 
 #include <string.h>
 
@@ -40,17 +38,10 @@ void pbrt_close_attributes(pbrt_parser *parser, guint depth)
     }
 }
 
-static void refuse_medium(pbrt_parser *parser, source_place place, const char *name)
-{
-    if (!scene_is_lenient(parser->scene, place, "medium \"%s\" becomes empty space",
-                          name))
-        pbrt_error(parser, place, "participating media are not supported, found \"%s\"",
-                   name);
-}
-
 bool pbrt_attribute(pbrt_parser *parser, source_place place)
 {
-    static const char *const names[N_TARGETS] = {"shape", "light", "material", "texture"};
+    static const char *const names[N_TARGETS] = {"shape", "light", "material", "medium",
+                                                 "texture"};
     source_place at = place;
     g_autofree char *target = pbrt_read_string(parser, "a kind of directive", &at);
     params *given = target ? pbrt_read_params(parser, place) : NULL;
@@ -65,13 +56,10 @@ bool pbrt_attribute(pbrt_parser *parser, source_place place)
             parser->state.attributes[i] = a;
             return true;
         }
-    if (strcmp(target, "medium") == 0)
-        refuse_medium(parser, at, target);
-    else
-        pbrt_error(parser, at,
-                   "expected \"shape\", \"light\", \"material\" or \"texture\", found "
-                   "\"%s\"",
-                   target);
+    pbrt_error(parser, at,
+               "expected \"shape\", \"light\", \"material\", \"medium\" or \"texture\", "
+               "found \"%s\"",
+               target);
     return true;
 }
 
@@ -96,30 +84,6 @@ bool pbrt_color_space(pbrt_parser *parser, source_place place)
                    "expected \"srgb\", \"rec2020\", \"dci-p3\" or \"aces2065-1\", found "
                    "\"%s\"",
                    name);
-    return true;
-}
-
-/** One name for both sides, or two; empty is vacuum. */
-bool pbrt_medium_interface(pbrt_parser *parser, source_place place)
-{
-    g_autofree char *inside = pbrt_read_string(parser, "a medium", &place);
-    if (!inside)
-        return false;
-    g_autofree char *outside = NULL;
-    if (lexer_peek(parser->words).kind == TOKEN_STRING)
-        outside = pbrt_read_string(parser, "a medium", *inside ? NULL : &place);
-    if (*inside || (outside && *outside))
-        refuse_medium(parser, place, *inside ? inside : outside);
-    return true;
-}
-
-bool pbrt_make_named_medium(pbrt_parser *parser, source_place place)
-{
-    g_autofree char *name = pbrt_read_string(parser, "a name", NULL);
-    g_autoptr(params) p = name ? pbrt_read_params(parser, place) : NULL;
-    if (!p)
-        return false;
-    refuse_medium(parser, place, name);
     return true;
 }
 

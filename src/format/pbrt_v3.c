@@ -9,6 +9,7 @@
 #include "format/pbrt_v3_words.h"
 
 #include "base/intern.h"
+#include "scene/medium_presets.h"
 
 #include <math.h>
 #include <string.h>
@@ -41,6 +42,7 @@ static const char *const v3_words[] = {
     "\"string type\" [ \"plastic\"",
     "\"string type\" [ \"uber\"",
     "\"string type\" [ \"substrate\"",
+    "\"string type\" \"heterogeneous\"",
     "\"color\" \"imagemap\"",
     "WorldEnd",
 };
@@ -155,6 +157,32 @@ static void translate_shape(const translation *t)
                "'shadowalpha' is left out: shadows are cut out by 'alpha'");
 }
 
+/* ---- Media ---- */
+
+static void default_measured(const translation *t, const char *name, const float mean[3])
+{
+    if (!find(t, name))
+        give_triple(t->p, PARAM_RGB, name, (double)mean[0], (double)mean[1],
+                    (double)mean[2]);
+}
+
+/* v3 takes milk where the file says nothing, and what it says goes before the preset. */
+static void translate_medium(const translation *t)
+{
+    const param *named = find(t, "preset");
+    bool is_text = named && named->type == PARAM_STRING && named->n == 1;
+    if (strcmp(*t->kind, "homogeneous") != 0 || (named && !is_text))
+        return;
+    bool is_none = !named || !*named->strings[0];
+    const medium_preset *from =
+        medium_preset_find(is_none ? "Wholemilk" : named->strings[0]);
+    if (!from)
+        return;
+    default_measured(t, "sigma_a", from->absorption);
+    default_measured(t, "sigma_s", from->scattering);
+    drop(t, "preset");
+}
+
 /* ---- What stands before the world ---- */
 
 static void translate_film(const translation *t)
@@ -235,11 +263,17 @@ static void translate_camera(const translation *t)
 void pbrt_v3_translate(pbrt_v3_target target, char **kind, params *p, const log_sink *log)
 {
     static void (*const translators[N_V3_TARGETS])(const translation *t) = {
-        [V3_MATERIAL] = pbrt_v3_material,       [V3_TEXTURE] = pbrt_v3_texture,
-        [V3_LIGHT] = translate_light,           [V3_AREA_LIGHT] = translate_area_light,
-        [V3_SHAPE] = translate_shape,           [V3_FILM] = translate_film,
-        [V3_FILTER] = translate_filter,         [V3_SAMPLER] = translate_sampler,
-        [V3_INTEGRATOR] = translate_integrator, [V3_CAMERA] = translate_camera,
+        [V3_MATERIAL] = pbrt_v3_material,
+        [V3_TEXTURE] = pbrt_v3_texture,
+        [V3_MEDIUM] = translate_medium,
+        [V3_LIGHT] = translate_light,
+        [V3_AREA_LIGHT] = translate_area_light,
+        [V3_SHAPE] = translate_shape,
+        [V3_FILM] = translate_film,
+        [V3_FILTER] = translate_filter,
+        [V3_SAMPLER] = translate_sampler,
+        [V3_INTEGRATOR] = translate_integrator,
+        [V3_CAMERA] = translate_camera,
     };
     translators[target](&(translation){kind, p, log});
 }

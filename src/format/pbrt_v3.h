@@ -12,6 +12,7 @@
 /** @brief What a directive makes. */
 typedef enum pbrt_v3_target {
     V3_MATERIAL,
+    V3_MEDIUM,
     V3_TEXTURE,
     V3_LIGHT,
     V3_AREA_LIGHT,

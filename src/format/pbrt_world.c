@@ -165,6 +165,7 @@ bool pbrt_light_source(pbrt_parser *parser, source_place place)
     if (!read_arguments(parser, place, TARGET_LIGHT, &a))
         return false;
     translate(parser, V3_LIGHT, &a);
+    pbrt_use_media(parser, &parser->state.inside, &parser->state.outside);
     GError *error = NULL;
     bool moves = pbrt_is_moving(parser) &&
                  !scene_is_lenient(parser->scene, place,
@@ -271,6 +272,7 @@ static void add_shape(pbrt_parser *parser, const arguments *a)
         pbrt_report(parser, error);
         return;
     }
+    pbrt_use_media(parser, &parser->state.inside, &parser->state.outside);
     at.camera_hidden = !seen;
     at.alpha = &alpha;
     if (!add_made_shape(parser, a, &at, &error)) {

@@ -104,6 +104,24 @@ params *lenient_material(const scene *s, const char **kind, const params *p,
     return kept;
 }
 
+/* ---- Media ---- */
+
+bool lenient_medium(const scene *s, const char *name, const char *kind, const params *p,
+                    GError **error)
+{
+    static const char *const kinds[] = {"cloud",       "nanovdb",       "rgbgrid",
+                                        "uniformgrid", "heterogeneous", NULL};
+    if (!g_strv_contains(kinds, kind))
+        return false;
+    if (!s->lenient)
+        error_at(error, p->place,
+                 "medium \"%s\" is not supported, \"homogeneous\" is; --lenient takes "
+                 "empty space for it",
+                 kind);
+    return scene_is_lenient(s, p->place, "medium \"%s\" (%s) becomes empty space", name,
+                            kind);
+}
+
 /* ---- Films ---- */
 
 /* A sensor of a camera, whose sensitivities are not here. */

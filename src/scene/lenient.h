@@ -21,7 +21,13 @@ bool scene_is_lenient(const struct scene *s, source_place place, const char *for
  * scene is not read leniently */
 params *lenient_material(const struct scene *s, const char **kind, const params *p,
                          GError **error);
-/** @brief The same for films: of spectra, or with the sensor of a camera. */
+/** @brief True if a participating medium of one of pbrt's kinds that can not be rendered
+ * becomes empty space. Else *error is set if the scene is not read leniently, and
+ * nothing is if the kind is another. */
+bool lenient_medium(const struct scene *s, const char *name, const char *kind,
+                    const params *p, GError **error);
+/** @brief The same as lenient_material for films: of spectra, or with the sensor of a
+ * camera. */
 params *lenient_film(const struct scene *s, const char **kind, const params *p,
                      GError **error);
 /** @brief The same for textures: ptex. */
