@@ -149,6 +149,115 @@ static void test_media(void)
                "9\n");
 }
 
+/* ---- Participating media: the same ones, and around the same things ---- */
+
+static void append_names(GString *out, const char *what, const medium *inside,
+                         const medium *outside)
+{
+    g_string_append_printf(out, "%s %s|%s\n", what, inside ? inside->name : "",
+                           outside ? outside->name : "");
+}
+
+static void append_medium(GString *out, const medium *m)
+{
+    g_string_append_printf(out, "%s %g %g\n", m->name, (double)m->scale, (double)m->g);
+    for (float nm = 400.0f; nm <= 700.0f; nm += 50.0f)
+        g_string_append_printf(out, " %.9g %.9g\n",
+                               m->absorption ? (double)curve_at(m->absorption, nm) : 0.0,
+                               m->scattering ? (double)curve_at(m->scattering, nm) : 0.0);
+}
+
+static char *media_of(const char *path)
+{
+    g_autoptr(GError) error = NULL;
+    g_autoptr(scene) s = format_load(path, 1, NULL, &error);
+    g_assert_no_error(error);
+    GString *out = g_string_new(NULL);
+    append_names(out, "camera", NULL, s->camera.medium);
+    for (guint i = 0; i < s->media->len; i++)
+        append_medium(out, s->media->pdata[i]);
+    for (guint i = 0; i < s->shapes->len; i++) {
+        const shape *one = s->shapes->pdata[i];
+        append_names(out, "shape", one->media.inside, one->media.outside);
+    }
+    for (guint i = 0; i < s->lights->len; i++)
+        append_names(out, "light", scene_light(s, (int)i)->media.inside,
+                     scene_light(s, (int)i)->media.outside);
+    return g_string_free(out, FALSE);
+}
+
+/* @return what the scene's media are, in both */
+static char *check_media(const char *text)
+{
+    g_autofree char *folder = g_dir_make_tmp("nephroid-convert-XXXXXX", NULL);
+    g_autofree char *out = g_build_filename(folder, "b.pbrt", NULL);
+    g_autoptr(GError) error = NULL;
+    scene_folder f = folder_new(text);
+    g_assert_true(format_convert(f.main, out, NULL, &error));
+    g_assert_no_error(error);
+    char *a = media_of(f.main);
+    g_autofree char *b = media_of(out);
+    g_assert_cmpstr(a, ==, b);
+    remove_tree(folder);
+    folder_remove(&f);
+    return a;
+}
+
+#define MEDIUM(name) "MakeNamedMedium \"" name "\" \"string type\" \"homogeneous\" "
+#define BALL "Shape \"sphere\"\n"
+
+static void test_participating_media(void)
+{
+    g_autofree char *all = check_media(MEDIUM(
+        "a \\\"b\\\"") "\"float g\" 0.25 \"spectrum sigma_a\" [300 1 900 2]\n"
+                       "MediumInterface \"a \\\"b\\\"\"\n"
+                       "LookAt 0 -5 3 0 0 0 0 0 1 Camera \"perspective\" "
+                       "WorldBegin\n" BALL MEDIUM(
+                           "c") "\"string preset\" \"Cream\" \"float scale\" 10\n"
+                                "AttributeBegin MediumInterface \"c\" \"\"\n" BALL
+                                "LightSource \"point\" AttributeEnd LightSource "
+                                "\"point\"\n"
+                                "ColorSpace \"rec2020\"\n" MEDIUM(
+                                    "d") "\"rgb sigma_s\" [1 .1 .2]\n"
+                                         "MediumInterface \"c\" \"d\" LightSource "
+                                         "\"infinite\"\n"
+                                         "ObjectBegin \"o\"\n" BALL
+                                         "MediumInterface \"\"\n" BALL "ObjectEnd\n" BALL
+                                         "ObjectInstance \"o\" AreaLightSource "
+                                         "\"diffuse\"\n" BALL);
+    g_assert_nonnull(strstr(all, "camera |a \"b\"\n"));
+    g_assert_nonnull(strstr(all, "shape c|\n"));
+    g_assert_nonnull(strstr(all, "light c|d\n"));
+    g_autofree char *after =
+        check_media("Camera \"perspective\" WorldBegin LightSource \"point\"\n" MEDIUM(
+            "a") "ObjectBegin \"o\" MediumInterface \"a\"\n" BALL "ObjectEnd\n"
+                 "MediumInterface \"a\"\n" BALL "ObjectInstance \"o\"\n");
+    g_assert_nonnull(strstr(after, "shape a|a\nshape a|a\n"));
+    g_autofree char *open =
+        check_media("Camera \"perspective\" WorldBegin LightSource \"point\"\n" MEDIUM(
+            "a") "MediumInterface \"\" \"a\" ActiveTransform EndTime Translate 1 0 "
+                 "0\n" BALL);
+    g_assert_nonnull(strstr(open, "camera |\n"));
+    g_autofree char *defaults = check_media(
+        "Camera \"perspective\" Attribute \"medium\" \"float g\" 0.5 \"float density\" 7 "
+        "\"float sigma_a\" 4\nWorldBegin LightSource \"point\"\n" MEDIUM(
+            "a") "\"string preset\" \"Cream\"\nAttributeBegin Attribute \"medium\" "
+                 "\"float scale\" "
+                 "2\n" MEDIUM("b") "AttributeEnd\n" MEDIUM("c") "\"float g\" 0\n" BALL);
+    g_assert_nonnull(strstr(defaults, "b 2 0.5\n 4 1\n"));
+}
+
+/* The picture is the same, too. */
+static void test_foggy_picture(void)
+{
+    check_text_with("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float "
+                    "scale\" 0.05 MediumInterface \"\" \"fog\"",
+                    "MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" \"rgb "
+                    "sigma_a\" [3 2 1]\nMediumInterface \"\" \"fog\"\nMaterial "
+                    "\"diffuse\" Shape \"disk\" \"float radius\" 3\nMediumInterface "
+                    "\"ink\" \"fog\" Material \"interface\" Shape \"sphere\"\n");
+}
+
 static void test_objects_and_motion(void)
 {
     check_text(
@@ -247,6 +356,8 @@ int main(int argc, char **argv)
     g_test_add_func("/convert/attributes", test_attributes);
     g_test_add_func("/convert/objects-and-motion", test_objects_and_motion);
     g_test_add_func("/convert/media", test_media);
+    g_test_add_func("/convert/participating-media", test_participating_media);
+    g_test_add_func("/convert/foggy-picture", test_foggy_picture);
     g_test_add_func("/convert/files", test_files);
     g_test_add_func("/convert/shared", test_shared);
     g_test_add_func("/convert/models", test_models);

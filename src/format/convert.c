@@ -13,6 +13,7 @@
 
 #include "base/output.h"
 #include "format/convert_files.h"
+#include "format/convert_settings.h"
 #include "format/format.h"
 #include "format/pbrt_text.h"
 #include "format/ply_write.h"
@@ -22,7 +23,9 @@
 typedef struct converter {
     scene *scene; /**< being built; its tables name textures */
     converted_files files;
-    GString *world, *film, *filter, *camera;
+    GString *world, *film, *filter, *media, *camera;
+    GString *around;      /**< the MediumInterface that holds now; empty: none yet */
+    bool around_changed;  /**< since the object began that is open */
     GPtrArray *objects;   /**< names by index, owned */
     GPtrArray *materials; /**< names by index, owned */
     unsigned n_meshes;
@@ -135,6 +138,52 @@ static void on_material(void *data, int index, const char *name, const char *kin
     g_string_append_printf(c->world, " \"string type\" \"%s\"", kind);
     append_params(c, c->world, p, "type");
     end(c->world);
+}
+
+/* A preset goes before what an Attribute gave; "preset" "" is none. */
+static bool is_measured(const params *p)
+{
+    const char *name = "";
+    return params_string(p, "preset", &name, NULL) && *name;
+}
+
+/* An Attribute may say what homogeneous media do not know, or need not. */
+static bool medium_needs(const params *p, const param *q)
+{
+    static const char *const measured[] = {"sigma_a", "sigma_s", NULL};
+    g_auto(GStrv) known = g_strsplit(medium_kind_parameters(0), " ", -1);
+    if (strcmp(q->name, "type") == 0)
+        return false;
+    return !q->is_default || (g_strv_contains((const char *const *)known, q->name) &&
+                              !(is_measured(p) && g_strv_contains(measured, q->name)));
+}
+
+/* Before the camera, which may stand in it: there are no AttributeBegins. */
+static void on_medium(void *data, const char *name, const char *kind, const params *p)
+{
+    converter *c = data;
+    if (!is_srgb(p))
+        g_string_append_printf(c->media, "ColorSpace \"%s\"\n",
+                               color_space_name(p->space));
+    g_string_append(c->media, "MakeNamedMedium ");
+    pbrt_text_string(c->media, name);
+    g_string_append_printf(c->media, " \"string type\" \"%s\"", kind);
+    for (guint i = 0; i < p->list->len; i++)
+        if (medium_needs(p, p->list->pdata[i]))
+            append_param(c, c->media, p, p->list->pdata[i]);
+    g_string_append(c->media, is_srgb(p) ? "\n" : "\nColorSpace \"srgb\"\n");
+}
+
+static void on_medium_interface(void *data, const char *inside, const char *outside)
+{
+    converter *c = data;
+    g_string_assign(c->around, "MediumInterface ");
+    pbrt_text_string(c->around, inside ? inside : "");
+    g_string_append_c(c->around, ' ');
+    pbrt_text_string(c->around, outside ? outside : "");
+    g_string_append_c(c->around, '\n');
+    g_string_append(c->world, c->around->str);
+    c->around_changed = true;
 }
 
 static void on_light(void *data, const char *kind, const params *p,
@@ -273,6 +322,7 @@ static void on_camera(void *data, const char *kind, const params *p,
 {
     converter *c = data;
     on_option(c, c->camera, "Camera", kind, p);
+    g_string_prepend(c->camera, c->around->str);
     g_autoptr(GString) look = g_string_new(NULL);
     pbrt_text_transform(look, to_world->inverse);
     g_string_prepend(c->camera, look->str);
@@ -325,6 +375,7 @@ static void on_object_begin(void *data, int index, const char *name)
     char *known = name ? g_strdup(name) : g_strdup_printf("object-%d", index);
     g_ptr_array_set_size(c->objects, MAX((int)c->objects->len, index + 1));
     c->objects->pdata[index] = known;
+    c->around_changed = false;
     g_string_append(c->world, "ObjectBegin ");
     pbrt_text_string(c->world, known);
     g_string_append_c(c->world, '\n');
@@ -334,6 +385,8 @@ static void on_object_end(void *data)
 {
     converter *c = data;
     g_string_append(c->world, "ObjectEnd\n");
+    if (c->around_changed) /* which ObjectEnd takes back */
+        g_string_append(c->world, c->around->str);
 }
 
 static void on_instance(void *data, int object, const motion *to_world)
@@ -347,41 +400,6 @@ static void on_instance(void *data, int object, const motion *to_world)
     g_string_append(c->world, "\nAttributeEnd\n");
 }
 
-/* ---- Settings ---- */
-
-/* Types as the settings' table has them; all that is not its default. */
-static void append_settings(GString *out, const settings *s)
-{
-    static const char *const types[] = {[SETTING_BOOL] = "bool",
-                                        [SETTING_COUNT] = "integer",
-                                        [SETTING_REAL] = "float",
-                                        [SETTING_CHOICE] = "string"};
-    size_t n;
-    const setting_row *rows = settings_table(&n);
-    const settings defaults = settings_default();
-    g_string_append(out, "Integrator \"auto\"");
-    for (size_t i = 0; i < n; i++) {
-        g_autofree char *value = settings_get(s, &rows[i]);
-        g_autofree char *initial = settings_get(&defaults, &rows[i]);
-        const char *quote = rows[i].type == SETTING_CHOICE ? "\"" : "";
-        if (strcmp(value, initial) != 0)
-            g_string_append_printf(out, " \"%s %s\" %s%s%s", types[rows[i].type],
-                                   rows[i].name, quote, value, quote);
-    }
-    g_string_append_c(out, '\n');
-}
-
-/* What pbrt's options have switched. */
-static void append_switches(GString *out, const scene_switches *on)
-{
-    if (on->fixed_pixels)
-        g_string_append(out, "Option \"bool disablepixeljitter\" true\n");
-    if (on->fixed_wavelengths)
-        g_string_append(out, "Option \"bool disablewavelengthjitter\" true\n");
-    if (on->sharp_textures)
-        g_string_append(out, "Option \"bool disabletexturefiltering\" true\n");
-}
-
 /* ---- All of it ---- */
 
 static bool write_scene(converter *c, const char *in, const char *path, GError **error)
@@ -391,8 +409,9 @@ static bool write_scene(converter *c, const char *in, const char *path, GError *
     g_string_append_printf(text, "# %s\n", g_strdelimit(base, "\r\n", ' '));
     g_string_append_len(text, c->film->str, (gssize)c->film->len);
     g_string_append(text, c->filter->str);
-    append_switches(text, &c->scene->switches);
-    append_settings(text, &c->scene->settings);
+    convert_append_switches(text, &c->scene->switches);
+    convert_append_settings(text, &c->scene->settings);
+    g_string_append(text, c->media->str);
     g_string_append(text, c->camera->str);
     g_string_append(text, "WorldBegin\n");
     g_string_append_len(text, c->world->str, (gssize)c->world->len);
@@ -405,6 +424,8 @@ static void converter_init(converter *c, const char *out)
                      .film = g_string_new(NULL),
                      .filter = g_string_new(NULL),
                      .camera = g_string_new(NULL),
+                     .media = g_string_new(NULL),
+                     .around = g_string_new(NULL),
                      .objects = g_ptr_array_new_with_free_func(g_free),
                      .materials = g_ptr_array_new_with_free_func(g_free)};
     converted_files_init(&c->files, out);
@@ -416,6 +437,8 @@ static void converter_clear(converter *c)
     g_string_free(c->film, TRUE);
     g_string_free(c->filter, TRUE);
     g_string_free(c->camera, TRUE);
+    g_string_free(c->media, TRUE);
+    g_string_free(c->around, TRUE);
     g_ptr_array_unref(c->objects);
     g_ptr_array_unref(c->materials);
     converted_files_clear(&c->files);
@@ -433,6 +456,8 @@ bool format_convert(const char *in, const char *out, const load_options *options
     const scene_listener listener = {.data = &c,
                                      .texture = on_texture,
                                      .material = on_material,
+                                     .medium = on_medium,
+                                     .medium_interface = on_medium_interface,
                                      .light = on_light,
                                      .shape = on_shape,
                                      .mesh = on_mesh,
