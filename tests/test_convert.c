@@ -208,23 +208,90 @@ static char *check_media(const char *text)
 
 static void test_participating_media(void)
 {
-    g_autofree char *all = check_media(MEDIUM(
-        "a \\\"b\\\"") "\"float g\" 0.25 \"spectrum sigma_a\" [300 1 900 2]\n"
-                       "MediumInterface \"a \\\"b\\\"\"\n"
-                       "LookAt 0 -5 3 0 0 0 0 0 1 Camera \"perspective\" "
-                       "WorldBegin\n" BALL MEDIUM(
-                           "c") "\"string preset\" \"Cream\" \"float scale\" 10\n"
-                                "AttributeBegin MediumInterface \"c\" \"\"\n" BALL
-                                "LightSource \"point\" AttributeEnd LightSource "
-                                "\"point\"\n"
-                                "ColorSpace \"rec2020\"\n" MEDIUM(
-                                    "d") "\"rgb sigma_s\" [1 .1 .2]\n"
-                                         "MediumInterface \"c\" \"d\" LightSource "
-                                         "\"infinite\"\n"
-                                         "ObjectBegin \"o\"\n" BALL
-                                         "MediumInterface \"\"\n" BALL "ObjectEnd\n" BALL
-                                         "ObjectInstance \"o\" AreaLightSource "
-                                         "\"diffuse\"\n" BALL);
+    g_autofree char
+        *all =
+            check_media(
+                MEDIUM(
+                    "a \\\"b\\\"") "\"float g\" 0.25 \"spectrum sigma_a\" [300 1 900 2]\n"
+                                   "MediumInterface \"a \\\"b\\\"\"\n"
+                                   "LookAt 0 -5 3 0 0 0 0 0 1 Camera \"perspective\" "
+                                   "WorldBegin\n" BALL
+                                       MEDIUM("c") "\"string preset\" \"Cream\" \"float "
+                                                   "scale\" 10\n"
+                                                   "AttributeBegin MediumInterface \"c\" "
+                                                   "\"\"\n" BALL
+                                                   "LightSource \"point\" AttributeEnd "
+                                                   "LightSource "
+                                                   "\"point\"\n"
+                                                   "ColorSpace \"rec2020\"\n" MEDIUM("d") "\"rgb sigma_s\" [1 .1 .2]\n" MEDIUM(
+                                                       "e") "\"rgb sigma_a\" [.1 1 .2] "
+                                                            "ColorSpace "
+                                                            "\"srgb\"\n" MEDIUM("f") "\"r"
+                                                                                     "gb "
+                                                                                     "sig"
+                                                                                     "ma_"
+                                                                                     "a\""
+                                                                                     " [."
+                                                                                     "1 "
+                                                                                     "1 "
+                                                                                     ".2]"
+                                                                                     "\n"
+                                                                                     "Med"
+                                                                                     "ium"
+                                                                                     "Int"
+                                                                                     "erf"
+                                                                                     "ace"
+                                                                                     " \""
+                                                                                     "c\""
+                                                                                     " \""
+                                                                                     "d\""
+                                                                                     " Li"
+                                                                                     "ght"
+                                                                                     "Sou"
+                                                                                     "rce"
+                                                                                     " "
+                                                                                     "\"i"
+                                                                                     "nfi"
+                                                                                     "nit"
+                                                                                     "e\""
+                                                                                     "\n"
+                                                                                     "Obj"
+                                                                                     "ect"
+                                                                                     "Beg"
+                                                                                     "in "
+                                                                                     "\"o"
+                                                                                     "\""
+                                                                                     "\n" BALL
+                                                                                     "Med"
+                                                                                     "ium"
+                                                                                     "Int"
+                                                                                     "erf"
+                                                                                     "ace"
+                                                                                     " \""
+                                                                                     "\""
+                                                                                     "\n" BALL
+                                                                                     "Obj"
+                                                                                     "ect"
+                                                                                     "End"
+                                                                                     "\n" BALL
+                                                                                     "Obj"
+                                                                                     "ect"
+                                                                                     "Ins"
+                                                                                     "tan"
+                                                                                     "ce "
+                                                                                     "\"o"
+                                                                                     "\" "
+                                                                                     "Are"
+                                                                                     "aLi"
+                                                                                     "ght"
+                                                                                     "Sou"
+                                                                                     "rce"
+                                                                                     " "
+                                                                                     "\"d"
+                                                                                     "iff"
+                                                                                     "use"
+                                                                                     "\""
+                                                                                     "\n" BALL);
     g_assert_nonnull(strstr(all, "camera |a \"b\"\n"));
     g_assert_nonnull(strstr(all, "shape c|\n"));
     g_assert_nonnull(strstr(all, "light c|d\n"));

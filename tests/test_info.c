@@ -146,6 +146,53 @@ static void test_instances(void)
     folder_remove(&f);
 }
 
+#define FOG "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" "
+#define IN_FOG                                                                           \
+    FOG "MediumInterface \"\" \"fog\" LookAt 0 -9 2  0 0 0  0 0 1 Camera "               \
+        "\"perspective\" WorldBegin\n"
+
+/* How many of each kind, and where the camera is. */
+static void test_media(void)
+{
+    scene_folder f =
+        folder_new(IN_FOG "LightSource \"point\"\n"
+                          "MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" "
+                          "\"spectrum sigma_s\" [300 0 900 0]\n");
+    g_autoptr(GError) error = NULL;
+    g_autoptr(NephScene) s = neph_scene_load(f.main, 1, NULL, NULL, &error);
+    g_assert_no_error(error);
+    g_autofree char *text = neph_scene_describe(s, false);
+    g_assert_nonnull(strstr(text, "\nmedia            2\n  homogeneous    2, 1 scatt"));
+    g_assert_nonnull(strstr(text, "\n  in medium      fog\n"));
+    g_autofree char *json = neph_scene_describe(s, true);
+    g_assert_true(json_is_valid(json));
+    g_assert_nonnull(strstr(json, "\"medium\": \"fog\""));
+    g_assert_cmpfloat(json_find_number(json, "scattering"), ==, 1.0);
+    folder_remove(&f);
+}
+
+static void check_fog(const char *lamp, const char *world, bool warned)
+{
+    g_autofree char *text = g_strconcat(IN_FOG, lamp, world, NULL);
+    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(GPtrArray) warnings = describe_warnings(s);
+    g_assert_cmpuint(warnings->len, ==, warned);
+    if (warned)
+        g_assert_nonnull(strstr(warnings->pdata[0], "through medium 'fog'"));
+}
+
+/* Light from beyond all meets fog that ends, but not fog that does not. */
+static void test_fog_without_bounds(void)
+{
+    const char *const dome = "MediumInterface \"fog\" \"\" Material \"interface\" Shape "
+                             "\"sphere\" \"float radius\" 30\n";
+    const char *const ball = MATT "Shape \"sphere\"\n";
+    check_fog("LightSource \"infinite\"\n", ball, true);
+    check_fog("LightSource \"distant\"\n", ball, true);
+    check_fog("LightSource \"infinite\"\n", dome, false);
+    check_fog("LightSource \"point\" \"point3 from\" [0 0 5]\n", ball, false);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -156,5 +203,7 @@ int main(int argc, char **argv)
     g_test_add_func("/info/instances", test_instances);
     g_test_add_func("/info/portal", test_portal);
     g_test_add_func("/info/json", test_json);
+    g_test_add_func("/info/media", test_media);
+    g_test_add_func("/info/fog-without-bounds", test_fog_without_bounds);
     return g_test_run();
 }

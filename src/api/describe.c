@@ -49,8 +49,7 @@ static void count_lights(const scene *s, summary *all)
         tally *t = tally_of(all->lights, one->kind->name);
         t->n++;
         t->is_environment = one->kind->is_environment;
-        t->power +=
-            (double)(light_measure(one, NULL).power * (LAMBDA_MAX - LAMBDA_MIN));
+        t->power += (double)(light_measure(one, NULL).power * (LAMBDA_MAX - LAMBDA_MIN));
     }
 }
 
@@ -76,7 +75,8 @@ static size_t estimate_memory(const scene *s, const summary *all)
     size_t triangles = 0;
     for (guint i = 0; i < all->shapes->len; i++)
         triangles += g_array_index(all->shapes, tally, i).n_triangles;
-    return all->geometry_bytes + 90 * triangles + 104 * (size_t)settings_photons(&s->settings) +
+    return all->geometry_bytes + 90 * triangles +
+           104 * (size_t)settings_photons(&s->settings) +
            200 * (size_t)s->film.width * (size_t)s->film.height;
 }
 
@@ -90,6 +90,15 @@ static void count_materials(const scene *s, summary *all)
         if (material_casts_caustics(one))
             g_ptr_array_add(all->caustic_names,
                             one->name ? one->name : (char *)"unnamed");
+    }
+}
+
+static void count_media(const scene *s, summary *all)
+{
+    for (guint i = 0; i < s->media->len; i++) {
+        tally *t = tally_of(all->media, medium_kind_name(0)); /* there is one kind */
+        t->n++;
+        t->n_scattering += medium_scatters(s->media->pdata[i]);
     }
 }
 
@@ -108,11 +117,13 @@ static void summary_init(summary *all, const scene *s)
     *all = (summary){.shapes = g_array_new(FALSE, TRUE, sizeof(tally)),
                      .lights = g_array_new(FALSE, TRUE, sizeof(tally)),
                      .materials = g_array_new(FALSE, TRUE, sizeof(tally)),
+                     .media = g_array_new(FALSE, TRUE, sizeof(tally)),
                      .textures = g_array_new(FALSE, TRUE, sizeof(tally)),
                      .caustic_names = g_ptr_array_new()};
     count_shapes(s, all);
     count_lights(s, all);
     count_materials(s, all);
+    count_media(s, all);
     measure_view(s, all);
     all->n_float_textures = g_hash_table_size(s->float_textures);
     all->n_spectrum_textures = g_hash_table_size(s->spectrum_textures);
@@ -128,6 +139,7 @@ static void summary_clear(summary *all)
     g_array_unref(all->shapes);
     g_array_unref(all->lights);
     g_array_unref(all->materials);
+    g_array_unref(all->media);
     g_array_unref(all->textures);
     g_ptr_array_unref(all->caustic_names);
     g_ptr_array_unref(all->warnings);

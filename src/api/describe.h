@@ -14,12 +14,13 @@ typedef struct tally {
     double power;        /**< of lights, W between LAMBDA_MIN and LAMBDA_MAX */
     size_t n_shining;    /**< shapes that are lights */
     size_t n_caustic;    /**< materials that cast caustics */
+    size_t n_scattering; /**< media */
     bool is_environment; /**< of lights */
 } tally;
 
 /** @brief All counts; every array holds tally, in the order of first appearance. */
 typedef struct summary {
-    GArray *shapes, *lights, *materials;
+    GArray *shapes, *lights, *materials, *media;
     GArray *textures;         /**< in the order of their kinds' names */
     GPtrArray *caustic_names; /**< const char*, of materials that cast caustics */
     GPtrArray *warnings;      /**< char* */

@@ -79,6 +79,20 @@ static void put_materials(json *j, const summary *all)
     json_object_end(j);
 }
 
+static void put_media(json *j, const summary *all)
+{
+    json_array_begin(j, "media");
+    for (guint i = 0; i < all->media->len; i++) {
+        const tally *t = &g_array_index(all->media, tally, i);
+        json_object_begin(j, NULL);
+        json_string(j, "kind", t->kind);
+        json_count(j, "count", t->n);
+        json_count(j, "scattering", t->n_scattering);
+        json_object_end(j);
+    }
+    json_array_end(j);
+}
+
 static void put_files(json *j, const scene *s)
 {
     json_array_begin(j, "files");
@@ -98,6 +112,8 @@ static void put_camera(json *j, const scene *s, const summary *all)
     json_float(j, "lens_radius", s->camera.lens_radius);
     if (s->camera.lens_radius > 0.0f)
         json_float(j, "focal_distance", s->camera.focal_distance);
+    if (s->camera.medium)
+        json_string(j, "medium", s->camera.medium->name);
     json_object_end(j);
 }
 
@@ -125,6 +141,7 @@ char *describe_as_json(const scene *s, const summary *all)
     put_shapes(&j, s, all);
     put_lights(&j, all);
     put_materials(&j, all);
+    put_media(&j, all);
     put_camera(&j, s, all);
     put_film(&j, &s->film);
     json_string(&j, "filter", s->filter.name);

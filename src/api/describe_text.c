@@ -70,6 +70,18 @@ static void put_materials(GString *out, const scene *s, const summary *all)
     }
 }
 
+static void put_media(GString *out, const scene *s, const summary *all)
+{
+    if (!scene_has_media(s))
+        return;
+    g_string_append_printf(out, "media            %u\n", s->media->len);
+    for (guint i = 0; i < all->media->len; i++) {
+        const tally *t = &g_array_index(all->media, tally, i);
+        g_string_append_printf(out, "  %-14s %zu, %zu scattering\n", t->kind, t->n,
+                               t->n_scattering);
+    }
+}
+
 static void put_camera(GString *out, const scene *s, const summary *all)
 {
     const transform *to_world = &s->camera.to_world;
@@ -85,6 +97,8 @@ static void put_camera(GString *out, const scene *s, const summary *all)
                                (double)s->camera.focal_distance);
     else
         g_string_append_printf(out, "  %-14s pinhole\n", "lens");
+    if (s->camera.medium)
+        g_string_append_printf(out, "  %-14s %s\n", "in medium", s->camera.medium->name);
 }
 
 static void put_film(GString *out, const scene *s)
@@ -148,6 +162,7 @@ char *describe_as_text(const scene *s, const summary *all)
     put_shapes(out, s, all);
     put_lights(out, s, all);
     put_materials(out, s, all);
+    put_media(out, s, all);
     put_camera(out, s, all);
     put_film(out, s);
     g_string_append(out, "settings that differ from the defaults\n");

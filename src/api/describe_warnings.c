@@ -135,15 +135,22 @@ static bool lets_light_through(const scene *s, const surface_hit *hit)
             LOBE_TRANSMISSION);
 }
 
+enum { N_WAYS = 26 };
+
+/* To the sides, edges and corners of a cube. */
+static vec3 way_out(int k)
+{
+    int cell = k < N_WAYS / 2 ? k : k + 1;
+    return normalize3(vec3_make((float)(cell % 3 - 1), (float)(cell / 3 % 3 - 1),
+                                (float)(cell / 9 - 1)));
+}
+
 /* The one shape around a point whose inner side is seen all around; NO_INDEX: none. */
 static int shape_around(const scene *s, vec3 p)
 {
     int found = NO_INDEX;
-    for (int k = 0; k < 26; k++) {
-        int cell = k < 13 ? k : k + 1;
-        vec3 d = vec3_make((float)(cell % 3 - 1), (float)(cell / 3 % 3 - 1),
-                           (float)(cell / 9 - 1));
-        ray r = {.origin = p, .direction = normalize3(d), .t_max = INFINITY};
+    for (int k = 0; k < N_WAYS; k++) {
+        ray r = {.origin = p, .direction = way_out(k), .t_max = INFINITY};
         surface_hit hit;
         if (!scene_intersect(s, &r, &hit) || lets_light_through(s, &hit) ||
             !(dot3(hit.n_geom, r.direction) > 0.0f) ||
@@ -197,6 +204,29 @@ static void inspect_sky(inspection *in, guint i)
          i, l->kind->name);
 }
 
+/* A medium without bounds leaves nothing of light from beyond all. */
+static void inspect_fog(inspection *in, guint i)
+{
+    const scene *s = in->scene;
+    const wavelengths w = wavelengths_at(0.5f);
+    const light *l = s->lights->pdata[i];
+    bool comes_from_beyond = l->kind->is_environment || l->kind->is_parallel;
+    if (!comes_from_beyond || !s->camera.medium)
+        return;
+    for (int k = 0; k < N_WAYS; k++) {
+        ray r = {.origin = transform_point(&s->camera.to_world, (vec3){0}),
+                 .direction = way_out(k),
+                 .t_max = INFINITY,
+                 .medium = s->camera.medium};
+        if (!spectrum_is_black(scene_transmittance(s, &r, &w)))
+            return;
+    }
+    warn(in,
+         "light %u (%s) does not reach the camera through medium '%s', which has no "
+         "bounds",
+         i, l->kind->name, s->camera.medium->name);
+}
+
 /* ---- All of it ---- */
 
 GPtrArray *describe_warnings(const scene *s)
@@ -213,6 +243,7 @@ GPtrArray *describe_warnings(const scene *s)
             inspect_sky(&in, i);
         else
             inspect_lamp(&in, i);
+        inspect_fog(&in, i);
     }
     if (s->shapes->len > 0 && (s->radius > LARGEST_RADIUS || s->radius < SMALLEST_RADIUS))
         warn(&in, "the scene is %g m wide; lengths are in metres",
