@@ -186,9 +186,10 @@ static char *media_of(const char *path)
     return g_string_free(out, FALSE);
 }
 
-/* @return what the scene's media are, in both */
-static char *check_media(const char *text)
+/* Single quotes stand for double ones. @return what the media are, in both scenes */
+static char *check_media(const char *quoted)
 {
+    g_autofree char *text = g_strdelimit(g_strdup(quoted), "'", '"');
     g_autofree char *folder = g_dir_make_tmp("nephroid-convert-XXXXXX", NULL);
     g_autofree char *out = g_build_filename(folder, "b.pbrt", NULL);
     g_autoptr(GError) error = NULL;
@@ -203,115 +204,62 @@ static char *check_media(const char *text)
     return a;
 }
 
-#define MEDIUM(name) "MakeNamedMedium \"" name "\" \"string type\" \"homogeneous\" "
-#define BALL "Shape \"sphere\"\n"
+static const char media_in_scopes[] =
+    "MakeNamedMedium 'a b' 'string type' 'homogeneous' 'float g' 0.25\n"
+    "  'spectrum sigma_a' [300 1 900 2]\n"
+    "MediumInterface 'a b'\n"
+    "LookAt 0 -5 3 0 0 0 0 0 1 Camera 'perspective' WorldBegin\n"
+    "Shape 'sphere'\n"
+    "MakeNamedMedium 'c' 'string type' 'homogeneous' 'string preset' 'Cream'\n"
+    "  'float scale' 10\n"
+    "AttributeBegin MediumInterface 'c' '' Shape 'sphere' LightSource 'point'\n"
+    "AttributeEnd LightSource 'point'\n"
+    "ColorSpace 'rec2020'\n"
+    "MakeNamedMedium 'd' 'string type' 'homogeneous' 'rgb sigma_s' [1 .1 .2]\n"
+    "MakeNamedMedium 'e' 'string type' 'homogeneous' 'rgb sigma_a' [.1 1 .2]\n"
+    "ColorSpace 'srgb'\n"
+    "MakeNamedMedium 'f' 'string type' 'homogeneous' 'rgb sigma_a' [.1 1 .2]\n"
+    "MediumInterface 'c' 'd' LightSource 'infinite'\n"
+    "AreaLightSource 'diffuse' Shape 'sphere'\n";
 
 static void test_participating_media(void)
 {
-    g_autofree char
-        *all =
-            check_media(
-                MEDIUM(
-                    "a \\\"b\\\"") "\"float g\" 0.25 \"spectrum sigma_a\" [300 1 900 2]\n"
-                                   "MediumInterface \"a \\\"b\\\"\"\n"
-                                   "LookAt 0 -5 3 0 0 0 0 0 1 Camera \"perspective\" "
-                                   "WorldBegin\n" BALL
-                                       MEDIUM("c") "\"string preset\" \"Cream\" \"float "
-                                                   "scale\" 10\n"
-                                                   "AttributeBegin MediumInterface \"c\" "
-                                                   "\"\"\n" BALL
-                                                   "LightSource \"point\" AttributeEnd "
-                                                   "LightSource "
-                                                   "\"point\"\n"
-                                                   "ColorSpace \"rec2020\"\n" MEDIUM("d") "\"rgb sigma_s\" [1 .1 .2]\n" MEDIUM(
-                                                       "e") "\"rgb sigma_a\" [.1 1 .2] "
-                                                            "ColorSpace "
-                                                            "\"srgb\"\n" MEDIUM("f") "\"r"
-                                                                                     "gb "
-                                                                                     "sig"
-                                                                                     "ma_"
-                                                                                     "a\""
-                                                                                     " [."
-                                                                                     "1 "
-                                                                                     "1 "
-                                                                                     ".2]"
-                                                                                     "\n"
-                                                                                     "Med"
-                                                                                     "ium"
-                                                                                     "Int"
-                                                                                     "erf"
-                                                                                     "ace"
-                                                                                     " \""
-                                                                                     "c\""
-                                                                                     " \""
-                                                                                     "d\""
-                                                                                     " Li"
-                                                                                     "ght"
-                                                                                     "Sou"
-                                                                                     "rce"
-                                                                                     " "
-                                                                                     "\"i"
-                                                                                     "nfi"
-                                                                                     "nit"
-                                                                                     "e\""
-                                                                                     "\n"
-                                                                                     "Obj"
-                                                                                     "ect"
-                                                                                     "Beg"
-                                                                                     "in "
-                                                                                     "\"o"
-                                                                                     "\""
-                                                                                     "\n" BALL
-                                                                                     "Med"
-                                                                                     "ium"
-                                                                                     "Int"
-                                                                                     "erf"
-                                                                                     "ace"
-                                                                                     " \""
-                                                                                     "\""
-                                                                                     "\n" BALL
-                                                                                     "Obj"
-                                                                                     "ect"
-                                                                                     "End"
-                                                                                     "\n" BALL
-                                                                                     "Obj"
-                                                                                     "ect"
-                                                                                     "Ins"
-                                                                                     "tan"
-                                                                                     "ce "
-                                                                                     "\"o"
-                                                                                     "\" "
-                                                                                     "Are"
-                                                                                     "aLi"
-                                                                                     "ght"
-                                                                                     "Sou"
-                                                                                     "rce"
-                                                                                     " "
-                                                                                     "\"d"
-                                                                                     "iff"
-                                                                                     "use"
-                                                                                     "\""
-                                                                                     "\n" BALL);
-    g_assert_nonnull(strstr(all, "camera |a \"b\"\n"));
+    g_autofree char *all = check_media(media_in_scopes);
+    g_assert_nonnull(strstr(all, "camera |a b\n"));
     g_assert_nonnull(strstr(all, "shape c|\n"));
     g_assert_nonnull(strstr(all, "light c|d\n"));
-    g_autofree char *after =
-        check_media("Camera \"perspective\" WorldBegin LightSource \"point\"\n" MEDIUM(
-            "a") "ObjectBegin \"o\" MediumInterface \"a\"\n" BALL "ObjectEnd\n"
-                 "MediumInterface \"a\"\n" BALL "ObjectInstance \"o\"\n");
-    g_assert_nonnull(strstr(after, "shape a|a\nshape a|a\n"));
-    g_autofree char *open =
-        check_media("Camera \"perspective\" WorldBegin LightSource \"point\"\n" MEDIUM(
-            "a") "MediumInterface \"\" \"a\" ActiveTransform EndTime Translate 1 0 "
-                 "0\n" BALL);
-    g_assert_nonnull(strstr(open, "camera |\n"));
-    g_autofree char *defaults = check_media(
-        "Camera \"perspective\" Attribute \"medium\" \"float g\" 0.5 \"float density\" 7 "
-        "\"float sigma_a\" 4\nWorldBegin LightSource \"point\"\n" MEDIUM(
-            "a") "\"string preset\" \"Cream\"\nAttributeBegin Attribute \"medium\" "
-                 "\"float scale\" "
-                 "2\n" MEDIUM("b") "AttributeEnd\n" MEDIUM("c") "\"float g\" 0\n" BALL);
-    g_assert_nonnull(strstr(defaults, "b 2 0.5\n 4 1\n"));
+    g_autofree char *moving = check_media(
+        "Camera 'perspective' WorldBegin LightSource 'point'\n"
+        "MakeNamedMedium 'a' 'string type' 'homogeneous' MediumInterface '' 'a'\n"
+        "ActiveTransform EndTime Translate 1 0 0 Shape 'sphere'\n");
+    g_assert_nonnull(strstr(moving, "camera |\n"));
+    g_assert_nonnull(strstr(moving, "shape |a\n"));
+}
+
+/* ObjectEnd takes back what an object says, though all that is told after it is alike. */
+static void test_media_of_objects(void)
+{
+    g_autofree char *all =
+        check_media("Camera 'perspective' WorldBegin LightSource 'point'\n"
+                    "MakeNamedMedium 'a' 'string type' 'homogeneous'\n"
+                    "ObjectBegin 'o' MediumInterface 'a' Shape 'sphere' ObjectEnd\n"
+                    "MediumInterface 'a' Shape 'sphere' ObjectInstance 'o'\n"
+                    "MediumInterface '' Shape 'sphere'\n");
+    g_assert_nonnull(strstr(all, "shape a|a\nshape a|a\nshape |\n"));
+}
+
+static void test_defaults_of_media(void)
+{
+    g_autofree char *all = check_media(
+        "Camera 'perspective'\n"
+        "Attribute 'medium' 'float g' 0.5 'float density' 7 'float sigma_a' 4\n"
+        "WorldBegin LightSource 'point' Shape 'sphere'\n"
+        "MakeNamedMedium 'a' 'string type' 'homogeneous' 'string preset' 'Cream'\n"
+        "AttributeBegin Attribute 'medium' 'float scale' 2\n"
+        "MakeNamedMedium 'b' 'string type' 'homogeneous' AttributeEnd\n"
+        "MakeNamedMedium 'c' 'string type' 'homogeneous' 'float g' 0\n");
+    g_assert_nonnull(strstr(all, "b 2 0.5\n 4 1\n"));
+    g_assert_nonnull(strstr(all, "c 1 0\n 4 1\n"));
 }
 
 /* The picture is the same, too. */
@@ -424,6 +372,8 @@ int main(int argc, char **argv)
     g_test_add_func("/convert/objects-and-motion", test_objects_and_motion);
     g_test_add_func("/convert/media", test_media);
     g_test_add_func("/convert/participating-media", test_participating_media);
+    g_test_add_func("/convert/media-of-objects", test_media_of_objects);
+    g_test_add_func("/convert/defaults-of-media", test_defaults_of_media);
     g_test_add_func("/convert/foggy-picture", test_foggy_picture);
     g_test_add_func("/convert/files", test_files);
     g_test_add_func("/convert/shared", test_shared);
