@@ -114,8 +114,9 @@ typedef void (*NephFileFunc)(const char *path, void *data);
 /** @brief How to load a scene; zero-initialise. */
 typedef struct NephLoadOptions {
     unsigned threads; /**< for the acceleration structure; 0: one per processor */
-    bool lenient;     /**< what can not be rendered (hair, subsurface, measured, media) is
-                         replaced, and a warning says by what */
+    bool lenient;     /**< what can not be rendered (hair, subsurface, measured, media of
+                         other kinds than homogeneous) is replaced, and a warning says by
+                         what */
     bool thin_glass;  /**< of glTF, OBJ and the like: glass that the file gives no volume
                          is a thin pane on closed meshes too, which are else solid */
     NephLogFunc log;  /**< may be NULL */
