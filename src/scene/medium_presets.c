@@ -2,15 +2,15 @@
  * Measured media under pbrt's names, so that its files mean the same: Jensen, Marschner,
  * Levoy & Hanrahan, "A Practical Model for Subsurface Light Transport", 2001, and
  * Narasimhan, Gupta, Donner, Ramamoorthi, Nayar & Jensen, "Acquiring Scattering
- * Properties of Participating Media by Dilution", 2006. The former measured reduced
- * scattering σs (1 - g), which belongs with g = 0.
+ * Properties of Participating Media by Dilution", 2006. Scattering is the reduced one,
+ * σs (1 - g), which belongs with g = 0; the latter measured σs and g apart.
  */
 #include "scene/medium_presets.h"
 
 #include <string.h>
 
 static const medium_preset presets[] = {
-    /* Jensen et al. 2001: reduced scattering. */
+    /* Jensen et al. 2001. */
     {"Apple", {2.29f, 2.39f, 1.97f}, {0.0030f, 0.0034f, 0.046f}},
     {"Chicken1", {0.15f, 0.21f, 0.38f}, {0.015f, 0.077f, 0.19f}},
     {"Chicken2", {0.19f, 0.25f, 0.32f}, {0.018f, 0.088f, 0.20f}},
@@ -24,7 +24,7 @@ static const medium_preset presets[] = {
     {"Spectralon", {11.6f, 20.4f, 14.9f}, {0.00f, 0.00f, 0.00f}},
     {"Wholemilk", {2.55f, 3.21f, 3.77f}, {0.0011f, 0.0024f, 0.014f}},
 
-    /* Narasimhan et al. 2006: scattering. */
+    /* Narasimhan et al. 2006. */
     {"Lowfat Milk", {0.89187f, 1.5136f, 2.532f}, {0.002875f, 0.00575f, 0.0115f}},
     {"Reduced Milk", {2.4858f, 3.1669f, 4.5214f}, {0.0025556f, 0.0051111f, 0.012778f}},
     {"Regular Milk", {4.5513f, 5.8294f, 7.136f}, {0.0015333f, 0.0046f, 0.019933f}},

@@ -8,7 +8,8 @@
 /** @brief Coefficients for red, green and blue of sRGB, mm⁻¹. */
 typedef struct medium_preset {
     const char *name;
-    float scattering[3], absorption[3];
+    float scattering[3]; /**< reduced: for g = 0 */
+    float absorption[3];
 } medium_preset;
 
 /** @brief Number i; NULL behind the last. */
