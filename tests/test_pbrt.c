@@ -395,12 +395,13 @@ static void test_published_scenes_load_unchanged(void)
 {
     static const struct {
         const char *name;
-        guint n_shapes, n_lights;
-    } scenes[] = {{"bitterli/cornell-box/scene-v4.pbrt", 8, 1},
-                  {"bitterli/coffee/scene-v4.pbrt", 23, 3},
-                  {"bitterli/veach-mis/scene-v4.pbrt", 9, 3},
-                  {"spectral/cornell-glass.pbrt", 8, 1},
-                  {"spectral/ring.pbrt", 3, 1}};
+        guint n_shapes, n_lights, n_media;
+    } scenes[] = {{"bitterli/cornell-box/scene-v4.pbrt", 8, 1, 0},
+                  {"bitterli/coffee/scene-v4.pbrt", 23, 3, 0},
+                  {"bitterli/veach-mis/scene-v4.pbrt", 9, 3, 0},
+                  {"bitterli/volumetric-caustic/scene-v4.pbrt", 8, 1, 1},
+                  {"spectral/cornell-glass.pbrt", 8, 1, 0},
+                  {"spectral/ring.pbrt", 3, 1, 0}};
     for (size_t i = 0; i < G_N_ELEMENTS(scenes); i++) {
         g_autofree char *path =
             g_build_filename(SOURCE_ROOT, "../shared/refs", scenes[i].name, NULL);
@@ -413,6 +414,7 @@ static void test_published_scenes_load_unchanged(void)
         g_assert_no_error(error);
         g_assert_cmpuint(s->shapes->len, ==, scenes[i].n_shapes);
         g_assert_cmpuint(s->lights->len, ==, scenes[i].n_lights);
+        g_assert_cmpuint(s->media->len, ==, scenes[i].n_media);
     }
 }
 
