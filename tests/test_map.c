@@ -114,7 +114,7 @@ static photon_store fill_store(photon_store empty, field_place place, uint32_t n
         photon p = field_photon(place, 11, i);
         sampler own = sampler_make(17, i);
         p.n = warp_sphere(sampler_2d(&own));
-        p.curve = i % 3;
+        p.home = i % 3;
         photon_store_put(&store, &p);
     }
     return store;
@@ -349,13 +349,13 @@ static void test_curves_by_definition(void)
             filter.face = 1;
         }
         photon_store store =
-            fill_store((photon_store){.oriented = true, .curved = true}, place_cube, N);
+            fill_store((photon_store){.oriented = true, .homed = true}, place_cube, N);
         size_t expected = 0;
         for (size_t k = 0; k < N; k++) {
             photon q = photon_store_get(&store, k);
-            bool alike = q.curve || fabsf(dot3(q.n, n)) > 0.5f;
+            bool alike = q.home || fabsf(dot3(q.n, n)) > 0.5f;
             expected += length3(q.p - p) < 0.3f && dot3(q.wi, n) > 0.0f && alike &&
-                        q.curve == filter.curve;
+                        q.home == filter.curve;
         }
         g_autoptr(photon_map) map = build_map(kinds[i / 3], &store, 0.1f, 2);
         photon_hits hits = {0};
@@ -365,7 +365,7 @@ static void test_curves_by_definition(void)
         g_assert_true(photon_map_nearest(map, p, expected - 3, 1.0f, &filter, &hits));
         for (size_t k = 0; k < hits.n; k++) {
             g_assert_cmpfloat(hits.distance2[k], <, 0.09f);
-            g_assert_cmpuint(photon_map_store(map)->curve[hits.index[k]], ==, i % 3);
+            g_assert_cmpuint(photon_map_store(map)->home[hits.index[k]], ==, i % 3);
         }
         photon_hits_clear(&hits);
     }

@@ -14,7 +14,7 @@ struct NephSettings {
 
 struct NephScene {
     scene *scene;
-    bool shares; /**< what another's scene owns */
+    bool shares;     /**< what another's scene owns */
     NephLogFunc log; /**< the caller's, may be NULL; used while the scene lives */
     void *log_data;
 };

@@ -43,6 +43,8 @@ static const char *material_of(const scene *s, const photon_event *event)
     if (!event->hit)
         return event->kind == PHOTON_EMITTED ? scene_light(s, event->light)->kind->name
                                              : "";
+    if (event->hit->shape == NO_INDEX)
+        return event->hit->medium->name;
     if (event->hit->material == NO_INDEX)
         return "";
     const material *m = s->materials->pdata[event->hit->material];

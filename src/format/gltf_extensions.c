@@ -5,7 +5,8 @@
 
 static const gltf_extension_row rows[] = {
     {"KHR_lights_punctual", GLTF_RENDERED,
-     "candela and lux become W/sr and W/m² by 683 lm/W, as Blender writes them; spot lamps of "
+     "candela and lux become W/sr and W/m² by 683 lm/W, as Blender writes them; spot "
+     "lamps of "
      "its files fade as in Blender"},
     {"KHR_materials_anisotropy", GLTF_RENDERED, ""},
     {"KHR_materials_clearcoat", GLTF_APPROXIMATED, "with the surface's own normals"},

@@ -7,8 +7,8 @@
 #include <string.h>
 
 static const image_codec *const codecs[] = {
-    &codec_exr, &codec_png, &codec_jpeg, &codec_hdr, &codec_pfm, &codec_bmp,
-    &codec_tga, /* has no mark of its own */
+    &codec_exr, &codec_png, &codec_jpeg, &codec_hdr,
+    &codec_pfm, &codec_bmp, &codec_tga, /* has no mark of its own */
 };
 
 const char *const rgba_names[4] = {"R", "G", "B", "A"};

@@ -37,8 +37,8 @@ typedef struct image_codec {
                   const image_write_options *options, GError **error);
 } image_codec;
 
-extern const image_codec codec_exr, codec_png, codec_jpeg, codec_hdr, codec_pfm, codec_bmp,
-    codec_tga;
+extern const image_codec codec_exr, codec_png, codec_jpeg, codec_hdr, codec_pfm,
+    codec_bmp, codec_tga;
 
 /** @brief ERROR_INPUT "path: damaged NAME file: ..." for a file that breaks its format.
  */

@@ -395,6 +395,7 @@ bool estimate_scratch_init(estimate_scratch *scratch, size_t n_groups, GError **
 void estimate_scratch_clear(estimate_scratch *scratch)
 {
     photon_hits_clear(&scratch->hits);
+    disc_crossings_clear(&scratch->crossings);
     big_free(scratch->groups);
     scratch->groups = NULL;
 }

@@ -13,6 +13,7 @@
 
 #include "photon/flat_curve.h"
 #include "photon/map.h"
+#include "scene/disc_set.h"
 
 /** @brief How to estimate. */
 typedef struct estimate_options {
@@ -37,6 +38,7 @@ typedef struct estimate_options {
  * the end. */
 typedef struct estimate_scratch {
     photon_hits hits;
+    disc_crossings crossings;
     bool failed;      /**< memory was refused in a query, which then gave zero */
     spectrum *groups; /**< owned, big_alloc'ed; each query leaves there what the photons
                          of each tag gave of the result */

@@ -40,9 +40,9 @@ static void free_arrays(photon_store *store)
     big_free(store->flux);
     big_free(store->normal);
     big_free(store->tag);
-    big_free(store->curve);
+    big_free(store->home);
     *store = (photon_store){
-        .oriented = store->oriented, .tagged = store->tagged, .curved = store->curved};
+        .oriented = store->oriented, .tagged = store->tagged, .homed = store->homed};
 }
 
 bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
@@ -54,16 +54,15 @@ bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
         return false;
     }
     size_t n = store->n, room = padded(capacity);
-    bool ok =
-        grow(&store->x, n, room, sizeof *store->x, error) &&
-        grow(&store->y, n, room, sizeof *store->y, error) &&
-        grow(&store->z, n, room, sizeof *store->z, error) &&
-        grow(&store->wi, n, room, sizeof *store->wi, error) &&
-        grow(&store->flux, n, room, sizeof *store->flux, error) &&
-        (!store->oriented ||
-         grow(&store->normal, n, room, sizeof *store->normal, error)) &&
-        (!store->tagged || grow(&store->tag, n, room, sizeof *store->tag, error)) &&
-        (!store->curved || grow(&store->curve, n, room, sizeof *store->curve, error));
+    bool ok = grow(&store->x, n, room, sizeof *store->x, error) &&
+              grow(&store->y, n, room, sizeof *store->y, error) &&
+              grow(&store->z, n, room, sizeof *store->z, error) &&
+              grow(&store->wi, n, room, sizeof *store->wi, error) &&
+              grow(&store->flux, n, room, sizeof *store->flux, error) &&
+              (!store->oriented ||
+               grow(&store->normal, n, room, sizeof *store->normal, error)) &&
+              (!store->tagged || grow(&store->tag, n, room, sizeof *store->tag, error)) &&
+              (!store->homed || grow(&store->home, n, room, sizeof *store->home, error));
     if (ok)
         store->capacity = room - STORE_BLOCK;
     else if (store->capacity == 0)
@@ -83,8 +82,8 @@ void photon_store_put(photon_store *store, const photon *p)
         store->normal[i] = direction_pack(p->n, 0);
     if (store->tagged)
         store->tag[i] = p->tag;
-    if (store->curved)
-        store->curve[i] = p->curve;
+    if (store->homed)
+        store->home[i] = p->home;
 }
 
 photon photon_store_get(const photon_store *store, size_t i)
@@ -96,7 +95,7 @@ photon photon_store_get(const photon_store *store, size_t i)
         .flags = direction_flags(store->wi[i]),
         .n = store->oriented ? direction_unpack(store->normal[i]) : (vec3){0},
         .tag = store->tagged ? store->tag[i] : 0,
-        .curve = store->curved ? store->curve[i] : 0,
+        .home = store->homed ? store->home[i] : 0,
     };
 }
 
@@ -106,12 +105,30 @@ void photon_store_clear(photon_store *store)
     *store = (photon_store){0};
 }
 
+void photon_store_copy(const photon_store *to, size_t at, const photon_store *from)
+{
+    size_t n = from->n;
+    if (n == 0)
+        return;
+    memcpy(to->x + at, from->x, n * sizeof *from->x);
+    memcpy(to->y + at, from->y, n * sizeof *from->y);
+    memcpy(to->z + at, from->z, n * sizeof *from->z);
+    memcpy(to->wi + at, from->wi, n * sizeof *from->wi);
+    memcpy(to->flux + at, from->flux, n * sizeof *from->flux);
+    if (to->oriented)
+        memcpy(to->normal + at, from->normal, n * sizeof *from->normal);
+    if (to->tagged)
+        memcpy(to->tag + at, from->tag, n * sizeof *from->tag);
+    if (to->homed)
+        memcpy(to->home + at, from->home, n * sizeof *from->home);
+}
+
 size_t photon_store_bytes(const photon_store *store)
 {
     size_t each = 3 * sizeof(float) + sizeof(uint32_t) + sizeof(spectrum);
     each += store->oriented ? sizeof(uint32_t) : 0;
     each += store->tagged ? sizeof(uint32_t) : 0;
-    each += store->curved ? sizeof(uint32_t) : 0;
+    each += store->homed ? sizeof(uint32_t) : 0;
     return store->x ? (store->capacity + STORE_BLOCK) * each : 0;
 }
 
@@ -169,8 +186,8 @@ bool photon_store_permute(photon_store *store, const size_t *order, unsigned thr
                                            sizeof *store->normal, threads, error)) &&
               (!store->tagged ||
                permute(&store->tag, store, order, sizeof *store->tag, threads, error)) &&
-              (!store->curved || permute(&store->curve, store, order,
-                                         sizeof *store->curve, threads, error));
+              (!store->homed ||
+               permute(&store->home, store, order, sizeof *store->home, threads, error));
     if (ok)
         store->capacity = padded(store->n) - STORE_BLOCK;
     return ok;

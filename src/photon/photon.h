@@ -9,7 +9,7 @@
  *   wi[]          4 bytes        octahedral and flags, read for blocks with some in reach
  *   flux[]        32 bytes       eight wavelengths, read for those in reach
  *
- * 48 bytes a photon, and four more each for normals, tags and curves where they are asked
+ * 48 bytes a photon, and four more each for normals, tags and homes where they are asked
  * for.
  * Indices are size_t throughout: 2³² photons are a matter of patience.
  */
@@ -46,9 +46,10 @@ typedef struct photon {
     unsigned flags; /**< PHOTON_FROM_DELTA, PHOTON_BEHIND */
     vec3 n; /**< kept by oriented stores only: the surface's unit geometric normal on
                the side it arrived */
-    uint32_t tag;   /**< kept by tagged stores only: the light's group */
-    uint32_t curve; /**< kept by curved stores only: the flat curve that it is on, see
-                       scene_curve_of; 0: it is on none */
+    uint32_t tag;  /**< kept by tagged stores only: the light's group */
+    uint32_t home; /**< kept by homed stores only: the flat curve that it is on, see
+                      scene_curve_of, 0: it is on none; or the medium that it is in, see
+                      medium_home */
 } photon;
 
 /** @brief Photons as arrays of n, big_alloc'ed; capacity >= n. The arrays go on behind
@@ -63,8 +64,8 @@ typedef struct photon_store {
     uint32_t *normal; /**< packed (direction_pack); NULL unless oriented */
     bool tagged;      /**< set before room is made: photons keep their tags */
     uint32_t *tag;    /**< NULL unless tagged */
-    bool curved;      /**< set before room is made: photons keep their curves */
-    uint32_t *curve;  /**< NULL unless curved */
+    bool homed;       /**< set before room is made: photons keep their curves or media */
+    uint32_t *home;   /**< NULL unless homed */
 } photon_store;
 
 /** @brief Makes room for capacity photons in all; on failure the store holds what it did:
@@ -74,6 +75,9 @@ bool photon_store_reserve(photon_store *store, size_t capacity, GError **error);
 void photon_store_put(photon_store *store, const photon *p);
 photon photon_store_get(const photon_store *store, size_t i);
 void photon_store_clear(photon_store *store);
+/** @brief Copies all photons of a store of the same sort to place `at` of another one,
+ * where there is room; its n stays as it is. */
+void photon_store_copy(const photon_store *to, size_t at, const photon_store *from);
 /** @brief Memory held. */
 size_t photon_store_bytes(const photon_store *store);
 /** @brief Photon i becomes the one that was order[i]. One array at a time, so the extra

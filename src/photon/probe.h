@@ -43,7 +43,7 @@ static inline photon_probe photon_probe_make(const photon_store *store, vec3 p,
     if (filter) {
         bool on_curve = filter->curve != 0;
         probe.normal = on_curve ? NULL : store->normal;
-        probe.curve = store->curve;
+        probe.curve = store->home;
         probe.on_curve = filter->curve;
         probe.n = filter->n;
         probe.one_sided = filter->one_sided;

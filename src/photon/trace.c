@@ -2,16 +2,16 @@
 
 #include "base/memory.h"
 
-#include <string.h>
+#include <float.h>
 
 /* Photons emitted per parallel piece of work. */
 enum { CHUNK = 4096 };
 
 /* What one chunk stored, until the chunks are joined in order. */
 typedef struct chunk_store {
-    photon_store photons;
+    photon_store photons, in_media;
     uint64_t n_rays, n_not_finite;
-    size_t offset; /* of its photons in the whole */
+    size_t offset, offset_in_media; /* of its photons in the whole */
     GError *error;
 } chunk_store;
 
@@ -36,8 +36,9 @@ typedef struct photon_path {
     void *tell_data;
 } photon_path;
 
-static void tell(const photon_path *path, photon_event_kind kind, const surface_hit *hit,
-                 unsigned lobe)
+/* Of a photon of some flux, the path's or its own. */
+static void tell_flux(const photon_path *path, photon_event_kind kind,
+                      const surface_hit *hit, unsigned lobe, spectrum flux)
 {
     if (!path->tell)
         return;
@@ -49,10 +50,16 @@ static void tell(const photon_path *path, photon_event_kind kind, const surface_
         .hit = hit,
         .light = path->light,
         .lobe = lobe,
-        .flux = path->flux,
+        .flux = flux,
         .share = path->share,
     };
     path->tell(&event, path->tell_data);
+}
+
+static void tell(const photon_path *path, photon_event_kind kind, const surface_hit *hit,
+                 unsigned lobe)
+{
+    tell_flux(path, kind, hit, lobe, path->flux);
 }
 
 static uint64_t stream_key(const trace_task *task)
@@ -106,6 +113,7 @@ static bool emit(photon_path *path)
         return false;
     path->ray = at.ray;
     path->ray.solids = scene_light(task->scene, at.light)->solids;
+    path->ray.medium = scene_light_medium(task->scene, at.light, at.n, at.ray.direction);
     path->flux = at.flux / (float)task->n_photons;
     path->light = at.light;
     path->lane = ALL_LANES;
@@ -134,10 +142,18 @@ static photon_class class_here(const photon_path *path)
     return path->n_followed > 0 ? PHOTON_CAUSTIC : PHOTON_DIRECT;
 }
 
-static bool grow(chunk_store *out)
+/* Puts a photon into one of the chunk's stores. */
+static void put(chunk_store *out, photon_store *store, const photon *p)
 {
-    size_t capacity = MAX(2 * out->photons.capacity, CHUNK);
-    return photon_store_reserve(&out->photons, capacity, &out->error);
+    if (!spectrum_is_finite(p->flux)) {
+        out->n_not_finite++;
+        return;
+    }
+    size_t more = MAX(2 * store->capacity, CHUNK);
+    if (out->error ||
+        (store->n == store->capacity && !photon_store_reserve(store, more, &out->error)))
+        return;
+    photon_store_put(store, p);
 }
 
 /* Of the middle of a task's slice of time. */
@@ -163,12 +179,6 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
     tell(path, PHOTON_STORED, hit, 0);
     if (!out)
         return;
-    if (!spectrum_is_finite(path->flux)) {
-        out->n_not_finite++;
-        return;
-    }
-    if (out->error || (out->photons.n == out->photons.capacity && !grow(out)))
-        return;
     if (dot3(path->ray.direction, hit->n_geom) > 0.0f)
         flags |= PHOTON_BEHIND;
     const scene *s = path->task->scene;
@@ -178,10 +188,10 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
                 .flags = flags,
                 .n = face_forward(hit->n_geom, -path->ray.direction),
                 .tag = (uint32_t)scene_light_group(s, path->light),
-                .curve = scene_curve_of(s, hit)};
+                .home = scene_curve_of(s, hit)};
     if (scene_hit_moves(s, hit))
         keep_for_slice(path->task, hit, &p);
-    photon_store_put(&out->photons, &p);
+    put(out, &out->photons, &p);
 }
 
 /* Stores the photon if its class is the one traced and the surface has a lobe for it. */
@@ -238,10 +248,24 @@ static float share_at(photon_path *path, const surface_hit *hit, const bsdf *b,
     return caustic_share_of(task->share, end);
 }
 
+/* Roulette: gives the photon a new flux, or ends it. */
+static bool survives(photon_path *path, spectrum flux, float survival, float u)
+{
+    if (!(u < survival))
+        return false;
+    path->flux = flux / survival;
+    return true;
+}
+
+static float survival_with(const photon_path *path, spectrum flux)
+{
+    const settings *how = path->task->how;
+    return minf(1.0f, power_of(how, flux) / power_of(how, path->flux));
+}
+
 /* Scatters at the hit. @return false if the photon's way ends here. */
 static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
 {
-    const trace_task *task = path->task;
     unsigned lobes = lobes_to_take(path);
     if (!(b->lobes & lobes & ~(unsigned)LOBE_ANY_SIDE)) {
         tell(path, PHOTON_ENDED, hit, 0);
@@ -254,19 +278,17 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
     spectrum flux = scattered ? path->flux * next.weight : (spectrum){0};
     if (path->out && !spectrum_is_finite(flux))
         path->out->n_not_finite++;
-    float survival =
-        minf(1.0f, power_of(task->how, flux) / power_of(task->how, path->flux));
+    float survival = survival_with(path, flux);
     if (scattered) {
         float share = share_at(path, hit, b, &next);
         path->share *= share;
         flux *= share;
         survival *= minf(1.0f, share / PHOTON_LEAST_SHARE);
     }
-    if (!(u.roulette < survival)) {
+    if (!survives(path, flux, survival, u.roulette)) {
         tell(path, PHOTON_ABSORBED, hit, 0);
         return false;
     }
-    path->flux = flux / survival;
     path->lane = next.lane;
     path->ray = hit_ray(hit, next.wi);
     path->specular_only &= (next.lobe & LOBE_SPECULAR) != 0;
@@ -278,27 +300,102 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
     return true;
 }
 
-static void follow(photon_path *path)
+/* ---- In media ---- */
+
+/* Each way through a medium leaves one photon on it, if its class is the one traced: for
+   all that is scattered there, whether this photon itself is or goes through. */
+static void land_on_way(photon_path *path, float length)
+{
+    const trace_task *task = path->task;
+    const medium *m = path->ray.medium;
+    if (class_here(path) != task->photon_class || !medium_scatters(m))
+        return;
+    float u = sampler_1d(&path->random);
+    medium_sample at = medium_sample_within(m, &task->w, path->flux, length, u);
+    if (!at.scatters)
+        return;
+    const surface_hit hit = hit_in_medium(&path->ray, at.t);
+    const photon p = {.p = hit.p,
+                      .wi = -path->ray.direction,
+                      .flux = path->flux * at.weight *
+                              solids_transmittance(&path->ray.solids, at.t, &task->w),
+                      .tag = (uint32_t)scene_light_group(task->scene, path->light),
+                      .home = medium_home(m)};
+    tell_flux(path, PHOTON_STORED, &hit, 0, p.flux);
+    if (path->out)
+        put(path->out, &path->out->in_media, &p);
+}
+
+typedef enum medium_way { WAY_THROUGH, WAY_SCATTERED, WAY_ENDED } medium_way;
+
+/* Takes a photon through its medium. One that no diffuse lobe would take goes straight
+   on, as far as its light does. @param hit,b set where it is scattered */
+static medium_way cross_medium(photon_path *path, float length, surface_hit *hit, bsdf *b)
+{
+    const trace_task *task = path->task;
+    const medium *m = path->ray.medium;
+    medium_sample next = {.t = length};
+    land_on_way(path, length);
+    if (medium_scatters(m) && (lobes_to_take(path) & LOBE_DIFFUSE))
+        next = medium_sample_free(m, &task->w, path->flux, length,
+                                  sampler_1d(&path->random));
+    else
+        next.weight = medium_transmittance(m, length, &task->w);
+    spectrum flux = path->flux * next.weight;
+    float survival = survival_with(path, flux);
+    float u = survival < 1.0f ? sampler_1d(&path->random) : 0.0f;
+    *hit = hit_in_medium(&path->ray, minf(next.t, FLT_MAX));
+    if (!survives(path, flux, survival, u)) {
+        tell(path, PHOTON_ABSORBED, hit, 0);
+        return WAY_ENDED;
+    }
+    if (!next.scatters)
+        return WAY_THROUGH;
+    path->flux *= solids_transmittance(&path->ray.solids, next.t, &task->w);
+    bsdf_make_phase(b, m->g, path->lane);
+    return WAY_SCATTERED;
+}
+
+/* ---- The whole way ---- */
+
+/* Takes the photon to where it is scattered next: a surface, or a point in a medium.
+   @return false: its way ends */
+static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
 {
     const trace_task *task = path->task;
     const bsdf_options options = {.deterministic = !task->how->multiple_samples};
-    int64_t limit = task->how->max_forward_bounces;
-    for (int64_t bounces = 0;;) {
-        surface_hit hit;
+    for (;;) {
         if (path->out)
             path->out->n_rays++;
-        if (!scene_intersect(task->scene, &path->ray, &hit)) {
+        bool met = scene_intersect(task->scene, &path->ray, hit);
+        if (path->ray.medium) {
+            surface_hit within;
+            medium_way way = cross_medium(path, met ? hit->t : INFINITY, &within, b);
+            if (way == WAY_SCATTERED)
+                *hit = within;
+            if (way != WAY_THROUGH)
+                return way == WAY_SCATTERED;
+        }
+        if (!met) {
             tell(path, PHOTON_LEFT, NULL, 0);
-            return;
+            return false;
         }
-        path->flux *= hit_transmittance(&hit, &task->w);
-        bsdf b;
-        if (!scene_bsdf(task->scene, &hit, &task->w, path->lane, &options, &b)) {
-            path->ray = hit_ray(&hit, path->ray.direction);
-            continue;
+        path->flux *= hit_transmittance(hit, &task->w);
+        if (scene_bsdf(task->scene, hit, &task->w, path->lane, &options, b)) {
+            land(path, hit, b);
+            return true;
         }
-        land(path, &hit, &b);
-        if (limit >= 0 && bounces++ >= limit) {
+        path->ray = hit_ray(hit, path->ray.direction);
+    }
+}
+
+static void follow(photon_path *path)
+{
+    int64_t limit = path->task->how->max_forward_bounces;
+    surface_hit hit;
+    bsdf b;
+    for (int64_t bounces = 0; come_to_scatterer(path, &hit, &b); bounces++) {
+        if (limit >= 0 && bounces >= limit) {
             tell(path, PHOTON_ENDED, &hit, 0);
             return;
         }
@@ -326,7 +423,7 @@ void photon_tell(const trace_task *task, uint64_t index,
 
 typedef struct trace_loop {
     const trace_task *task;
-    photon_store empty; /* what each chunk starts from */
+    photon_store empty, empty_in_media; /* what each chunk starts from */
     chunk_store *chunks;
 } trace_loop;
 
@@ -336,6 +433,7 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
     trace_loop *loop = data;
     chunk_store *out = &loop->chunks[begin / CHUNK];
     out->photons = loop->empty;
+    out->in_media = loop->empty_in_media;
     for (size_t i = begin; i < end && !out->error; i++) {
         photon_path path = {
             .task = loop->task, .index = loop->task->first + i, .out = out};
@@ -354,39 +452,33 @@ static void join_chunk(size_t i, size_t end, unsigned thread, void *data)
     (void)end, (void)thread;
     join_loop *loop = data;
     chunk_store *chunk = &loop->chunks[i];
-    const photon_store *to = &loop->result->photons, *p = &chunk->photons;
-    size_t at = chunk->offset;
-    if (p->n) {
-        memcpy(to->x + at, p->x, p->n * sizeof *p->x);
-        memcpy(to->y + at, p->y, p->n * sizeof *p->y);
-        memcpy(to->z + at, p->z, p->n * sizeof *p->z);
-        memcpy(to->wi + at, p->wi, p->n * sizeof *p->wi);
-        memcpy(to->flux + at, p->flux, p->n * sizeof *p->flux);
-        if (to->oriented)
-            memcpy(to->normal + at, p->normal, p->n * sizeof *p->normal);
-        if (to->tagged)
-            memcpy(to->tag + at, p->tag, p->n * sizeof *p->tag);
-        if (to->curved)
-            memcpy(to->curve + at, p->curve, p->n * sizeof *p->curve);
-    }
+    photon_store_copy(&loop->result->photons, chunk->offset, &chunk->photons);
+    photon_store_copy(&loop->result->in_media, chunk->offset_in_media, &chunk->in_media);
     photon_store_clear(&chunk->photons);
+    photon_store_clear(&chunk->in_media);
 }
 
 /* Gives each chunk its place in the whole. @return false if one failed. */
-static bool add_up(chunk_store *chunks, size_t n, trace_result *result, size_t *total,
-                   GError **error)
+static bool add_up(chunk_store *chunks, size_t n, trace_result *result, GError **error)
 {
-    *total = 0;
+    size_t total = 0, in_media = 0;
     for (size_t i = 0; i < n; i++) {
         if (chunks[i].error) {
             g_propagate_error(error, g_steal_pointer(&chunks[i].error));
             return false;
         }
-        chunks[i].offset = *total;
-        *total += chunks[i].photons.n;
+        chunks[i].offset = total;
+        chunks[i].offset_in_media = in_media;
+        total += chunks[i].photons.n;
+        in_media += chunks[i].in_media.n;
         result->n_rays += chunks[i].n_rays;
         result->n_not_finite += chunks[i].n_not_finite;
     }
+    if (!photon_store_reserve(&result->photons, total, error) ||
+        !photon_store_reserve(&result->in_media, in_media, error))
+        return false;
+    result->photons.n = total;
+    result->in_media.n = in_media;
     return true;
 }
 
@@ -394,13 +486,10 @@ static bool add_up(chunk_store *chunks, size_t n, trace_result *result, size_t *
 static bool join(chunk_store *chunks, size_t n, const trace_loop *traced,
                  trace_result *result, GError **error)
 {
-    size_t total;
-    if (!add_up(chunks, n, result, &total, error) ||
-        !photon_store_reserve(&result->photons, total, error))
+    if (!add_up(chunks, n, result, error))
         return false;
     join_loop loop = {result, chunks};
     parallel_for(n, 1, (unsigned)traced->task->how->threads, NULL, join_chunk, &loop);
-    result->photons.n = total;
     return true;
 }
 
@@ -409,13 +498,14 @@ bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
 {
     const photon_store empty = {.oriented = oriented,
                                 .tagged = task->scene->n_light_groups > 0,
-                                .curved = task->scene->turns};
-    *result = (trace_result){.photons = empty};
+                                .homed = task->scene->turns};
+    const photon_store empty_in_media = {.tagged = empty.tagged, .homed = true};
+    *result = (trace_result){.photons = empty, .in_media = empty_in_media};
     size_t n_chunks = ((size_t)task->n_photons + CHUNK - 1) / CHUNK;
     chunk_store *chunks = big_alloc(n_chunks, sizeof *chunks, "photon chunks", error);
     if (!chunks)
         return false;
-    trace_loop loop = {task, empty, chunks};
+    trace_loop loop = {task, empty, empty_in_media, chunks};
     bool done = parallel_for((size_t)task->n_photons, CHUNK, (unsigned)task->how->threads,
                              task->cancel, trace_chunk, &loop);
     if (!done)
@@ -423,6 +513,7 @@ bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
     bool joined = done && join(chunks, n_chunks, &loop, result, error);
     for (size_t i = 0; i < n_chunks; i++) {
         photon_store_clear(&chunks[i].photons);
+        photon_store_clear(&chunks[i].in_media);
         g_clear_error(&chunks[i].error);
     }
     big_free(chunks);
@@ -434,5 +525,6 @@ bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
 void trace_result_clear(trace_result *result)
 {
     photon_store_clear(&result->photons);
+    photon_store_clear(&result->in_media);
     *result = (trace_result){0};
 }

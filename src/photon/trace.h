@@ -9,7 +9,8 @@
  *   light ─► (S|G)+ ────► D          caustic
  *   light ─► ... D ... ─► D          indirect
  *
- * (D, G, S: a diffuse, glossy, specular lobe; see scene/bsdf.h). A glossy lobe alone
+ * (D, G, S: a diffuse, glossy, specular lobe; see scene/bsdf.h; a point in a medium where
+ * light is scattered is as a D). A glossy lobe alone
  * takes photons only from delta lights by way of S*: all else that it reflects, camera
  * paths find by following it. So every path of light is counted once.
  *
@@ -50,6 +51,8 @@ typedef struct trace_task {
 /** @brief What came of it. */
 typedef struct trace_result {
     photon_store photons; /**< in the order of emission; flux of each is its share of N */
+    photon_store in_media; /**< the same of those that were scattered in media; their
+                              homes are the media (medium_home) */
     uint64_t n_rays;
     uint64_t n_not_finite; /**< photons dropped since their flux was not finite */
 } trace_result;
@@ -82,7 +85,7 @@ typedef struct photon_event {
     photon_event_kind kind;
     uint64_t index;         /**< of the photon, in order of emission */
     vec3 p, direction;      /**< where, and whither it goes on */
-    const surface_hit *hit; /**< NULL for EMITTED and LEFT */
+    const surface_hit *hit; /**< NULL for EMITTED and LEFT; in a medium on no shape */
     int light;
     unsigned lobe; /**< of SCATTERED */
     spectrum flux; /**< of the photon after the event, its share alone */

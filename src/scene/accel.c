@@ -6,7 +6,6 @@
  */
 #include "scene/accel_embree.h"
 
-#include <float.h>
 #include <string.h>
 
 /* Shapes with one acceleration structure. */
@@ -173,19 +172,6 @@ void accel_free(accel *a)
 
 /* ---- Queries ---- */
 
-/* Embree reads origin and tnear, direction and time, as vectors: written as vectors they
- * reach it without waiting for the cache. */
-static struct RTCRay to_embree(const ray *r)
-{
-    const vec3_bits xyz = {-1, -1, -1, 0};
-    const vec3 origin = choose3(xyz, r->origin, (vec3){0.0f, 0.0f, 0.0f, FLT_MIN});
-    const vec3 direction = choose3(xyz, r->direction, (vec3){0.0f, 0.0f, 0.0f, r->time});
-    struct RTCRay to = {.tfar = r->t_max, .mask = ~0u};
-    memcpy(&to.org_x, &origin, sizeof origin);
-    memcpy(&to.dir_x, &direction, sizeof direction);
-    return to;
-}
-
 /* Of an instance: filled in the object's space, then placed. */
 static void fill_instance(const accel *a, const struct RTCRayHit *query, const ray *r,
                           surface_hit *hit)
@@ -202,7 +188,7 @@ static void fill_instance(const accel *a, const struct RTCRayHit *query, const r
 
 static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit *hit)
 {
-    struct RTCRayHit query = {.ray = to_embree(r)};
+    struct RTCRayHit query = {.ray = embree_ray(r)};
     query.ray.flags = flags;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -239,7 +225,7 @@ bool accel_intersect_solid(const accel *a, const ray *r, surface_hit *hit)
 
 bool accel_occluded(const accel *a, const ray *r)
 {
-    struct RTCRay query = to_embree(r);
+    struct RTCRay query = embree_ray(r);
     embree_any(a->world.scene, &query);
     return query.tfar < 0.0f;
 }

@@ -102,6 +102,11 @@ static inline float bsdf_cosine(const bsdf *b, vec3 wi)
  *  irradiance-based shortcuts, never for unbiased weights). */
 spectrum bsdf_albedo(const bsdf *b, vec3 wo, unsigned lobes);
 
+/** @brief Henyey and Greenstein's phase function ("Diffuse radiation in the Galaxy",
+ * 1941) of light that a medium scatters: a whole bsdf, of which nothing need be set.
+ * @param g mean cosine, -1 < g < 1 */
+void bsdf_make_phase(bsdf *b, float g, int lane);
+
 /* ---- For materials: the same in the local frame, n = +z ---- */
 
 /** @brief What a material's scattering must do. Local frame, sides decided by the sign of

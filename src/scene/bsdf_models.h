@@ -51,11 +51,6 @@ spectrum bsdf_delta_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
 float bsdf_delta_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
                      transport_mode mode);
 
-/** @brief Henyey and Greenstein's phase function ("Diffuse radiation in the Galaxy",
- * 1941) of light that a medium scatters: a whole bsdf, of which nothing need be set.
- * @param g mean cosine, -1 < g < 1 */
-void bsdf_make_phase(bsdf *b, float g, int lane);
-
 /** @brief Lambert's law, alike on both sides. @param rho reflectance in 0..1 */
 void bsdf_make_diffuse(bsdf *b, spectrum rho);
 

@@ -1,14 +1,14 @@
 /*
- * What a medium does with light that it scatters.
+ * What a medium does with light that it scatters, by Henyey and Greenstein:
  *
  *     p(wo, wi) = (1 - g²) / (4π (1 + g² + 2 g wo·wi)^(3/2))
  *
  * Both directions point away from the point, so light that goes straight on has
  * wo·wi = -1.
  */
-#include "scene/bsdf_models.h"
-
 #include "math/warp.h"
+#include "scene/bsdf_models.h"
+#include "scene/medium.h"
 
 enum { PHASE_LOBE = LOBE_DIFFUSE | LOBE_ANY_SIDE };
 
@@ -17,12 +17,6 @@ typedef struct phase {
 } phase;
 
 _Static_assert(sizeof(phase) <= BSDF_DATA_SIZE, "a phase function must fit");
-
-static float henyey_greenstein(float g, float cosine)
-{
-    float d = 1.0f + g * g + 2.0f * g * cosine;
-    return (1.0f - g * g) / (4.0f * PI_F * d * sqrtf(d));
-}
 
 static const phase *phase_of(const bsdf *b)
 {
@@ -34,7 +28,7 @@ static spectrum phase_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
 {
     (void)mode;
     float p = lobe_wanted(lobes, PHASE_LOBE)
-                  ? henyey_greenstein(phase_of(b)->g, dot3(wo, wi))
+                  ? phase_henyey_greenstein(phase_of(b)->g, dot3(wo, wi))
                   : 0.0f;
     return spectrum_fill(p);
 }
@@ -44,7 +38,7 @@ static float phase_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
 {
     (void)mode;
     return lobe_wanted(lobes, PHASE_LOBE)
-               ? henyey_greenstein(phase_of(b)->g, dot3(wo, wi))
+               ? phase_henyey_greenstein(phase_of(b)->g, dot3(wo, wi))
                : 0.0f;
 }
 
@@ -69,7 +63,7 @@ static bool phase_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned 
     float sine = sqrtf(maxf(1.0f - cosine * cosine, 0.0f));
     out->wi = normalize3(
         frame_to_world(&on, vec3_make(sine * cosf(angle), sine * sinf(angle), cosine)));
-    out->pdf = henyey_greenstein(phase_of(b)->g, dot3(wo, out->wi));
+    out->pdf = phase_henyey_greenstein(phase_of(b)->g, dot3(wo, out->wi));
     out->weight = spectrum_fill(1.0f);
     out->lobe = PHASE_LOBE;
     return out->pdf > 0.0f;

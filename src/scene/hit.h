@@ -110,6 +110,21 @@ static inline const struct medium *hit_medium(const surface_hit *hit, vec3 direc
                                                : hit->boundary->outside;
 }
 
+/** @brief A point on a ray within the medium that it travels in, as a hit on nothing: it
+ * has no normal. */
+static inline surface_hit hit_in_medium(const ray *r, float t)
+{
+    return (surface_hit){.p = r->origin + t * r->direction,
+                         .t = t,
+                         .time = r->time,
+                         .shape = NO_INDEX,
+                         .instance = NO_INDEX,
+                         .material = NO_INDEX,
+                         .light = NO_INDEX,
+                         .solids = r->solids,
+                         .medium = r->medium};
+}
+
 /** @brief The ray that leaves a hit. */
 static inline ray hit_ray(const surface_hit *hit, vec3 direction)
 {

@@ -11,7 +11,7 @@ static spectrum coefficient(const medium *m, const curve *c, const wavelengths *
     return c ? curve_eval(c, w) * m->scale : (spectrum){0};
 }
 
-static spectrum extinction(const medium *m, const wavelengths *w)
+spectrum medium_extinction(const medium *m, const wavelengths *w)
 {
     return coefficient(m, m->absorption, w) + coefficient(m, m->scattering, w);
 }
@@ -26,7 +26,7 @@ spectrum medium_transmittance(const medium *m, float t, const wavelengths *w)
 {
     spectrum out = spectrum_fill(1.0f);
     if (m->absorption || m->scattering)
-        out = transmittance(extinction(m, w), t);
+        out = transmittance(medium_extinction(m, w), t);
     if (m->color) {
         spectrum color = curve_eval(m->color, w);
         for (int i = 0; i < N_LANES; i++)
@@ -53,7 +53,8 @@ static int choose_lane(spectrum carried, float *u, spectrum *p)
 medium_sample medium_sample_free(const medium *m, const wavelengths *w, spectrum carried,
                                  float t_max, float u)
 {
-    spectrum p, sigma_s = coefficient(m, m->scattering, w), sigma_t = extinction(m, w);
+    spectrum p, sigma_s = coefficient(m, m->scattering, w),
+                sigma_t = medium_extinction(m, w);
     int lane = choose_lane(carried, &u, &p);
     float t = sigma_t[lane] > 0.0f ? -log1pf(-u) / sigma_t[lane] : INFINITY;
     bool scatters = t < t_max;
@@ -79,7 +80,8 @@ static spectrum lost(spectrum sigma_t, float t_max)
 medium_sample medium_sample_within(const medium *m, const wavelengths *w,
                                    spectrum carried, float t_max, float u)
 {
-    spectrum p, sigma_s = coefficient(m, m->scattering, w), sigma_t = extinction(m, w);
+    spectrum p, sigma_s = coefficient(m, m->scattering, w),
+                sigma_t = medium_extinction(m, w);
     spectrum ends = lost(sigma_t, t_max), density = {0};
     for (int i = 0; i < N_LANES; i++) /* a clear lane has no path that ends within */
         carried[i] = ends[i] > 0.0f ? carried[i] : 0.0f;

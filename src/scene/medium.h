@@ -43,6 +43,24 @@ const char *medium_kind_name(size_t i);
 const char *medium_kind_parameters(size_t i);
 void medium_free(medium *m);
 
+/** @brief What photons in a medium have as their home. */
+static inline uint32_t medium_home(const medium *m)
+{
+    return (uint32_t)m->index + 1;
+}
+
+/** @brief σt by wavelength. */
+spectrum medium_extinction(const medium *m, const wavelengths *w);
+
+/** @brief Henyey and Greenstein's phase function ("Diffuse radiation in the Galaxy",
+ * 1941), sr⁻¹. @param cosine between the ways back and on, both away from the point: -1
+ * where light goes straight on */
+static inline float phase_henyey_greenstein(float g, float cosine)
+{
+    float d = 1.0f + g * g + 2.0f * g * cosine;
+    return (1.0f - g * g) / (4.0f * (float)G_PI * d * sqrtf(d));
+}
+
 /** @brief Share of light left after t metres; INFINITY is allowed. */
 spectrum medium_transmittance(const medium *m, float t, const wavelengths *w);
 

@@ -24,6 +24,9 @@ enum {
    may still be seen by way of other surfaces. */
 #define UNSEEN_VALUE 0.05f
 
+/* Less light than this from a point in a medium is none. */
+#define LEAST_SEEN 0.05f
+
 /* Visible points stand for what lies between them: so many of their mean distances
  * around. */
 #define SIGHT_REACH 2.0f
@@ -93,6 +96,29 @@ static float sight_at(const trials *all, vec3 p, photon_hits *hits)
     return hits->distance2[0] < reach * reach ? reach * reach : 0.0f;
 }
 
+/* The same of a point in a medium, which is in sight if nothing stands before it and
+   light comes from there to the eye. */
+static float sight_in_medium(const trials *all, const surface_hit *hit)
+{
+    const trace_task *task = &all->task;
+    const film_settings *film = &task->scene->film;
+    const camera *c = &task->scene->camera;
+    camera_connection eye;
+    if (!camera_connects(c) ||
+        !camera_connect(c, hit->p, (vec2){0.5f, 0.5f}, hit->time, &eye) ||
+        !(eye.raster.x >= 0.0f && eye.raster.x < (float)film->width) ||
+        !(eye.raster.y >= 0.0f && eye.raster.y < (float)film->height))
+        return 0.0f;
+    ray r = hit_ray_to(hit, eye.direction, eye.distance);
+    if (scene_occluded(task->scene, &r))
+        return 0.0f;
+    float left = spectrum_mean(scene_transmittance(task->scene, &r, &task->w));
+    float pixels = (float)film->width * (float)film->height / VISIBLE_POINTS;
+    return left < LEAST_SEEN
+               ? 0.0f
+               : SIGHT_REACH * SIGHT_REACH * pixels * camera_pixel_area(c, eye.distance);
+}
+
 /* ---- Trials ---- */
 
 typedef struct trial {
@@ -124,7 +150,8 @@ static void note_arrival(const photon_event *event, void *data)
     float flux = spectrum_mean(event->flux);
     if (event->kind != PHOTON_STORED || !isfinite(flux))
         return;
-    float sight = sight_at(t->all, event->p, t->hits);
+    float sight = event->hit->shape == NO_INDEX ? sight_in_medium(t->all, event->hit)
+                                                : sight_at(t->all, event->p, t->hits);
     t->value += flux * (sight > 0.0f ? 1.0f : UNSEEN_VALUE);
     if (sight > 0.0f)
         add_noise(&t->noise, event, sight);

@@ -113,7 +113,8 @@ static double gather_rays(const path_effort *paths)
 
 double caustic_least_noise(const transport_plan *plan, const path_effort *paths)
 {
-    if (plan->how.class_photons[PHOTON_CAUSTIC] > 0 || scene_has_unmet_lights(plan->scene))
+    if (plan->how.class_photons[PHOTON_CAUSTIC] > 0 ||
+        scene_has_unmet_lights(plan->scene))
         return 0.0;
     return paths->noise * gather_rays(paths) / fmax(paths->rays, 1.0);
 }

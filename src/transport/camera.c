@@ -8,7 +8,7 @@
  * sampling.
  */
 #include "transport/direct.h"
-#include "transport/photonmap.h"
+#include "transport/photonmap_medium.h"
 
 enum {
     SPLIT_BOUNCES = 3,    /* up to here reflection and refraction are both followed */
@@ -192,6 +192,30 @@ static void shade(camera_tree *tree, const camera_branch *branch, const surface_
     shade_indirect(tree, branch, &at);
 }
 
+/* What light that is scattered in the medium sends along the branch's ray; what comes
+   from behind it is weakened. */
+static void shade_medium(camera_tree *tree, camera_branch *branch, float length)
+{
+    const photonmap_pass *pass = tree->pass;
+    const bool samples_lights = pass->how->direct_illumination;
+    static const radiance_layer layers[N_PHOTON_CLASSES] = {LAYER_DIRECT, LAYER_INDIRECT,
+                                                            LAYER_CAUSTIC};
+    const medium_look look = {&branch->ray, length, branch->beta, branch->lane, true};
+    direct_radiance found[FEW_LIGHTS];
+    int n = samples_lights ? photonmap_direct_in_medium(pass, &look, tree->random,
+                                                        tree->scratch, found)
+                           : 0;
+    for (int i = 0; i < n; i++)
+        add_from(tree, branch, LAYER_DIRECT, found[i].diffuse, found[i].light);
+    for (int c = samples_lights ? PHOTON_INDIRECT : PHOTON_DIRECT; c < N_PHOTON_CLASSES;
+         c++) {
+        spectrum radiance = photonmap_gather_medium(pass, (photon_class)c, &branch->ray,
+                                                    length, tree->scratch);
+        add_parts(tree, branch, layers[c], radiance, tree->scratch->estimate.groups);
+    }
+    branch->beta *= medium_transmittance(branch->ray.medium, length, &pass->w);
+}
+
 /* Turns the branch into what follows by a lobe on the given sides. */
 static bool bounce(camera_tree *tree, camera_branch *branch, const surface_hit *hit,
                    const bsdf *b, unsigned sides, float probability)
@@ -260,6 +284,8 @@ static void follow(camera_tree *tree, camera_branch branch)
         bool met = branch.n_followed == 0
                        ? scene_see(pass->scene, &branch.ray, &hit)
                        : scene_intersect(pass->scene, &branch.ray, &hit);
+        if (branch.ray.medium)
+            shade_medium(tree, &branch, met ? hit.t : INFINITY);
         if (!met) {
             see_sky(tree, &branch);
             return;

@@ -1,9 +1,17 @@
 #include "transport/direct.h"
 
-static bool visible(const direct_query *query, const light_sample *to_light)
+/* What arrives of the light. @return false: something stands before it */
+static bool visible(const direct_query *query, const light_sample *to_light,
+                    spectrum *transmittance, uint64_t *shadow_rays_traced)
 {
     ray shadow = hit_ray_to(query->hit, to_light->wi, to_light->distance);
-    return !scene_occluded(query->scene, &shadow);
+    *shadow_rays_traced += query->shadow_rays;
+    if (query->shadow_rays && scene_occluded(query->scene, &shadow))
+        return false;
+    *transmittance =
+        hit_transmittance_to(query->hit, to_light->wi, to_light->distance, query->w) *
+        scene_transmittance(query->scene, &shadow, query->w);
+    return true;
 }
 
 /* The density with which following would go toward the light. */
@@ -72,15 +80,11 @@ static bool radiance_of(const direct_query *query, const light_sample *to_light,
         glossy *= glossy_share(query, to_light, found->light, each);
     if (spectrum_is_black(diffuse + glossy))
         return false;
-    if (query->shadow_rays) {
-        ++*shadow_rays_traced;
-        if (!visible(query, to_light))
-            return false;
-    }
-    float cosine = fabsf(dot3(to_light->wi, query->bsdf->shading.n));
-    spectrum arriving =
-        to_light->radiance * (cosine / to_light->pdf) *
-        hit_transmittance_to(query->hit, to_light->wi, to_light->distance, query->w);
+    spectrum transmittance;
+    if (!visible(query, to_light, &transmittance, shadow_rays_traced))
+        return false;
+    float cosine = bsdf_cosine(query->bsdf, to_light->wi);
+    spectrum arriving = to_light->radiance * (cosine / to_light->pdf) * transmittance;
     found->diffuse = diffuse * arriving;
     found->glossy = glossy * arriving;
     return true;

@@ -11,8 +11,7 @@
  * the light: what is dark would shine. There the maps are asked, which is quick, for few
  * photons are in reach.
  */
-#include "transport/direct.h"
-#include "transport/photonmap.h"
+#include "transport/photonmap_medium.h"
 
 #include "base/memory.h"
 
@@ -282,6 +281,31 @@ static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b,
     return true;
 }
 
+/* What the medium that the ray travels in sends along it; what comes from behind it is
+   weakened. */
+static spectrum cross_medium(const photonmap_pass *pass, gather_path *path, float length,
+                             sampler *random, transport_scratch *scratch)
+{
+    const bool samples_lights = pass->how->direct_illumination;
+    const medium_look look = {&path->ray, length, path->beta, path->lane, false};
+    spectrum sum = {0};
+    direct_radiance found[FEW_LIGHTS];
+    if (samples_lights &&
+        photonmap_direct_in_medium(pass, &look, random, scratch, found) > 0) {
+        sum = path->beta * found[0].diffuse;
+        if (scratch->gathered)
+            scratch->gathered[scene_light_group(pass->scene, found[0].light)] += sum;
+    }
+    for (int c = samples_lights ? PHOTON_INDIRECT : PHOTON_DIRECT; c < N_PHOTON_CLASSES;
+         c++) {
+        sum += path->beta * photonmap_gather_medium(pass, (photon_class)c, &path->ray,
+                                                    length, scratch);
+        collect(pass, scratch, path->beta, scratch->estimate.groups);
+    }
+    path->beta *= medium_transmittance(path->ray.medium, length, &pass->w);
+    return sum;
+}
+
 static spectrum gather_along(const photonmap_pass *pass, gather_path path,
                              sampler *random, transport_scratch *scratch)
 {
@@ -290,7 +314,10 @@ static spectrum gather_along(const photonmap_pass *pass, gather_path path,
     for (int64_t bounces = 0; limit < 0 || bounces <= limit; bounces++) {
         surface_hit hit;
         scratch->camera_rays++;
-        if (!scene_intersect(pass->scene, &path.ray, &hit))
+        bool met = scene_intersect(pass->scene, &path.ray, &hit);
+        if (path.ray.medium)
+            sum += cross_medium(pass, &path, met ? hit.t : INFINITY, random, scratch);
+        if (!met)
             break;
         path.beta *= hit_transmittance(&hit, &pass->w);
         bsdf b;

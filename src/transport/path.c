@@ -28,8 +28,7 @@ void camera_path_count(camera_path *path, unsigned lobe)
     }
 }
 
-/* Light that comes by followed bounces from a lamp to a diffuse surface of this path. */
-static bool is_caustic(const camera_path *path)
+bool path_is_caustic(const camera_path *path)
 {
     return path->n_diffuse > 0 && path->n_after > 0;
 }
@@ -37,13 +36,13 @@ static bool is_caustic(const camera_path *path)
 /* True if photons too carry it. */
 static bool photons_share(const path_walk *walk, const camera_path *path)
 {
-    return walk->pass->caustics && is_caustic(path);
+    return walk->pass->caustics && path_is_caustic(path);
 }
 
 static bool add(path_walk *walk, const camera_path *path, spectrum radiance)
 {
     spectrum value = path->beta * radiance;
-    if (walk->pass->without_caustics && is_caustic(path))
+    if (walk->pass->without_caustics && path_is_caustic(path))
         return false;
     if (!spectrum_is_finite(value)) {
         walk->scratch->n_not_finite++;
@@ -53,8 +52,7 @@ static bool add(path_walk *walk, const camera_path *path, spectrum radiance)
     return true;
 }
 
-/* Adds what photons brought, with its parts by light groups. */
-static void add_parts(path_walk *walk, const camera_path *path, spectrum radiance)
+void path_add_parts(path_walk *walk, const camera_path *path, spectrum radiance)
 {
     if (!add(walk, path, radiance) || !walk->out->groups)
         return;
@@ -153,7 +151,7 @@ static const bsdf *all_lanes(const path_walk *walk, const camera_path *path,
 
 /* Notes a place whose light lights others. */
 static void note_lit(const path_walk *walk, const camera_path *path,
-                     const surface_hit *hit, spectrum radiance)
+                     const surface_hit *hit, const bsdf *b, spectrum radiance)
 {
     photon_store *lit = walk->pass->lit;
     vec3 toward = -path->ray.direction;
@@ -161,7 +159,7 @@ static void note_lit(const path_walk *walk, const camera_path *path,
                           .wi = toward,
                           .flux = path->beta * radiance,
                           .n = face_forward(hit->n_geom, toward)};
-    if (path->n_diffuse > 0 && lit->n < lit->capacity)
+    if (path->n_diffuse > 0 && !b->is_phase && lit->n < lit->capacity)
         photon_store_put(lit, &place);
 }
 
@@ -193,8 +191,17 @@ void path_sample_lights(path_walk *walk, const camera_path *path, const surface_
         add_from(walk, &by_diffuse, found[i].diffuse, found[i].light);
         add_from(walk, &by_glossy, found[i].glossy, found[i].light);
         if (walk->pass->lit)
-            note_lit(walk, path, hit, found[i].diffuse + found[i].glossy);
+            note_lit(walk, path, hit, b, found[i].diffuse + found[i].glossy);
     }
+}
+
+bool path_skips_gather(path_walk *walk, camera_path *path)
+{
+    float p = path->n_diffuse > 0 ? walk->pass->plan->p_blurred : 1.0f;
+    if (p < 1.0f && !(sampler_1d(walk->random) < p))
+        return true;
+    path->beta /= p;
+    return false;
 }
 
 /* What the caustic map says of this surface; a photon there has scattered once at least.
@@ -210,18 +217,16 @@ void path_gather_caustics(path_walk *walk, const camera_path *path,
         return;
     unsigned delta = path->n_diffuse == 0 && photons->has_unmet_lights ? LOBE_GLOSSY : 0;
     camera_path seen = *path;
-    if (!(b->lobes & (LOBE_DIFFUSE | delta)) || is_caustic(path) ||
+    if (!(b->lobes & (LOBE_DIFFUSE | delta)) || path_is_caustic(path) ||
         path_is_cut(walk, path, 2))
         return;
     const shading_point at = {hit, b, -path->ray.direction, path->n_diffuse > 0};
-    float p = at.blurred ? walk->pass->plan->p_blurred : 1.0f;
-    if (p < 1.0f && !(sampler_1d(walk->random) < p))
+    if (path_skips_gather(walk, &seen))
         return;
     camera_path_count(&seen, LOBE_DIFFUSE);
     seen.n_after = 1;
-    seen.beta /= p;
-    add_parts(walk, &seen,
-              photonmap_gather(photons, PHOTON_CAUSTIC, &at, delta, walk->scratch));
+    path_add_parts(walk, &seen,
+                   photonmap_gather(photons, PHOTON_CAUSTIC, &at, delta, walk->scratch));
 }
 
 /* Keeps what the share of photons depends on, where they may have one. */
@@ -263,6 +268,78 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     return sampler_1d(walk->random) < p;
 }
 
+/* The surface that the path meets next. */
+static bool meet_surface(path_walk *walk, const camera_path *path, surface_hit *hit)
+{
+    walk->scratch->camera_rays++;
+    return path->bounces == 0 ? scene_see(walk->scene, &path->ray, hit)
+                              : scene_intersect(walk->scene, &path->ray, hit);
+}
+
+/* What the eye's ray meets behind a medium is what the picture shows there. */
+static void note_through_medium(path_walk *walk, const camera_path *path,
+                                const surface_hit *hit)
+{
+    bsdf b;
+    const path_pass *pass = walk->pass;
+    if (path->bounces == 0 &&
+        scene_bsdf(walk->scene, hit, &pass->w, path->lane, &pass->options, &b))
+        radiance_sample_note(walk->out, hit, &b, -path->ray.direction, path->from);
+}
+
+/* Takes the path to where it is scattered next. @return 1, or 0: it meets an interface
+   between media, and goes on behind it; -1: it ends */
+static int come_to_scatterer(path_walk *walk, camera_path *path, surface_hit *hit,
+                             bsdf *b)
+{
+    const path_pass *pass = walk->pass;
+    bool met = meet_surface(walk, path, hit);
+    if (path->ray.medium) {
+        surface_hit within;
+        if (met)
+            note_through_medium(walk, path, hit);
+        if (path_meets_medium(walk, path, met ? hit->t : INFINITY, &within, b)) {
+            *hit = within;
+            return 1;
+        }
+    }
+    if (!met) {
+        meet_sky(walk, path);
+        return -1;
+    }
+    bool seen = path->bounces == 0 && !path->ray.medium;
+    path->beta *= hit_transmittance(hit, &pass->w);
+    meet_lamp(walk, path, hit);
+    if (!scene_bsdf(walk->scene, hit, &pass->w, path->lane, &pass->options, b)) {
+        path->ray = hit_ray(hit, path->ray.direction);
+        return 0;
+    }
+    if (seen)
+        radiance_sample_note(walk->out, hit, b, -path->ray.direction, path->from);
+    return 1;
+}
+
+/* One more step of the path. @return false if it was the last. */
+static bool path_goes_on(path_walk *walk, camera_path *path)
+{
+    surface_hit hit;
+    bsdf b;
+    int come = come_to_scatterer(walk, path, &hit, &b);
+    if (come <= 0)
+        return come == 0;
+    if (path_is_cut(walk, path, 1))
+        return false;
+    camera_path seen = *path;
+    if (!b.is_phase)
+        seen.beta *= path_left_by_spots(walk, path, &hit, &b);
+    path_sample_lights(walk, &seen, &hit, &b);
+    if (!b.is_phase) {
+        path_gather_caustics(walk, &seen, &hit, &b);
+        path_look_at_spots(walk, path, &hit, &b);
+    }
+    return bounce(walk, path, &hit, &b);
+}
+
 void path_radiance(const void *data, const ray *r, sampler *random,
                    transport_scratch *scratch, radiance_sample *out)
 {
@@ -274,34 +351,8 @@ void path_radiance(const void *data, const ray *r, sampler *random,
                         .lane = ALL_LANES,
                         .eta2 = 1.0f,
                         .from = r->origin};
-    for (;;) {
-        surface_hit hit;
-        scratch->camera_rays++;
-        bool met = path.bounces == 0 ? scene_see(walk.scene, &path.ray, &hit)
-                                     : scene_intersect(walk.scene, &path.ray, &hit);
-        if (!met) {
-            meet_sky(&walk, &path);
-            return;
-        }
-        path.beta *= hit_transmittance(&hit, &pass->w);
-        meet_lamp(&walk, &path, &hit);
-        bsdf b;
-        if (!scene_bsdf(walk.scene, &hit, &pass->w, path.lane, &pass->options, &b)) {
-            path.ray = hit_ray(&hit, path.ray.direction);
-            continue;
-        }
-        if (path.bounces == 0)
-            radiance_sample_note(out, &hit, &b, -path.ray.direction, path.from);
-        if (path_is_cut(&walk, &path, 1))
-            return;
-        camera_path seen = path;
-        seen.beta *= path_left_by_spots(&walk, &path, &hit, &b);
-        path_sample_lights(&walk, &seen, &hit, &b);
-        path_gather_caustics(&walk, &seen, &hit, &b);
-        path_look_at_spots(&walk, &path, &hit, &b);
-        if (!bounce(&walk, &path, &hit, &b))
-            return;
-    }
+    while (path_goes_on(&walk, &path))
+        continue;
 }
 
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)

@@ -34,7 +34,8 @@ static float importance(const camera_path *path)
 float path_looks(const path_walk *walk, const camera_path *path, const bsdf *b)
 {
     const path_pass *pass = walk->pass;
-    bool looks = pass->p_spots > 0.0f && (b->lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)) &&
+    bool looks = pass->p_spots > 0.0f && !b->is_phase &&
+                 (b->lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)) &&
                  (path->n_diffuse == 0 || !(b->lobes & LOBE_GLOSSY)) &&
                  !path_is_cut(walk, path, 3);
     return looks ? pass->trial ? 1.0f : pass->p_spots * importance(path) : 0.0f;
@@ -59,6 +60,8 @@ static bool meet_surface(path_walk *walk, const camera_path *path,
         if (!scene_intersect(walk->scene, &r, &out->hit))
             return false;
         out->transmittance *= hit_transmittance(&out->hit, &pass->w);
+        if (r.medium)
+            out->transmittance *= medium_transmittance(r.medium, out->hit.t, &pass->w);
         if (scene_bsdf(walk->scene, &out->hit, &pass->w, path->lane, &pass->options,
                        &out->bsdf))
             return true;

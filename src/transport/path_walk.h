@@ -1,6 +1,6 @@
 /*
  * The parts of a camera path's walk that more than one file has a hand in: path.c follows
- * it, path_spots.c looks aside at bright spots.
+ * it, path_medium.c takes it through media, path_spots.c looks aside at bright spots.
  */
 #pragma once
 
@@ -48,6 +48,24 @@ void path_sample_lights(path_walk *walk, const camera_path *path, const surface_
 /** @brief Adds what the caustic map says of it, if there is one. */
 void path_gather_caustics(path_walk *walk, const camera_path *path,
                           const surface_hit *hit, const bsdf *b);
+
+/** @brief True where light comes by followed bounces from a lamp to a diffuse surface of
+ * this path, or a point in a medium. */
+bool path_is_caustic(const camera_path *path);
+
+/** @brief True if a gather that is seen by way of a diffuse bounce is left out by chance;
+ * else the path counts for those that are. */
+bool path_skips_gather(path_walk *walk, camera_path *path);
+
+/** @brief Adds what photons brought, with its parts by light groups. */
+void path_add_parts(path_walk *walk, const camera_path *path, spectrum radiance);
+
+/** @brief In a medium: adds what the photons in it send along the path's ray, and draws
+ * how far light comes freely.
+ *  @param length m: to the surface behind; INFINITY: there is none
+ *  @return true if the path is scattered before that: *hit and *b are of the point */
+bool path_meets_medium(path_walk *walk, camera_path *path, float length, surface_hit *hit,
+                       bsdf *b);
 
 /** @brief The probability that spots are looked at from this surface, to which the path
  * has come. */

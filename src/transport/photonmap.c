@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "transport/aim.h"
+#include "transport/photonmap_medium.h"
 #include "transport/places.h"
 
 double photonmap_radius(double radius, double alpha, uint32_t pass)
@@ -121,7 +122,7 @@ static bool trace_class(const slice_task *s, const cancel_flag *cancel,
     counts->photon_rays += result->n_rays;
     counts->n_not_finite += result->n_not_finite;
     counts->emitted[s->c] += task.n_photons;
-    counts->stored[s->c] += result->photons.n;
+    counts->stored[s->c] += result->photons.n + result->in_media.n;
     return true;
 }
 
@@ -140,11 +141,14 @@ static bool build_class(const slice_task *s, trace_result *result,
     *map = photon_map_build(photon_map_chosen(wanted, radii_differ), &store,
                             isfinite(radius) ? radius : 0.0f,
                             (unsigned)pass->how->threads, error);
+    bool ok =
+        *map && photonmap_keep_in_media(pass, s->slice, s->c, &result->in_media, error);
     counts->time_build += seconds() - start;
-    if (!*map)
-        return false;
-    counts->memory_photons += photon_map_bytes(*map);
-    return true;
+    const volume_map *in_media = pass->in_media[s->slice][s->c];
+    if (ok)
+        counts->memory_photons +=
+            photon_map_bytes(*map) + (in_media ? volume_map_bytes(in_media) : 0);
+    return ok;
 }
 
 /* Every fourth photon becomes a place to keep irradiance at; the others make the map and
@@ -166,7 +170,7 @@ static bool set_points_apart(trace_result *from, trace_result *points, GError **
         p.flux *= share;
         if (!apart)
             photon_store_put(photons, &p);
-        else if (!p.curve)
+        else if (!p.home)
             photon_store_put(&points->photons, &p);
     }
     return true;
@@ -218,8 +222,10 @@ static void end_pass(void *data)
 {
     photonmap_pass *pass = data;
     for (int i = 0; i < pass->n_slices; i++) {
-        for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        for (int c = 0; c < N_PHOTON_CLASSES; c++) {
             photon_map_free(pass->maps[i][c]);
+            volume_map_free(pass->in_media[i][c]);
+        }
         photon_map_free(pass->irradiance[i]);
         big_free(pass->irradiance_groups[i]);
     }
@@ -238,6 +244,7 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
 {
     photonmap_pass *pass = g_aligned_alloc0(1, sizeof *pass, 64);
     pass->plan = plan;
+    pass->index = index;
     pass->scene = plan->scene;
     pass->how = &plan->how;
     pass->w = scene_wavelengths(plan->scene, &plan->how, index);

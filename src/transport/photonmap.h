@@ -7,6 +7,7 @@
  */
 #pragma once
 
+#include "photon/volume_map.h"
 #include "transport/transport.h"
 
 extern const transport_kind transport_photonmap;
@@ -16,11 +17,14 @@ typedef struct photonmap_pass {
     const transport_plan *plan;
     const scene *scene;
     const settings *how;
+    uint32_t index; /**< of the pass */
     wavelengths w;
     bsdf_options options;
     int n_slices; /**< of the shutter's time; 1 where nothing moves */
     photon_map *maps[MOST_TIME_SLICES][N_PHOTON_CLASSES]; /**< NULL: the class is not
                                                              needed */
+    /** Of photons in media; NULL: there are none. */
+    volume_map *in_media[MOST_TIME_SLICES][N_PHOTON_CLASSES];
     /** For final gathering in each slice: "photons" whose wi is a surface normal and
      * whose flux is the irradiance there; NULL if not asked for. */
     photon_map *irradiance[MOST_TIME_SLICES];

@@ -10,6 +10,9 @@
  * (Knaus & Zwicker 2011). Everything scales with the scene: in millimetres and in metres
  * it gets the same radius in pixels.
  *
+ * Photons in a medium are counted in a ball, r = r_k (wanted / k · N_pilot / N)^(1/3); a
+ * ray crosses the discs of more of them, all along its way.
+ *
  * No radius is finer than a pixel, of the place that it is for: a table may stand at a
  * window, and most pixels be of a landscape where they are metres wide.
  */
@@ -29,6 +32,9 @@ enum {
 static const double photons_wanted[N_PHOTON_CLASSES] = {600.0, 12000.0, 300.0};
 /* ... but in each pass at least so many. */
 static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
+
+/* In the ball around a photon in a medium, in each pass. */
+static const double photons_wanted_in_media[N_PHOTON_CLASSES] = {8.0, 40.0, 4.0};
 
 /* Beside a bright spot, radii are as wide as it takes to reach the wanted photons in it:
    this is light that is not there, in proportion to their share of all. So of a caustic's
@@ -71,18 +77,18 @@ static float radius_by(const void *data, vec3 p, float distance, photon_hits *hi
     return (float)fmin(fmax(rule->scale * (double)distance, least), rule->largest);
 }
 
-/* The median over the places where the camera looks or, for caustics, where photons are.
- */
-static double typical_radius(const pilot *p, photon_class c, const photon_map *map,
+/* The median over the places where the camera looks or, for caustics and in media, where
+   photons are. */
+static double typical_radius(const pilot *p, bool at_photons, const photon_map *map,
                              const radius_rule *rule)
 {
     float radii[PILOT_POINTS];
     const photon_store *store = photon_map_store(map);
-    size_t n = 0, n_probes = c == PHOTON_CAUSTIC ? PILOT_POINTS : p->n_points;
+    size_t n = 0, n_probes = at_photons ? PILOT_POINTS : p->n_points;
     photon_hits hits = {0};
     for (size_t i = 0; i < n_probes && store->n >= PLACES_NEAREST; i++) {
-        vec3 at = c == PHOTON_CAUSTIC ? photon_store_get(store, i * store->n / n_probes).p
-                                      : p->points[i].p;
+        vec3 at = at_photons ? photon_store_get(store, i * store->n / n_probes).p
+                             : p->points[i].p;
         float d = places_distance(map, at, &hits);
         if (d > 0.0f)
             radii[n++] = radius_by(rule, at, d, &hits);
@@ -104,10 +110,30 @@ static photon_map *map_of_pixels(const pilot *p, GError **error)
     return photon_map_build(MAP_KDTREE, &store, 0.0f, 1, error);
 }
 
-static photon_map *pilot_map(const pilot *p, photon_class c, const cancel_flag *cancel,
-                             uint64_t *n_emitted, GError **error)
+/* The photons of the pilot, on surfaces and in media. */
+typedef struct pilot_maps {
+    photon_map *on_surfaces, *in_media;
+    uint64_t n_emitted;
+} pilot_maps;
+
+static void pilot_maps_clear(pilot_maps *maps)
+{
+    photon_map_free(maps->on_surfaces);
+    photon_map_free(maps->in_media);
+}
+
+static photon_map *map_of(photon_store *from, unsigned threads, GError **error)
+{
+    photon_store store = *from;
+    *from = (photon_store){0};
+    return photon_map_build(MAP_KDTREE, &store, 0.0f, threads, error);
+}
+
+static bool send_pilot(const pilot *p, photon_class c, const cancel_flag *cancel,
+                       pilot_maps *out, GError **error)
 {
     const transport_plan *plan = p->plan;
+    unsigned threads = (unsigned)plan->how.threads;
     trace_task task = {
         .scene = plan->scene,
         .how = &plan->how,
@@ -120,13 +146,14 @@ static photon_map *pilot_map(const pilot *p, photon_class c, const cancel_flag *
         .cancel = cancel,
     };
     trace_result traced;
-    *n_emitted = task.n_photons;
+    *out = (pilot_maps){.n_emitted = task.n_photons};
     if (!photon_trace(&task, false, &traced, error))
-        return NULL;
-    photon_store store = traced.photons;
-    traced.photons = (photon_store){0};
+        return false;
+    out->on_surfaces = map_of(&traced.photons, threads, error);
+    if (out->on_surfaces)
+        out->in_media = map_of(&traced.in_media, threads, error);
     trace_result_clear(&traced);
-    return photon_map_build(MAP_KDTREE, &store, 0.0f, (unsigned)plan->how.threads, error);
+    return out->in_media != NULL;
 }
 
 /* Of n in a map of a slice of time. */
@@ -137,26 +164,57 @@ static double wanted_in_reach(const transport_plan *plan, photon_class c, double
     return c == PHOTON_CAUSTIC ? fmin(wanted, fmax(MOST_SHARE * n, 1.0)) : wanted;
 }
 
-static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
-                          GError **error)
+/* How much denser than those of the pilot photons lie in the maps of a pass. */
+static double density_over_pilot(const pilot *p, photon_class c, const pilot_maps *maps)
+{
+    int n_slices = scene_time_slices(p->plan->scene, &p->plan->how);
+    return (double)p->plan->n_photons[c] / n_slices / (double)maps->n_emitted;
+}
+
+static bool choose_on_surfaces(pilot *p, photon_class c, const pilot_maps *maps,
+                               GError **error)
 {
     transport_plan *plan = p->plan;
-    uint64_t n_emitted;
-    g_autoptr(photon_map) map = pilot_map(p, c, cancel, &n_emitted, error);
-    if (!map)
-        return false;
-    int n_slices = scene_time_slices(plan->scene, &plan->how);
-    double density = (double)plan->n_photons[c] / n_slices / (double)n_emitted;
+    const photon_map *map = maps->on_surfaces;
+    double density = density_over_pilot(p, c, maps);
     double in_map = (double)photon_map_store(map)->n * density;
     const radius_rule rule = {
         .scale = sqrt(wanted_in_reach(plan, c, in_map) / PLACES_NEAREST / density),
         .largest = 0.1 * (double)plan->scene->radius,
         .pixels = p->pixels,
     };
-    plan->radius[c] = typical_radius(p, c, map, &rule);
+    plan->radius[c] = typical_radius(p, c == PHOTON_CAUSTIC, map, &rule);
     plan->radius_map[c] =
         places_keep(map, (unsigned)plan->how.threads, radius_by, &rule, error);
     return plan->radius_map[c] != NULL;
+}
+
+static bool choose_in_media(pilot *p, photon_class c, const pilot_maps *maps,
+                            GError **error)
+{
+    transport_plan *plan = p->plan;
+    const photon_map *map = maps->in_media;
+    double density = density_over_pilot(p, c, maps);
+    const radius_rule rule = {
+        .scale = cbrt(photons_wanted_in_media[c] / PLACES_NEAREST / density),
+        .largest = 0.1 * (double)plan->scene->radius,
+        .pixels = p->pixels,
+    };
+    plan->radius_in_media[c] = typical_radius(p, true, map, &rule);
+    plan->radius_map_in_media[c] =
+        places_keep(map, (unsigned)plan->how.threads, radius_by, &rule, error);
+    return plan->radius_map_in_media[c] != NULL;
+}
+
+static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
+                          GError **error)
+{
+    pilot_maps maps = {0};
+    bool ok = send_pilot(p, c, cancel, &maps, error) &&
+              choose_on_surfaces(p, c, &maps, error) &&
+              (!scene_has_media(p->plan->scene) || choose_in_media(p, c, &maps, error));
+    pilot_maps_clear(&maps);
+    return ok;
 }
 
 bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,
@@ -170,7 +228,7 @@ bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,
         ok = p.pixels != NULL;
     }
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
-        plan->radius[c] = plan->how.radius;
+        plan->radius[c] = plan->radius_in_media[c] = plan->how.radius;
         if (!(plan->how.radius > 0.0) && plan->n_photons[c] > 0)
             ok = choose_radius(&p, (photon_class)c, cancel, error);
     }

@@ -55,6 +55,8 @@ void transport_plan_clear(transport_plan *plan)
     g_clear_pointer(&plan->density, photon_map_free);
     photon_store_clear(&plan->lit);
     plan->share = (caustic_share){0};
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         g_clear_pointer(&plan->radius_map[c], photon_map_free);
+        g_clear_pointer(&plan->radius_map_in_media[c], photon_map_free);
+    }
 }

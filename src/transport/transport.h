@@ -85,6 +85,9 @@ typedef struct transport_plan {
     /** Where the radius is automatic: places (as photons) whose flux[0] is the radius of
      * pass 0 around there; owned. NULL: the same everywhere. */
     photon_map *radius_map[N_PHOTON_CLASSES];
+    /** The same for photons in media. */
+    double radius_in_media[N_PHOTON_CLASSES];
+    photon_map *radius_map_in_media[N_PHOTON_CLASSES];
     /** vcm: places (as photons) whose flux[0] is how many vertices a light subpath has
      * per square metre around there, on average; owned. NULL: not known. */
     photon_map *density;

@@ -54,6 +54,14 @@ static uint64_t count_light_paths(const transport_plan *plan)
 
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
+    if (scene_has_media(plan->scene)) {
+        const medium *m = plan->scene->media->pdata[0];
+        error_set(error, ERROR_INPUT,
+                  "vcm does not see participating media, as medium \"%s\": expected "
+                  "integrator auto, path, photonmap or sppm",
+                  m->name);
+        return false;
+    }
     plan->n_photons[PHOTON_INDIRECT] = count_light_paths(plan);
     if (plan->how.vcm_strategies == VCM_LIGHT && !camera_connects(&plan->scene->camera)) {
         error_set(error, ERROR_INPUT,
@@ -80,7 +88,7 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
 {
     const settings *how = &pass->plan->how;
     const light_paths *paths = &pass->light;
-    photon_store store = {.oriented = how->edges, .curved = pass->scene->turns};
+    photon_store store = {.oriented = how->edges, .homed = pass->scene->turns};
     double start = seconds();
     if (!photon_store_reserve(&store, paths->n_vertices, error))
         return false;
@@ -93,7 +101,7 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
                     .flux = vcm_payload(i),
                     .flags = behind ? PHOTON_BEHIND : 0,
                     .n = n,
-                    .curve = scene_curve_of(pass->scene, &v->hit)};
+                    .home = scene_curve_of(pass->scene, &v->hit)};
         if (scene_hit_moves(pass->scene, &v->hit)) {
             transform by = vcm_motion_to_map(pass, &v->hit);
             p.p = transform_point(&by, p.p);

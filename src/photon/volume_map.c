@@ -1,0 +1,94 @@
+#include "photon/volume_map.h"
+
+#include "base/memory.h"
+
+struct volume_map {
+    photon_store store;
+    disc *discs;
+    disc_set *set;
+};
+
+volume_map *volume_map_build(photon_store *store, const float *radii, unsigned threads,
+                             GError **error)
+{
+    volume_map *map = g_new0(volume_map, 1);
+    map->store = *store;
+    *store = (photon_store){0};
+    map->discs = big_alloc(map->store.n, sizeof *map->discs, "photons in media", error);
+    for (size_t i = 0; i < map->store.n && map->discs; i++) {
+        map->discs[i] =
+            (disc){map->store.x[i], map->store.y[i], map->store.z[i], radii[i]};
+    }
+    if (map->discs)
+        map->set = disc_set_build(map->discs, map->store.n, threads, error);
+    if (map->set)
+        return map;
+    volume_map_free(map);
+    return NULL;
+}
+
+void volume_map_free(volume_map *map)
+{
+    if (!map)
+        return;
+    disc_set_free(map->set);
+    big_free(map->discs);
+    photon_store_clear(&map->store);
+    g_free(map);
+}
+
+const photon_store *volume_map_store(const volume_map *map)
+{
+    return &map->store;
+}
+
+size_t volume_map_bytes(const volume_map *map)
+{
+    return photon_store_bytes(&map->store) + map->store.n * sizeof *map->discs;
+}
+
+/* e^(-σt t), in one go where all wavelengths have the same σt. */
+static spectrum left_after(spectrum sigma_t, bool is_grey, float t)
+{
+    return is_grey ? spectrum_fill(expf(-sigma_t[0] * t)) : spectrum_exp(sigma_t * -t);
+}
+
+static bool all_alike(spectrum s)
+{
+    for (int i = 1; i < N_LANES; i++)
+        if (s[i] < s[0] || s[i] > s[0])
+            return false;
+    return true;
+}
+
+spectrum volume_map_radiance(const volume_map *map, const volume_query *query,
+                             bool *failed)
+{
+    const medium *m = query->ray->medium;
+    const photon_store *store = &map->store;
+    spectrum sum = {0}, sigma_t = medium_extinction(m, query->w);
+    bool is_grey = all_alike(sigma_t);
+    ray r = *query->ray;
+    r.t_max = query->length;
+    for (size_t i = 0; i < query->n_groups; i++)
+        query->groups[i] = (spectrum){0};
+    if (!disc_set_cross(map->set, &r, query->crossings))
+        *failed = true;
+    for (size_t i = 0; i < query->crossings->n; i++) {
+        const disc_crossing *at = &query->crossings->at[i];
+        if (store->home[at->index] != medium_home(m))
+            continue;
+        float r2 = map->discs[at->index].radius * map->discs[at->index].radius;
+        float phase = phase_henyey_greenstein(
+            m->g, -dot3(r.direction, direction_unpack(store->wi[at->index])));
+        float weight = phase * kernel_eval(&query->kernel, at->distance2, r2) /
+                       kernel_area(&query->kernel, r2);
+        spectrum part = left_after(sigma_t, is_grey, at->t) *
+                        solids_transmittance(&r.solids, at->t, query->w) * weight *
+                        store->flux[at->index];
+        sum += part;
+        if (query->n_groups > 0)
+            query->groups[store->tag[at->index]] += part;
+    }
+    return sum;
+}
