@@ -1,6 +1,7 @@
 #include "photon/trace.h"
 
 #include "base/memory.h"
+#include "scene/medium_sample.h"
 
 #include <float.h>
 

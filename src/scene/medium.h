@@ -18,6 +18,8 @@
 #include "scene/hit.h"
 #include "scene/params.h"
 
+#include <float.h>
+
 /** @brief Transmittance over t metres: color^(t / distance) exp(-σt t). */
 typedef struct medium {
     char *name;        /**< of a participating one, owned */
@@ -49,8 +51,17 @@ static inline uint32_t medium_home(const medium *m)
     return (uint32_t)m->index + 1;
 }
 
+/** @brief σs by wavelength. */
+spectrum medium_scattering(const medium *m, const wavelengths *w);
 /** @brief σt by wavelength. */
 spectrum medium_extinction(const medium *m, const wavelengths *w);
+
+/** @brief e^(-σt t). Over an endless way what is extinguished at all is gone: t is taken
+ * as FLT_MAX, of which none is 0. */
+static inline spectrum left_after(spectrum sigma_t, float t)
+{
+    return spectrum_exp(sigma_t * -minf(t, FLT_MAX));
+}
 
 /** @brief Henyey and Greenstein's phase function ("Diffuse radiation in the Galaxy",
  * 1941), sr⁻¹. @param cosine between the ways back and on, both away from the point: -1
@@ -69,29 +80,6 @@ static inline bool medium_scatters(const medium *m)
 {
     return m->scattering != NULL;
 }
-
-/** @brief Where light is scattered next. */
-typedef struct medium_sample {
-    bool scatters;   /**< false: not before t_max */
-    float t;         /**< m, < t_max */
-    spectrum weight; /**< to multiply a path's throughput with: σs T(t) over the density
-                        of t, or T(t_max) over the probability of getting there */
-} medium_sample;
-
-/**
- * @brief Draws a free path in a medium that scatters.
- *
- * The density is a mixture of those of the wavelengths by what each carries, so the
- * weighted throughput never exceeds its sum before (Wilkie et al., "Hero Wavelength
- * Spectral Sampling", 2014, for distances).
- * @param carried throughput by wavelength
- * @param u uniform in [0,1)
- */
-medium_sample medium_sample_free(const medium *m, const wavelengths *w, spectrum carried,
-                                 float t_max, float u);
-/** @brief The same, but always before t_max: weight is σs T(t) over that density. */
-medium_sample medium_sample_within(const medium *m, const wavelengths *w,
-                                   spectrum carried, float t_max, float u);
 
 /** @brief Share of light left after t metres in these solids. */
 static inline spectrum solids_transmittance(const solids *in, float t,

@@ -118,6 +118,25 @@ int direct_light(const direct_query *query, sampler *random,
     return n_found;
 }
 
+bool direct_pivot(const scene *s, const wavelengths *w, const ray *r, float length,
+                  sampler *random, medium_pivot *out)
+{
+    light_sample to_light;
+    int lamp;
+    const light_numbers u = sampler_light(random);
+    float u_way = sampler_1d(random);
+    medium_sample any =
+        medium_sample_within(r->medium, w, spectrum_fill(1.0f), length, u_way);
+    vec3 from = r->origin + any.t * r->direction;
+    if (!any.scatters ||
+        !scene_sample_light(s, w, from, u.light, u.primitive, u.place, &lamp,
+                            &to_light) ||
+        !isfinite(to_light.distance))
+        return false;
+    *out = medium_pivot_at(r, from + to_light.distance * to_light.wi);
+    return true;
+}
+
 float direct_light_pdf(const scene *s, bool every_light, int lamp, vec3 from, vec3 wi,
                        const surface_hit *hit)
 {

@@ -7,6 +7,7 @@
 
 #include "math/sampler.h"
 #include "photon/share.h"
+#include "scene/medium_sample.h"
 #include "scene/scene.h"
 
 /** @brief What to evaluate at a surface, and how its lobes find light otherwise. */
@@ -42,6 +43,12 @@ typedef struct direct_radiance {
  *  @return how many lights gave something; found holds that many */
 int direct_light(const direct_query *query, sampler *random,
                  direct_radiance found[FEW_LIGHTS], uint64_t *shadow_rays_traced);
+
+/** @brief A place on a lamp that may light a ray through a medium: one to draw points
+ * near (medium_sample.h). @param length m: how far the medium reaches
+ *  @return false: there is none, or it is beyond the scene */
+bool direct_pivot(const scene *s, const wavelengths *w, const ray *r, float length,
+                  sampler *random, medium_pivot *out);
 
 /** @brief pdf_solid_angle with which direct_light at point `from` samples a light in
  *  direction wi.

@@ -1,8 +1,9 @@
 /*
- * A camera path in a participating medium: it is scattered as light is, at free paths
- * drawn by its extinction (Pharr et al. 2023, chapter 14), and on its way it sees what
- * photons left in the medium.
+ * A camera path in a participating medium: it is scattered at points drawn by the
+ * medium's extinction (Pharr et al. 2023, chapter 14) and by how near lamps are, and on
+ * its way it sees what photons left in the medium.
  */
+#include "transport/direct.h"
 #include "transport/path_walk.h"
 #include "transport/photonmap_medium.h"
 
@@ -33,8 +34,12 @@ bool path_meets_medium(path_walk *walk, camera_path *path, float length, surface
         return false;
     }
     gather_in_medium(walk, path, length);
+    medium_pivot pivot;
+    bool near = direct_pivot(walk->scene, w, &path->ray, length, walk->random, &pivot);
     float u = sampler_1d(walk->random);
-    medium_sample next = medium_sample_free(m, w, path->beta, length, u);
+    medium_sample next =
+        near ? medium_sample_free_near(m, w, path->beta, length, &pivot, u)
+             : medium_sample_free(m, w, path->beta, length, u);
     path->beta *= next.weight;
     if (!next.scatters)
         return false;

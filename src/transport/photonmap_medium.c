@@ -66,13 +66,18 @@ int photonmap_direct_in_medium(const photonmap_pass *pass, const medium_look *lo
     const ray *r = look->ray;
     if (!medium_scatters(r->medium))
         return 0;
+    const medium *m = r->medium;
+    medium_pivot pivot;
+    bool near = direct_pivot(pass->scene, &pass->w, r, look->length, random, &pivot);
     float u = sampler_1d(random);
     medium_sample at =
-        medium_sample_within(r->medium, &pass->w, look->carried, look->length, u);
+        near ? medium_sample_within_near(m, &pass->w, look->carried, look->length, &pivot,
+                                         u)
+             : medium_sample_within(m, &pass->w, look->carried, look->length, u);
     if (!at.scatters)
         return 0;
     bsdf b;
-    bsdf_make_phase(&b, r->medium->g, look->lane);
+    bsdf_make_phase(&b, m->g, look->lane);
     const surface_hit hit = hit_in_medium(r, at.t);
     const direct_query query = {
         .scene = pass->scene,
