@@ -407,4 +407,11 @@ static const feature_case feature_cases[] = {
     {"Texture", "scale", "'float scale' 0.3"},
     {"Texture", "wrinkled", "'integer octaves' 2"},
     {"Texture", "wrinkled", "'float roughness' 0.9"},
+    {"MakeNamedMedium", "homogeneous", "'rgb sigma_a' [3 1 0]"},
+    {"MakeNamedMedium", "homogeneous", "'rgb sigma_s' [3 1 0]"},
+    {"MakeNamedMedium", "homogeneous", "'float scale' 3"},
+    {"MakeNamedMedium", "homogeneous", "'float g' 0.8"},
+    {"MakeNamedMedium", "homogeneous", "'string preset' 'Ketchup'"},
+    {"MakeNamedMedium", "homogeneous", "'rgb Le' [0 0 0]"},
+    {"MakeNamedMedium", "homogeneous", "'float Lescale' 3"},
 };

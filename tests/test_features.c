@@ -122,6 +122,7 @@ static char *text_of(const char *directive, const char *kind, const char *given)
 {
     GString *out = g_string_new(NULL);
     bool option = strcmp(directive, "Option") == 0;
+    bool filled = strcmp(directive, "MakeNamedMedium") == 0;
     g_autofree char *text = option
                                 ? g_strdup_printf("Option %s", given)
                                 : g_strdup_printf("%s '%s' %s", directive, kind, given);
@@ -161,6 +162,11 @@ static char *text_of(const char *directive, const char *kind, const char *given)
                      "Material 'diffuse' 'texture reflectance' 'soft'"
                    : "Material 'conductor' 'texture reflectance' 'check' 'float "
                      "uroughness' 0.05 'float vroughness' 0.4");
+    if (filled)
+        g_string_append_printf(out,
+                               "MakeNamedMedium 'm' 'string type' '%s' %s\n"
+                               "MediumInterface 'm' '' Material 'interface'\n",
+                               kind, given);
     put(out, "Shape", directive, text, "Shape 'sphere'");
     g_strdelimit(out->str, "'", '"');
     return g_string_free(out, FALSE);

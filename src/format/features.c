@@ -30,6 +30,12 @@ static directive_kind material_at(size_t i)
                 : (directive_kind){0};
 }
 
+static directive_kind medium_at(size_t i)
+{
+    return (directive_kind){medium_kind_name(i), medium_kind_parameters(i), NULL, NULL,
+                            NULL};
+}
+
 static directive_kind light_at(size_t i)
 {
     const light_kind *kind = light_kind_at(i);
@@ -98,6 +104,7 @@ static const feature_list lists[] = {
      "hair "
      "interface measured mix subsurface thindielectric",
      material_at, MATERIAL_PARAMETERS},
+    {"MakeNamedMedium", "homogeneous cloud nanovdb rgbgrid uniformgrid", medium_at, NULL},
     {"Texture",
      "bilerp checkerboard constant directionmix dots fbm imagemap marble mix ptex scale "
      "windy wrinkled",
@@ -142,6 +149,8 @@ static const feature_note notes[] = {
      NULL, NULL},
     {"Material", "coatedconductor", "rendered",
      "pbrt's random walk; the lanes share the mean `interface.eta`", NULL, NULL},
+    {"MakeNamedMedium", "homogeneous", "rendered",
+     "`Le` must be 0; `vcm` and the kinds of it refuse media", "Le Lescale", NULL},
     {"Texture", "imagemap", "approximated", "`EWA` filters as `trilinear` does",
      "maxanisotropy", NULL},
     {"LightSource", "infinite", "approximated",
