@@ -3,10 +3,11 @@
 #include "base/memory.h"
 #include "scene/medium_sample.h"
 
-#include <float.h>
-
 /* Photons emitted per parallel piece of work. */
 enum { CHUNK = 4096 };
+
+/* Ways through media that each leave a photon, before fewer do. */
+enum { WAYS_KEPT = 8 };
 
 /* What one chunk stored, until the chunks are joined in order. */
 typedef struct chunk_store {
@@ -31,8 +32,9 @@ typedef struct photon_path {
     bool specular_only; /* no lobe but SPECULAR so far */
     unsigned n_followed; /* specular or glossy bounces */
     unsigned n_diffuse;
-    unsigned n_after; /* followed bounces since the last diffuse one */
-    chunk_store *out; /* NULL when telling */
+    unsigned n_after;    /* followed bounces since the last diffuse one */
+    unsigned n_in_media; /* scatterings in media */
+    chunk_store *out;    /* NULL when telling */
     void (*tell)(const photon_event *event, void *data);
     void *tell_data;
 } photon_path;
@@ -114,7 +116,12 @@ static bool emit(photon_path *path)
         return false;
     path->ray = at.ray;
     path->ray.solids = scene_light(task->scene, at.light)->solids;
-    path->ray.medium = scene_light_medium(task->scene, at.light, at.n, at.ray.direction);
+    const light_kind *kind = scene_light(task->scene, at.light)->kind;
+    if (kind->is_environment || kind->is_parallel)
+        scene_come_from_outside(task->scene, &path->ray);
+    else
+        path->ray.medium =
+            scene_light_medium(task->scene, at.light, at.n, at.ray.direction);
     path->flux = at.flux / (float)task->n_photons;
     path->light = at.light;
     path->lane = ALL_LANES;
@@ -303,6 +310,12 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
 
 /* ---- In media ---- */
 
+/* Of a photon that wanders on and on, fewer and fewer ways leave one. */
+static float chance_to_land(const photon_path *path)
+{
+    return minf(1.0f, (float)WAYS_KEPT / (float)(1 + path->n_in_media));
+}
+
 /* Each way through a medium leaves one photon on it, if its class is the one traced: for
    all that is scattered there, whether this photon itself is or goes through. */
 static void land_on_way(photon_path *path, float length)
@@ -311,14 +324,16 @@ static void land_on_way(photon_path *path, float length)
     const medium *m = path->ray.medium;
     if (class_here(path) != task->photon_class || !medium_scatters(m))
         return;
-    float u = sampler_1d(&path->random);
-    medium_sample at = medium_sample_within(m, &task->w, path->flux, length, u);
+    float chance = chance_to_land(path), u = sampler_1d(&path->random);
+    if (!(u < chance))
+        return;
+    medium_sample at = medium_sample_within(m, &task->w, path->flux, length, u / chance);
     if (!at.scatters)
         return;
     const surface_hit hit = hit_in_medium(&path->ray, at.t);
     const photon p = {.p = hit.p,
                       .wi = -path->ray.direction,
-                      .flux = path->flux * at.weight *
+                      .flux = path->flux * at.weight / chance *
                               solids_transmittance(&path->ray.solids, at.t, &task->w),
                       .tag = (uint32_t)scene_light_group(task->scene, path->light),
                       .home = medium_home(m)};
@@ -345,13 +360,14 @@ static medium_way cross_medium(photon_path *path, float length, surface_hit *hit
     spectrum flux = path->flux * next.weight;
     float survival = survival_with(path, flux);
     float u = survival < 1.0f ? sampler_1d(&path->random) : 0.0f;
-    *hit = hit_in_medium(&path->ray, minf(next.t, FLT_MAX));
+    *hit = hit_in_medium(&path->ray, next.t);
     if (!survives(path, flux, survival, u)) {
         tell(path, PHOTON_ABSORBED, hit, 0);
         return WAY_ENDED;
     }
     if (!next.scatters)
         return WAY_THROUGH;
+    path->n_in_media++;
     path->flux *= solids_transmittance(&path->ray.solids, next.t, &task->w);
     bsdf_make_phase(b, m->g, path->lane);
     return WAY_SCATTERED;
@@ -371,7 +387,9 @@ static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
         bool met = scene_intersect(task->scene, &path->ray, hit);
         if (path->ray.medium) {
             surface_hit within;
-            medium_way way = cross_medium(path, met ? hit->t : INFINITY, &within, b);
+            float length =
+                scene_medium_end(task->scene, &path->ray, met ? hit->t : INFINITY);
+            medium_way way = cross_medium(path, length, &within, b);
             if (way == WAY_SCATTERED)
                 *hit = within;
             if (way != WAY_THROUGH)

@@ -105,9 +105,10 @@ typedef struct scene {
     int n_light_groups;        /**< 0: no light names one */
     int *environments;         /**< indices of lights that are environments */
     int n_environments;
-    interior *interiors; /**< per material; NULL: nothing in the scene absorbs */
-    bool moves;          /**< some instance does while the shutter is open */
-    bool turns;          /**< some shape may (surface_hit.turns) */
+    interior *interiors;        /**< per material; NULL: nothing in the scene absorbs */
+    const medium *outer_medium; /**< around the scene: of no bounds; NULL: none */
+    bool moves;                 /**< some instance does while the shutter is open */
+    bool turns;                 /**< some shape may (surface_hit.turns) */
     caustic_caster *casters;
     int n_casters;
     distribution caustic_area;  /**< over casters, by area */
@@ -239,6 +240,15 @@ static inline bool scene_has_media(const scene *s)
 {
     return s->media->len > 0;
 }
+
+/** @brief How far the medium that a ray starts in reaches on it. A medium that no surface
+ * bounds ends where the ray leaves the sphere around the scene.
+ *  @param length m: to the surface that the ray meets; INFINITY: it meets none */
+float scene_medium_end(const scene *s, const ray *r, float length);
+
+/** @brief Puts a ray that comes from beyond the scene into the medium around it, if there
+ * is one. */
+void scene_come_from_outside(const scene *s, ray *r);
 
 /** @brief Share of light that participating media leave on a ray that nothing stands on
  * (scene_occluded): it goes through interfaces between them. */

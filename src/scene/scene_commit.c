@@ -174,6 +174,7 @@ bool scene_commit(scene *s, unsigned threads, GError **error)
         find_pixel_width(s);
         scene_find_solids(s);
         scene_find_eye_medium(s);
+        scene_find_outer_medium(s);
         g_hash_table_remove_all(s->files);
         g_hash_table_remove_all(s->pictures);
     } else {

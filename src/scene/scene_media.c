@@ -61,19 +61,62 @@ static float cross(const scene *s, ray *r)
     return hit.t;
 }
 
+/* Where a line leaves the sphere around the scene; < 0: it does not meet it, or before
+   the ray starts. *enters gets where it comes in. */
+static float sphere_end(const scene *s, const ray *r, float *enters)
+{
+    vec3 to = s->center - r->origin;
+    float middle = dot3(to, r->direction);
+    float d2 = length3_2(to - middle * r->direction);
+    float half2 = s->radius * s->radius - d2;
+    float half = sqrtf(maxf(half2, 0.0f));
+    *enters = middle - half;
+    return half2 > 0.0f ? middle + half : -1.0f;
+}
+
+float scene_medium_end(const scene *s, const ray *r, float length)
+{
+    float enters;
+    return isfinite(length) ? length : maxf(sphere_end(s, r, &enters), 0.0f);
+}
+
+void scene_come_from_outside(const scene *s, ray *r)
+{
+    float enters;
+    r->medium = s->outer_medium;
+    if (r->medium && sphere_end(s, r, &enters) > 0.0f && enters > 0.0f)
+        r->origin += enters * r->direction;
+}
+
 spectrum scene_transmittance(const scene *s, const ray *r, const wavelengths *w)
 {
     spectrum out = spectrum_fill(1.0f);
     ray left = *r;
     for (int i = 0; i < MOST_CROSSINGS && scene_has_media(s); i++) {
         const medium *through = left.medium;
-        float whole = left.t_max, t = cross(s, &left);
+        const ray way = left;
+        float t = cross(s, &left);
         if (through)
-            out *= medium_transmittance(through, minf(t, whole), w);
+            out *= medium_transmittance(through,
+                                        scene_medium_end(s, &way, minf(t, way.t_max)), w);
         if (isinf(t) || spectrum_is_black(out))
             break;
     }
     return out;
+}
+
+void scene_find_outer_medium(scene *s)
+{
+    camera *c = &s->camera;
+    vec3 away = c->medium_at - s->center;
+    float distance = length3(away);
+    ray way = {.origin = c->medium_at,
+               .direction = distance > 0.0f ? away / distance : (vec3){0.0f, 0.0f, 1.0f},
+               .t_max = INFINITY,
+               .medium = c->medium_there};
+    for (int i = 0; i < MOST_CROSSINGS && isfinite(cross(s, &way)); i++)
+        continue;
+    s->outer_medium = way.medium;
 }
 
 void scene_find_eye_medium(scene *s)

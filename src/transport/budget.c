@@ -144,13 +144,14 @@ void caustic_budget_decide(transport_plan *plan, const aim_result *found,
                            const path_effort *paths)
 {
     uint64_t *n = &plan->n_photons[PHOTON_CAUSTIC];
-    plan->p_blurred = 1.0f;
+    plan->p_blurred = plan->p_blurred_in_media = 1.0f;
     plan->sample_rays = paths->rays + gather_rays(paths);
     if (isinf(found->noise))
         return;
     bool noisier = found->noise > paths->noise;
     double ratio = noisier ? 1.0 : sqrt(found->noise / paths->noise);
     plan->p_blurred = (float)fmax(fmax(ratio, found->unseen), LEAST_WORTH);
+    plan->p_blurred_in_media = plan->p_blurred / (float)fmax(paths->surfaces - 1.0, 1.0);
     if (plan->how.class_photons[PHOTON_CAUSTIC] > 0)
         return;
     double share = best_share(plan, found, paths);

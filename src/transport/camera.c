@@ -285,7 +285,9 @@ static void follow(camera_tree *tree, camera_branch branch)
                        ? scene_see(pass->scene, &branch.ray, &hit)
                        : scene_intersect(pass->scene, &branch.ray, &hit);
         if (branch.ray.medium)
-            shade_medium(tree, &branch, met ? hit.t : INFINITY);
+            shade_medium(
+                tree, &branch,
+                scene_medium_end(pass->scene, &branch.ray, met ? hit.t : INFINITY));
         if (!met) {
             see_sky(tree, &branch);
             return;

@@ -316,7 +316,10 @@ static spectrum gather_along(const photonmap_pass *pass, gather_path path,
         scratch->camera_rays++;
         bool met = scene_intersect(pass->scene, &path.ray, &hit);
         if (path.ray.medium)
-            sum += cross_medium(pass, &path, met ? hit.t : INFINITY, random, scratch);
+            sum += cross_medium(
+                pass, &path,
+                scene_medium_end(pass->scene, &path.ray, met ? hit.t : INFINITY), random,
+                scratch);
         if (!met)
             break;
         path.beta *= hit_transmittance(&hit, &pass->w);

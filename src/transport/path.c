@@ -195,9 +195,9 @@ void path_sample_lights(path_walk *walk, const camera_path *path, const surface_
     }
 }
 
-bool path_skips_gather(path_walk *walk, camera_path *path)
+bool path_skips_gather(path_walk *walk, camera_path *path, float p_blurred)
 {
-    float p = path->n_diffuse > 0 ? walk->pass->plan->p_blurred : 1.0f;
+    float p = path->n_diffuse > 0 ? p_blurred : 1.0f;
     if (p < 1.0f && !(sampler_1d(walk->random) < p))
         return true;
     path->beta /= p;
@@ -221,7 +221,7 @@ void path_gather_caustics(path_walk *walk, const camera_path *path,
         path_is_cut(walk, path, 2))
         return;
     const shading_point at = {hit, b, -path->ray.direction, path->n_diffuse > 0};
-    if (path_skips_gather(walk, &seen))
+    if (path_skips_gather(walk, &seen, walk->pass->plan->p_blurred))
         return;
     camera_path_count(&seen, LOBE_DIFFUSE);
     seen.n_after = 1;
@@ -298,7 +298,8 @@ static int come_to_scatterer(path_walk *walk, camera_path *path, surface_hit *hi
         surface_hit within;
         if (met)
             note_through_medium(walk, path, hit);
-        if (path_meets_medium(walk, path, met ? hit->t : INFINITY, &within, b)) {
+        float length = scene_medium_end(walk->scene, &path->ray, met ? hit->t : INFINITY);
+        if (path_meets_medium(walk, path, length, &within, b)) {
             *hit = within;
             return 1;
         }

@@ -15,7 +15,7 @@ static void gather_in_medium(path_walk *walk, const camera_path *path, float len
     const photonmap_pass *photons = walk->pass->caustics;
     camera_path seen = *path;
     if (!photons || path_is_caustic(path) || path_is_cut(walk, path, 2) ||
-        path_skips_gather(walk, &seen))
+        path_skips_gather(walk, &seen, walk->pass->plan->p_blurred_in_media))
         return;
     camera_path_count(&seen, LOBE_DIFFUSE);
     seen.n_after = 1;

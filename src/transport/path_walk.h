@@ -54,15 +54,15 @@ void path_gather_caustics(path_walk *walk, const camera_path *path,
 bool path_is_caustic(const camera_path *path);
 
 /** @brief True if a gather that is seen by way of a diffuse bounce is left out by chance;
- * else the path counts for those that are. */
-bool path_skips_gather(path_walk *walk, camera_path *path);
+ * else the path counts for those that are. @param p_blurred of making it */
+bool path_skips_gather(path_walk *walk, camera_path *path, float p_blurred);
 
 /** @brief Adds what photons brought, with its parts by light groups. */
 void path_add_parts(path_walk *walk, const camera_path *path, spectrum radiance);
 
 /** @brief In a medium: adds what the photons in it send along the path's ray, and draws
  * how far light comes freely.
- *  @param length m: to the surface behind; INFINITY: there is none
+ *  @param length m: how far the medium reaches on the ray
  *  @return true if the path is scattered before that: *hit and *b are of the point */
 bool path_meets_medium(path_walk *walk, camera_path *path, float length, surface_hit *hit,
                        bsdf *b);

@@ -101,6 +101,8 @@ typedef struct transport_plan {
     double sample_rays;    /**< that a sample costs, photons apart */
     float p_blurred;       /**< probability of a gather that is seen by way of a diffuse
                               bounce, where photons share */
+    float p_blurred_in_media; /**< the same of one along a way through a medium: about
+                                 one such a path */
 } transport_plan;
 
 /** @brief Frees what the plan owns. */
