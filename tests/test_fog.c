@@ -201,10 +201,11 @@ static const view absorbing[] = {
              .lamp = {0, 0.6, 0.8},                                                      \
              .strength = 1}
 
-/* The eye and a lamp in fog without end. */
+/* The eye and a lamp in fog that ends where it hides everything. */
 #define ENDLESS(g)                                                                       \
     FOG("f", ".1", ".2", g)                                                              \
-    EYE("f", "0 0 0  0 1 0") BETWEEN("f", "f") POINT("1 3 0")
+    EYE("f", "0 0 0  0 1 0") BETWEEN("f", "") BALL("99") BETWEEN("f", "f") POINT("1 3 "  \
+                                                                                 "0")
 
 #define ENDLESS_TWIN(mean)                                                               \
     .twin = {.sigma_a = 0.1,                                                             \

@@ -204,27 +204,30 @@ static void inspect_sky(inspection *in, guint i)
          i, l->kind->name);
 }
 
-/* A medium without bounds leaves nothing of light from beyond all. */
+/* Less of a light is as good as none. */
+#define LEAST_LEFT 0.01f
+
+/* A medium without bounds may leave next to nothing of light from beyond all. */
 static void inspect_fog(inspection *in, guint i)
 {
     const scene *s = in->scene;
     const wavelengths w = wavelengths_at(0.5f);
     const light *l = s->lights->pdata[i];
     bool comes_from_beyond = l->kind->is_environment || l->kind->is_parallel;
-    if (!comes_from_beyond || !s->camera.medium)
+    if (!comes_from_beyond || !s->outer_medium)
         return;
     for (int k = 0; k < N_WAYS; k++) {
         ray r = {.origin = transform_point(&s->camera.to_world, (vec3){0}),
                  .direction = way_out(k),
                  .t_max = INFINITY,
                  .medium = s->camera.medium};
-        if (!spectrum_is_black(scene_transmittance(s, &r, &w)))
+        if (spectrum_mean(scene_transmittance(s, &r, &w)) > LEAST_LEFT)
             return;
     }
     warn(in,
-         "light %u (%s) does not reach the camera through medium '%s', which has no "
+         "light %u (%s) hardly reaches the camera through medium '%s', which no surface "
          "bounds",
-         i, l->kind->name, s->camera.medium->name);
+         i, l->kind->name, s->outer_medium->name);
 }
 
 /* ---- All of it ---- */

@@ -107,6 +107,7 @@ typedef struct scene {
     int n_environments;
     interior *interiors;        /**< per material; NULL: nothing in the scene absorbs */
     const medium *outer_medium; /**< around the scene: of no bounds; NULL: none */
+    float media_radius;         /**< m, around center: where such a medium ends */
     bool moves;                 /**< some instance does while the shutter is open */
     bool turns;                 /**< some shape may (surface_hit.turns) */
     caustic_caster *casters;
@@ -242,7 +243,9 @@ static inline bool scene_has_media(const scene *s)
 }
 
 /** @brief How far the medium that a ray starts in reaches on it. A medium that no surface
- * bounds ends where the ray leaves the sphere around the scene.
+ * bounds ends where the ray leaves a sphere twice as large as scene and camera need, so
+ * that light of the sky comes to them (pbrt-v4 too has lamps beyond all shine from
+ * there).
  *  @param length m: to the surface that the ray meets; INFINITY: it meets none */
 float scene_medium_end(const scene *s, const ray *r, float length);
 

@@ -5,6 +5,9 @@
 
 #include "scene/scene_commit.h"
 
+/* Media without bounds end at so many radii of a sphere around scene and camera. */
+#define MEDIA_REACH 2.0f
+
 /* A way crosses no more surfaces than this: a guard against endless loops only. */
 enum { MOST_CROSSINGS = 10000 };
 
@@ -61,14 +64,14 @@ static float cross(const scene *s, ray *r)
     return hit.t;
 }
 
-/* Where a line leaves the sphere around the scene; < 0: it does not meet it, or before
+/* Where a line leaves the sphere at which media end; < 0: it does not meet it, or before
    the ray starts. *enters gets where it comes in. */
 static float sphere_end(const scene *s, const ray *r, float *enters)
 {
     vec3 to = s->center - r->origin;
     float middle = dot3(to, r->direction);
     float d2 = length3_2(to - middle * r->direction);
-    float half2 = s->radius * s->radius - d2;
+    float half2 = s->media_radius * s->media_radius - d2;
     float half = sqrtf(maxf(half2, 0.0f));
     *enters = middle - half;
     return half2 > 0.0f ? middle + half : -1.0f;
@@ -117,6 +120,7 @@ void scene_find_outer_medium(scene *s)
     for (int i = 0; i < MOST_CROSSINGS && isfinite(cross(s, &way)); i++)
         continue;
     s->outer_medium = way.medium;
+    s->media_radius = MEDIA_REACH * maxf(s->radius, distance);
 }
 
 void scene_find_eye_medium(scene *s)

@@ -5,7 +5,7 @@
 
 #include "scene/scene.h"
 
-/** @brief Finds the medium around all, from the camera's. */
+/** @brief Finds the medium around all, from the camera's, and where it ends. */
 void scene_find_outer_medium(scene *s);
 /** @brief Finds the medium that the camera is in, after it was moved: the one it was in,
  * as changed by the interfaces on the straight way. */
