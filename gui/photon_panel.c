@@ -343,9 +343,13 @@ void photon_panel_show_pick(photon_panel *p, const photon_pick *pick)
         add_photon(p, &pick->photon);
     else
         add_triple(p->picked_list, "At (m)", pick->at.position);
-    set_value(value_row_add(p->picked_list, "Surface"), "%s, %s", pick->at.shape_kind,
-              *pick->at.material_name ? pick->at.material_name : "no material");
-    add_estimate(p, &pick->estimate);
+    if (*pick->medium) {
+        set_value(value_row_add(p->picked_list, "Medium"), "%s", pick->medium);
+    } else {
+        set_value(value_row_add(p->picked_list, "Surface"), "%s, %s", pick->at.shape_kind,
+                  *pick->at.material_name ? pick->at.material_name : "no material");
+        add_estimate(p, &pick->estimate);
+    }
     show_path(p, pick);
     page_scroll_to(p->root, p->picked);
 }

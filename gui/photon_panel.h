@@ -16,9 +16,11 @@ typedef struct photon_panel_events {
 /** @brief What a click found. */
 typedef struct photon_pick {
     bool is_photon;
-    NephPhoton photon;   /**< if is_photon */
-    NephSurfacePoint at; /**< the surface, or that under the photon */
-    NephEstimate estimate;
+    NephPhoton photon;     /**< if is_photon */
+    const char *medium;    /**< that the photon was scattered in; "": none */
+    NephSurfacePoint at;   /**< the surface, or that under the photon; in a medium only
+                              the position */
+    NephEstimate estimate; /**< none in a medium */
     size_t n_events;
     const NephPhotonEvent *events; /**< of the photon's path; n_events may be 0 */
 } photon_pick;

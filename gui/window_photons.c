@@ -167,17 +167,25 @@ static void put_circle(GArray *lines, const NephSurfacePoint *at, double radius)
     }
 }
 
-static void put_path(GArray *lines, const NephPhotonEvent *events, size_t n, float beyond)
+/* What a way through a medium leaves on it may lie behind where it turns off. Of all that
+   only the photon `at` is shown. */
+static void put_path(GArray *lines, const NephPhotonEvent *events, size_t n,
+                     const float at[3], float beyond)
 {
     static const uint8_t color[4] = {255, 255, 255, 255};
+    const NephPhotonEvent *from = events;
     for (size_t i = 1; i < n; i++) {
         const NephPhotonEvent *e = &events[i];
+        bool stored = e->kind == NEPH_PHOTON_STORED;
+        if (stored && memcmp(e->position, at, sizeof e->position) != 0)
+            continue;
         float end[3];
         bool left = e->kind == NEPH_PHOTON_LEFT;
         for (int k = 0; k < 3; k++)
             end[k] = e->position[k] + (left ? beyond * e->direction[k] : 0.0f);
-        put_vertex(lines, events[i - 1].position, color);
+        put_vertex(lines, from->position, color);
         put_vertex(lines, end, color);
+        from = stored ? from : e;
     }
 }
 
@@ -195,27 +203,44 @@ static void put_neighbours(window *w, GArray *points, const NephSurfacePoint *at
     }
 }
 
-/* Only photons of maps on show are picked, so a picked one is of the estimate. */
+static const char *medium_picked(const window *w)
+{
+    return w->picked_is_photon
+               ? neph_photons_medium(w->photons->photons, w->picked_photon)
+               : "";
+}
+
+/* The disc that a surface gathers from, and the photons in it. */
+static void show_estimate(window *w, photon_pick *pick, GArray *lines, GArray *points)
+{
+    neph_photons_estimate(w->photons->photons, w->picked.position, w->picked.normal,
+                          w->pick_radius, &pick->estimate);
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
+        if (pick->estimate.n[c] > 0)
+            put_circle(lines, &w->picked, pick->estimate.radius[c]);
+    put_neighbours(w, points, &w->picked);
+}
+
+/* Only photons of maps on show are picked, so one picked on a surface is of the estimate.
+ */
 static void show_pick(window *w)
 {
     NephPhotonEvent events[MOST_EVENTS];
     const NephPhotons *photons = w->photons->photons;
-    photon_pick pick = {.is_photon = w->picked_is_photon, .at = w->picked};
+    photon_pick pick = {
+        .is_photon = w->picked_is_photon, .medium = medium_picked(w), .at = w->picked};
     g_autoptr(GArray) lines = g_array_new(FALSE, FALSE, sizeof(cloud_vertex));
     g_autoptr(GArray) points = g_array_new(FALSE, FALSE, sizeof(cloud_vertex));
-    neph_photons_estimate(photons, w->picked.position, w->picked.normal, w->pick_radius,
-                          &pick.estimate);
-    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
-        if (pick.estimate.n[c] > 0)
-            put_circle(lines, &w->picked, pick.estimate.radius[c]);
-    put_neighbours(w, points, &w->picked);
+    if (!*pick.medium)
+        show_estimate(w, &pick, lines, points);
     if (pick.is_photon) {
         neph_photons_get(photons, w->picked_photon, &pick.photon);
         pick.n_events =
             MIN(neph_photons_path(photons, w->picked_photon, events, MOST_EVENTS),
                 MOST_EVENTS);
         pick.events = events;
-        put_path(lines, events, pick.n_events, LEFT_SHARE * (float)w->view.extent);
+        put_path(lines, events, pick.n_events, pick.photon.position,
+                 LEFT_SHARE * (float)w->view.extent);
     }
     photon_panel_show_pick(w->photon_panel, &pick);
     photon_view_set_marks(w->photon_view, (const cloud_vertex *)(void *)lines->data,
@@ -224,6 +249,14 @@ static void show_pick(window *w)
 }
 
 /* ---- Picking ---- */
+
+/* A photon that hangs in a medium is its place alone. */
+static void place_in_medium(const NephPhoton *p, NephSurfacePoint *out)
+{
+    *out = (NephSurfacePoint){0};
+    for (int i = 0; i < 3; i++)
+        out->position[i] = (double)p->position[i];
+}
 
 /* The surface under a photon: a ray along its way meets it. */
 static bool surface_under(window *w, const NephPhoton *p, NephSurfacePoint *out)
@@ -252,7 +285,9 @@ bool window_pick(window *w, const double place[2], double reach)
     if (w->picked_is_photon) {
         NephPhoton p;
         neph_photons_get(w->photons->photons, w->picked_photon, &p);
-        w->has_pick = surface_under(w, &p, &w->picked);
+        if (*medium_picked(w))
+            place_in_medium(&p, &w->picked);
+        w->has_pick = *medium_picked(w) || surface_under(w, &p, &w->picked);
     } else {
         neph_camera_ray(&w->view.camera, place[0], place[1], origin, direction);
         w->has_pick = neph_scene_pick(w->scene->scene, origin, direction, &w->picked);

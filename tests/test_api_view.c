@@ -516,6 +516,139 @@ static void test_neighbours(void)
     }
 }
 
+/* ---- Photons in media ---- */
+
+/* Fog of 0.2 scatterings a metre in all of the scene. */
+static NephScene *make_foggy_scene(const char *lamp_at, bool glass)
+{
+    g_autofree char *path = write_scene(
+        "foggy.pbrt", "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n"
+                      "    \"spectrum sigma_a\" [300 0 900 0]\n"
+                      "    \"spectrum sigma_s\" [300 0.2 900 0.2]\n"
+                      "MediumInterface \"fog\" \"fog\"\n"
+                      "Camera \"perspective\"\n");
+    g_autofree char *text = NULL;
+    g_assert_true(g_file_get_contents(path, &text, NULL, NULL));
+    memcpy(strstr(text, "0 1.8 0"), lamp_at, 7);
+    if (!glass)
+        *strstr(text, "NamedMaterial \"glass\"\n") = '\0';
+    g_assert_true(g_file_set_contents(path, text, -1, NULL));
+    return load(path);
+}
+
+static bool in_fog(const NephPhotons *photons, size_t i)
+{
+    const char *medium = neph_photons_medium(photons, i);
+    g_assert_true(!*medium || strcmp(medium, "fog") == 0);
+    return *medium != '\0';
+}
+
+/* The event of its path that photon i is. */
+static const NephPhotonEvent *event_of(const NephPhotons *photons, size_t i,
+                                       NephPhotonEvent events[256])
+{
+    NephPhoton p;
+    neph_photons_get(photons, i, &p);
+    size_t n = MIN(neph_photons_path(photons, i, events, 256), 256);
+    uint32_t bounces = 0;
+    for (size_t k = 0; k < n; k++) {
+        const NephPhotonEvent *e = &events[k];
+        bounces += e->kind == NEPH_PHOTON_SCATTERED;
+        if (e->kind == NEPH_PHOTON_STORED && bounces == p.bounces &&
+            memcmp(e->position, p.position, sizeof p.position) == 0 &&
+            memcmp(e->rgb, p.rgb, sizeof p.rgb) == 0)
+            return e;
+    }
+    return NULL;
+}
+
+/* Photons in fog are among those of their class, each with the path that left it. */
+static void test_fog_paths(void)
+{
+    g_autoptr(NephScene) scene = make_foggy_scene("0 1.8 0", true);
+    g_autoptr(NephPhotons) photons = trace(scene, "3000");
+    NephPhotonEvent events[256];
+    NephStatistics s;
+    size_t n[NEPH_N_PHOTON_CLASSES][2] = {0}, n_all = neph_photons_count(photons);
+    const double middle[3] = {0, 0, 0};
+    int last = 0;
+    g_assert_true(neph_photons_follow(photons, NULL, NULL, NULL));
+    for (size_t i = 0; i < n_all; i++) {
+        NephPhoton p;
+        neph_photons_get(photons, i, &p);
+        bool fog = in_fog(photons, i);
+        g_assert_cmpint((int)p.photon_class, >=, last);
+        last = (int)p.photon_class;
+        n[p.photon_class][fog]++;
+        double r = distance_to(photons, i, middle);
+        g_assert_true(fog ? r < 3.0 : fabs(r - 3.0) < 1e-3);
+        const NephPhotonEvent *event = event_of(photons, i, events);
+        g_assert_nonnull(event);
+        g_assert_cmpstr(event->material, ==, fog ? "fog" : "walls");
+        for (const NephPhotonEvent *e = events; e < event; e++)
+            if (e->kind == NEPH_PHOTON_SCATTERED)
+                g_assert_true(!strcmp(e->material, "fog") ==
+                              !strcmp(e->what, "scattered"));
+    }
+    neph_photons_statistics(photons, &s);
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
+        g_assert_cmpuint(n[c][false], >, 0);
+        g_assert_cmpuint(n[c][true], >, 0);
+        g_assert_cmpuint(s.stored[c], ==, n[c][false] + n[c][true]);
+    }
+}
+
+/* Each way from the lamp leaves 1 - e^-0.6 of its light in the fog, wherever on it: the
+   density of places is in proportion to what they scatter. */
+static void test_fog_flux(void)
+{
+    g_autoptr(NephScene) scene = make_foggy_scene("0 0.0 0", false);
+    g_autoptr(NephPhotons) photons = trace(scene, "2000");
+    NephPhotonEvent events[256];
+    NephStatistics s;
+    size_t n = 0;
+    neph_photons_statistics(photons, &s);
+    g_assert_true(neph_photons_follow(photons, NULL, NULL, NULL));
+    for (size_t i = 0; i < neph_photons_count(photons); i++) {
+        NephPhoton p;
+        neph_photons_get(photons, i, &p);
+        if (p.photon_class != NEPH_PHOTON_DIRECT || !in_fog(photons, i))
+            continue;
+        n++;
+        g_assert_cmpuint(neph_photons_path(photons, i, events, 256), >, 1);
+        g_assert_cmpfloat_with_epsilon(p.rgb[1] / events[0].rgb[1], 1.0f - expf(-0.6f),
+                                       1e-3f);
+    }
+    g_assert_cmpuint(n, ==, s.emitted[NEPH_PHOTON_DIRECT]);
+}
+
+/* What hangs in the fog before a wall does not light it. */
+static void test_fog_estimate(void)
+{
+    g_autoptr(NephScene) scene = make_foggy_scene("0 0.0 0", false);
+    g_autoptr(NephPhotons) photons = trace(scene, "60000");
+    const double at[3] = {0, -3, 0}, up[3] = {0, 1, 0};
+    size_t index[4096], in_reach = 0, hanging = 0;
+    NephEstimate e;
+    for (size_t i = 0; i < neph_photons_count(photons); i++) {
+        NephPhoton p;
+        neph_photons_get(photons, i, &p);
+        bool near = p.direction[1] > 0.0f && distance_to(photons, i, at) < 0.5;
+        in_reach += near && !in_fog(photons, i);
+        hanging += near && in_fog(photons, i);
+    }
+    g_assert_cmpuint(hanging, >, 50);
+    neph_photons_estimate(photons, at, up, 0.5, &e);
+    g_assert_cmpuint(e.n[0] + e.n[1] + e.n[2], ==, in_reach);
+    size_t n = neph_photons_near(photons, at, up, 0.5, index, G_N_ELEMENTS(index));
+    g_assert_cmpuint(n, ==, in_reach);
+    g_assert_cmpuint(n, <, G_N_ELEMENTS(index));
+    for (size_t i = 0; i < n; i++) {
+        g_assert_false(in_fog(photons, index[i]));
+        g_assert_cmpfloat(distance_to(photons, index[i], at), <, 0.5);
+    }
+}
+
 /* ---- Diagrams ---- */
 
 static size_t find_material(const NephScene *scene, const char *name)
@@ -606,6 +739,9 @@ int main(int argc, char **argv)
     g_test_add_func("/api-view/photons/cancelled", test_photons_cancelled);
     g_test_add_func("/api-view/photons/estimate", test_estimate);
     g_test_add_func("/api-view/photons/neighbours", test_neighbours);
+    g_test_add_func("/api-view/photons/fog-paths", test_fog_paths);
+    g_test_add_func("/api-view/photons/fog-flux", test_fog_flux);
+    g_test_add_func("/api-view/photons/fog-estimate", test_fog_estimate);
     g_test_add_func("/api-view/bsdf/diffuse", test_bsdf_diffuse);
     g_test_add_func("/api-view/bsdf/glass", test_bsdf_glass);
     g_test_add_func("/api-view/bsdf/refused", test_bsdf_refused);

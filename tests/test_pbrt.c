@@ -424,6 +424,7 @@ static void test_own_scenes_load(void)
         const char *name;
         integrator_choice integrator;
     } own[] = {{"cornell-box", INTEGRATOR_PHOTONMAP},
+               {"cobblers-globe", INTEGRATOR_PHOTONMAP},
                {"glass-ball", INTEGRATOR_AUTO},
                {"ring", INTEGRATOR_AUTO}};
     for (size_t i = 0; i < G_N_ELEMENTS(own); i++) {

@@ -160,6 +160,49 @@ static void test_pick(void)
     view_close(w);
 }
 
+static bool is_before_camera(window *w, const float at[3], double place[2])
+{
+    const double p[3] = {(double)at[0], (double)at[1], (double)at[2]};
+    return neph_camera_project(&w->view.camera, p, &place[0], &place[1]) &&
+           place[0] > 0.1 && place[0] < 0.9 && place[1] > 0.1 && place[1] < 0.9;
+}
+
+/* Photons that fog scattered are drawn; one that is picked tells of the fog and its way,
+   and there is no disc around it. */
+static void test_pick_in_fog(void)
+{
+    g_autofree char *text = g_strconcat(
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n"
+        "    \"spectrum sigma_a\" [300 0 900 0] \"spectrum sigma_s\" [300 0.5 900 0.5]\n"
+        "MediumInterface \"fog\" \"fog\"\n",
+        view_scene, NULL);
+    g_autofree char *path = view_write("fog.pbrt", text);
+    window *w = view_window();
+    window_open(w, path);
+    view_wait(view_is_done, w);
+    view_activate(w, "win.trace-photons");
+    view_wait(has_photons, w);
+    GtkWidget *panel = photon_panel_widget(w->photon_panel);
+    const photon_cloud *cloud = photon_view_cloud(w->photon_view);
+    double place[2];
+    size_t i = 0;
+    g_assert_cmpuint(row_count(panel, "Photons stored"), ==, cloud->n);
+    while (i < cloud->n && !(*neph_photons_medium(w->photons->photons, i) &&
+                             is_before_camera(w, cloud->vertices[i].position, place)))
+        i++;
+    g_assert_cmpuint(i, <, cloud->n);
+    g_assert_true(window_pick(w, place, 1e-6));
+    g_assert_true(w->picked_is_photon);
+    g_assert_cmpuint(w->picked_photon, ==, i);
+    g_assert_cmpstr(row_value(panel, "Medium"), ==, "fog");
+    g_assert_nonnull(row_value(panel, "Flux, R G B (W)"));
+    g_assert_null(row_value(panel, "Irradiance (W/m²)"));
+    g_assert_null(row_value(panel, "Surface"));
+    window_pick_radius(0.5, w);
+    g_assert_null(row_value(panel, "Direct neighbours"));
+    view_close(w);
+}
+
 /* ---- The camera ---- */
 
 static void test_focus(void)
@@ -354,6 +397,7 @@ int main(int argc, char **argv)
     view_add_test("/view-panels/number", test_number);
     view_add_test("/view-panels/style", test_style);
     view_add_test("/view-panels/pick", test_pick);
+    view_add_test("/view-panels/pick-in-fog", test_pick_in_fog);
     view_add_test("/view-panels/focus", test_focus);
     view_add_test("/view-panels/field-of-view", test_field_of_view);
     view_add_test("/view-panels/save-view", test_save_view);

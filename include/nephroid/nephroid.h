@@ -358,6 +358,9 @@ NEPH_API bool neph_photons_follow(NephPhotons *photons, NephGoOnFunc go_on, void
 NEPH_API void neph_photons_free(NephPhotons *photons);
 NEPH_API size_t neph_photons_count(const NephPhotons *photons);
 NEPH_API void neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out);
+/** @brief The medium in which photon i was scattered, "" if it landed on a surface; the
+ * scene's. Those count for no estimate on a surface. */
+NEPH_API const char *neph_photons_medium(const NephPhotons *photons, size_t i);
 NEPH_API void neph_photons_statistics(const NephPhotons *photons, NephStatistics *out);
 /** @brief Binary PLY: x y z, nx ny nz (direction), red green blue (float flux), class. */
 NEPH_API bool neph_photons_write_ply(const NephPhotons *photons, const char *path,
@@ -383,9 +386,10 @@ typedef struct NephPhotonEvent {
     float position[3];
     float direction[3];   /**< whither it goes on */
     float rgb[3];         /**< its flux after the event, linear sRGB, W */
-    const char *what;     /**< "emitted", "diffuse reflected", ...; static */
-    const char *material; /**< of the surface, or of the light that emitted it its kind;
-                             "" if none; the scene's */
+    const char *what;     /**< "emitted", "diffuse reflected", "scattered" (in a medium),
+                             ...; static */
+    const char *material; /**< of the surface, or the medium, or of the light that emitted
+                             it its kind; "" if none; the scene's */
 } NephPhotonEvent;
 
 /** @brief The life of the emitted photon that left photon i: at most capacity events go
@@ -401,13 +405,13 @@ typedef struct NephEstimate {
                                                     flux over the kernel's area */
 } NephEstimate;
 
-/** @brief The estimate of irradiance at a point, with the kernels of the settings,
- * without probing edges. radius: m; 0: those of the statistics. */
+/** @brief The estimate of irradiance on a surface at a point, with the kernels of the
+ * settings, without probing edges. radius: m; 0: those of the statistics. */
 NEPH_API void neph_photons_estimate(const NephPhotons *photons, const double point[3],
                                     const double normal[3], double radius,
                                     NephEstimate *out);
-/** @brief The photons that the estimate counts, nearest first: at most capacity go to
- * index. @return how many there are */
+/** @brief The photons that the estimate counts, none of them in a medium, nearest first:
+ * at most capacity go to index. @return how many there are */
 NEPH_API size_t neph_photons_near(const NephPhotons *photons, const double point[3],
                                   const double normal[3], double radius, size_t *index,
                                   size_t capacity);

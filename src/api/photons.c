@@ -1,5 +1,5 @@
 /*
- * Photons on their way out: counted through over the three stores, directions unpacked,
+ * Photons on their way out: counted through over the stores, directions unpacked,
  * and the flux at the pass' eight wavelengths turned into linear sRGB.
  */
 #include "api/photons.h"
@@ -66,17 +66,17 @@ size_t neph_photons_count(const NephPhotons *photons)
 {
     size_t n = 0;
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        n += photons->traced->stores[c].n;
+        n += render_photons_count(photons->traced, (photon_class)c);
     return n;
 }
 
 photon_class photons_locate(const NephPhotons *photons, size_t *i)
 {
     const render_photons *traced = photons->traced;
-    int c = 0;
-    while (c < N_PHOTON_CLASSES - 1 && *i >= traced->stores[c].n)
-        *i -= traced->stores[c++].n;
-    return (photon_class)c;
+    photon_class c = 0;
+    while (c < N_PHOTON_CLASSES - 1 && *i >= render_photons_count(traced, c))
+        *i -= render_photons_count(traced, c++);
+    return c;
 }
 
 void photons_rgb(const NephPhotons *photons, spectrum flux, float rgb[3])
@@ -90,7 +90,7 @@ void neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out)
 {
     const render_photons *traced = photons->traced;
     photon_class c = photons_locate(photons, &i);
-    const photon found = photon_store_get(&traced->stores[c], i);
+    const photon found = render_photons_get(traced, c, i);
     photons_rgb(photons, found.flux, out->rgb);
     for (int axis = 0; axis < 3; axis++) {
         out->position[axis] = found.p[axis];
@@ -98,6 +98,18 @@ void neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out)
     }
     out->photon_class = (NephPhotonClass)c;
     out->bounces = traced->origins[c] ? traced->origins[c][i].bounces : 0;
+}
+
+const char *neph_photons_medium(const NephPhotons *photons, size_t i)
+{
+    const render_photons *traced = photons->traced;
+    photon_class c = photons_locate(photons, &i);
+    size_t n = traced->stores[c].n;
+    if (i < n)
+        return "";
+    const GPtrArray *media = traced->plan.scene->media;
+    const medium *in = media->pdata[medium_of_home(traced->in_media[c].home[i - n])];
+    return in->name;
 }
 
 void neph_photons_statistics(const NephPhotons *photons, NephStatistics *out)

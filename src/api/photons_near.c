@@ -2,8 +2,8 @@
  * The photons around a point, and the estimate they make: the naive way, one look at each
  * photon, since nobody asks for it more than once a click.
  *
- *   E = Σ κ(d) Φ / ∫∫ κ(s) s ds dθ      over photons within r, arrived on the normal's
- * side
+ *   E = Σ κ(d) Φ / ∫∫ κ(s) s ds dθ      over photons on surfaces within r, arrived
+ * on the normal's side
  */
 #include "api/photons.h"
 
@@ -91,7 +91,7 @@ size_t neph_photons_near(const NephPhotons *photons, const double point[3],
             if (counts(store, i, p, n, r, &one.distance2))
                 g_array_append_val(found, one);
         }
-        offset += store->n;
+        offset += render_photons_count(photons->traced, (photon_class)c);
     }
     g_array_sort(found, nearest_first);
     for (size_t i = 0; i < MIN(capacity, found->len); i++)

@@ -35,7 +35,9 @@ static const char *what_of(const photon_event *event)
         [PHOTON_ABSORBED] = "absorbed", [PHOTON_ENDED] = "ended",
         [PHOTON_LEFT] = "left",
     };
-    return event->kind == PHOTON_SCATTERED ? scattering(event->lobe) : words[event->kind];
+    if (event->kind != PHOTON_SCATTERED)
+        return words[event->kind];
+    return event->hit->shape == NO_INDEX ? "scattered" : scattering(event->lobe);
 }
 
 static const char *material_of(const scene *s, const photon_event *event)

@@ -74,9 +74,10 @@ static bool trace_class(render_photons *p, photon_class c, const cancel_flag *ca
     st->photon_rays += result.n_rays;
     st->n_not_finite += result.n_not_finite;
     st->emitted[c] = task.n_photons;
-    st->stored[c] = result.photons.n;
+    st->stored[c] = result.photons.n + result.in_media.n;
     p->stores[c] = result.photons;
-    result.photons = (photon_store){0};
+    p->in_media[c] = result.in_media;
+    result.photons = result.in_media = (photon_store){0};
     trace_result_clear(&result);
     return true;
 }
@@ -94,8 +95,21 @@ render_photons *render_trace_photons(const scene *s, const settings *how,
     p->statistics.time_total = p->statistics.time_trace;
     p->statistics.memory_peak = memory_peak();
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        p->statistics.memory_photons += photon_store_bytes(&p->stores[c]);
+        p->statistics.memory_photons +=
+            photon_store_bytes(&p->stores[c]) + photon_store_bytes(&p->in_media[c]);
     return g_steal_pointer(&p);
+}
+
+size_t render_photons_count(const render_photons *p, photon_class c)
+{
+    return p->stores[c].n + p->in_media[c].n;
+}
+
+photon render_photons_get(const render_photons *p, photon_class c, size_t i)
+{
+    size_t n = p->stores[c].n;
+    return i < n ? photon_store_get(&p->stores[c], i)
+                 : photon_store_get(&p->in_media[c], i - n);
 }
 
 void render_photons_free(render_photons *p)
@@ -104,6 +118,7 @@ void render_photons_free(render_photons *p)
         return;
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         photon_store_clear(&p->stores[c]);
+        photon_store_clear(&p->in_media[c]);
         big_free(p->origins[c]);
     }
     transport_plan_clear(&p->plan);
@@ -114,14 +129,19 @@ void render_photons_free(render_photons *p)
 
 enum { FOLLOW_CHUNK = 4096 };
 
+/* Where photons came from, in the order of their stores. */
+typedef struct origin_lists {
+    GArray *on_surfaces, *in_media; /* of photon_origin */
+} origin_lists;
+
 typedef struct follow_loop {
     trace_task task;
-    GArray **found; /* of photon_origin, one a chunk */
+    origin_lists *found; /* one a chunk; of NULL where it was not begun */
 } follow_loop;
 
 /* A path on its way. */
 typedef struct followed {
-    GArray *found;
+    origin_lists found;
     uint32_t bounces;
 } followed;
 
@@ -134,14 +154,16 @@ static void note_origin(const photon_event *event, void *data)
     if (event->kind != PHOTON_STORED || !spectrum_is_finite(event->flux))
         return;
     const photon_origin origin = {(uint32_t)event->index, f->bounces};
-    g_array_append_val(f->found, origin);
+    bool on_surface = event->hit->shape != NO_INDEX;
+    g_array_append_val(on_surface ? f->found.on_surfaces : f->found.in_media, origin);
 }
 
 static void follow_chunk(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     const follow_loop *loop = data;
-    GArray *found = g_array_new(FALSE, FALSE, sizeof(photon_origin));
+    origin_lists found = {g_array_new(FALSE, FALSE, sizeof(photon_origin)),
+                          g_array_new(FALSE, FALSE, sizeof(photon_origin))};
     for (size_t i = begin; i < end; i++) {
         followed f = {found, 0};
         photon_tell(&loop->task, i, note_origin, &f);
@@ -149,34 +171,44 @@ static void follow_chunk(size_t begin, size_t end, unsigned thread, void *data)
     loop->found[begin / FOLLOW_CHUNK] = found;
 }
 
-/* Puts the chunks behind one another; frees them. */
-static void join_origins(photon_origin *to, size_t n, GArray **found, size_t n_chunks)
+/* Puts a chunk's list at the place `at` of n, and frees it. @return the next place */
+static size_t take_origins(photon_origin *to, size_t at, size_t n, GArray *found)
 {
-    size_t at = 0;
+    size_t some = MIN(found->len, n - at);
+    for (size_t k = 0; k < some; k++)
+        to[at + k] = g_array_index(found, photon_origin, k);
+    g_array_unref(found);
+    return at + some;
+}
+
+/* Puts the chunks behind one another, what is in media behind all that is on surfaces. */
+static void join_origins(const render_photons *p, photon_class c, origin_lists *found,
+                         size_t n_chunks)
+{
+    size_t on_surfaces = 0, in_media = p->stores[c].n;
     for (size_t i = 0; i < n_chunks; i++) {
-        if (!found[i])
+        if (!found[i].on_surfaces)
             continue;
-        size_t some = MIN(found[i]->len, n - at);
-        for (size_t k = 0; k < some && to; k++)
-            to[at + k] = g_array_index(found[i], photon_origin, k);
-        at += some;
-        g_array_unref(found[i]);
+        on_surfaces = take_origins(p->origins[c], on_surfaces, p->stores[c].n,
+                                   found[i].on_surfaces);
+        in_media = take_origins(p->origins[c], in_media, render_photons_count(p, c),
+                                found[i].in_media);
     }
 }
 
 static bool follow_class(render_photons *p, photon_class c, const cancel_flag *cancel,
                          GError **error)
 {
-    size_t n = p->stores[c].n;
+    size_t n = render_photons_count(p, c);
     follow_loop loop = {.task = task_for(&p->plan, c)};
     size_t n_chunks = ((size_t)loop.task.n_photons + FOLLOW_CHUNK - 1) / FOLLOW_CHUNK;
     p->origins[c] = big_alloc(MAX(n, 1), sizeof(photon_origin), "photon origins", error);
     if (!p->origins[c])
         return false;
-    loop.found = g_new0(GArray *, n_chunks);
+    loop.found = g_new0(origin_lists, n_chunks);
     bool done = parallel_for((size_t)loop.task.n_photons, FOLLOW_CHUNK,
                              (unsigned)p->plan.how.threads, cancel, follow_chunk, &loop);
-    join_origins(p->origins[c], n, loop.found, n_chunks);
+    join_origins(p, c, loop.found, n_chunks);
     g_free(loop.found);
     if (!done) {
         big_free(p->origins[c]);
@@ -236,6 +268,8 @@ static char *what_happened(const photon_event *event)
     };
     if (event->kind != PHOTON_SCATTERED)
         return g_strdup(words[event->kind]);
+    if (event->hit->shape == NO_INDEX)
+        return g_strdup("scattered");
     const char *lobe = event->lobe & LOBE_SPECULAR ? "specular"
                        : event->lobe & LOBE_GLOSSY ? "glossy"
                                                    : "diffuse";

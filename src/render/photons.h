@@ -16,11 +16,13 @@ typedef struct photon_origin {
 
 /** @brief The photons of pass 0. */
 typedef struct render_photons {
-    photon_store stores[N_PHOTON_CLASSES];
+    photon_store stores[N_PHOTON_CLASSES];   /**< on surfaces */
+    photon_store in_media[N_PHOTON_CLASSES]; /**< scattered in media */
     wavelengths w;
     render_statistics statistics; /**< radius: only once followed */
     transport_plan plan;
-    photon_origin *origins[N_PHOTON_CLASSES]; /**< one a photon; NULL until followed */
+    photon_origin *origins[N_PHOTON_CLASSES]; /**< one a photon, those in media last; NULL
+                                                 until followed */
     bool has_radii;
 } render_photons;
 
@@ -29,6 +31,10 @@ typedef struct render_photons {
  * @param cancel may be NULL */
 render_photons *render_trace_photons(const scene *s, const settings *how,
                                      const cancel_flag *cancel, GError **error);
+/** @brief Photons of a class, on surfaces and in media. */
+size_t render_photons_count(const render_photons *p, photon_class c);
+/** @brief Photon i of a class: those on surfaces come first. */
+photon render_photons_get(const render_photons *p, photon_class c, size_t i);
 /** @brief Finds the origin of every photon, and the radius of each class that a render
  * would gather within. Costs about what tracing did. */
 bool render_photons_follow(render_photons *p, const cancel_flag *cancel, GError **error);

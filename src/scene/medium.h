@@ -51,6 +51,12 @@ static inline uint32_t medium_home(const medium *m)
     return (uint32_t)m->index + 1;
 }
 
+/** @brief The index of the medium that has this home. */
+static inline size_t medium_of_home(uint32_t home)
+{
+    return home - 1;
+}
+
 /** @brief σs by wavelength. */
 spectrum medium_scattering(const medium *m, const wavelengths *w);
 /** @brief σt by wavelength. */
