@@ -13,7 +13,9 @@ seconds=${2:-5}
 size=${3:-96x72}
 root=$(dirname "$0")/..
 [ $# -ge 3 ] && shift 3 || shift $#
-[ $# -gt 0 ] || set -- "$root"/scenes/*/*.pbrt \
+# No scene with media: vcm refuses those.
+[ $# -gt 0 ] || set -- "$root"/scenes/cornell-box/cornell-box.pbrt \
+    "$root"/scenes/glass-ball/glass-ball.pbrt "$root"/scenes/ring/ring.pbrt \
     "$root"/../shared/refs/bitterli/cornell-box/scene-v4.pbrt \
     "$root"/../shared/refs/bitterli/veach-mis/scene-v4.pbrt \
     "$root"/../shared/refs/bitterli/coffee/scene-v4.pbrt \

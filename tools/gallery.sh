@@ -38,6 +38,10 @@ casts_caustics() {
     tr -d ' \n' <"$1" | grep -q '"casting_caustics":\["'
 }
 
+has_media() {
+    tr -d ' \n' <"$1" | grep -q '"media":\[{'
+}
+
 # picture NAME: the picture as the page shows it
 picture() {
     printf '<td><a href="%s.png"><img src="%s.png" alt="%s"></a></td>' "$1" "$1" "$1"
@@ -74,7 +78,9 @@ scene() {
         return
     fi
     size=$(size_of "$info")
-    if casts_caustics "$info"; then
+    if has_media "$info"; then
+        other=auto # vcm sees none
+    elif casts_caustics "$info"; then
         other=vcm
     fi
     "$nephroid" render "$file" --quiet --size "$size" --time "$seconds" \
