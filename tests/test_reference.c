@@ -1,7 +1,7 @@
 /*
- * Pictures of other renderers: the Cornell box of Bitterli's collection (Tungsten, RGB)
- * and two scenes rendered spectrally with progressive photon mapping. They are not part
- * of the project; where they are absent the tests are skipped.
+ * Pictures of other renderers: scenes of Bitterli's collection (Tungsten, RGB) and two
+ * scenes rendered spectrally with progressive photon mapping. They are not part of the
+ * project; where they are absent the tests are skipped.
  */
 #include "render/render.h"
 #include "scene_text.h"
@@ -110,11 +110,20 @@ static void check(gconstpointer data)
         "passes", "8", "spp", "8", NULL                                                  \
     }
 
+#define FOUR_BOUNCES                                                                     \
+    {                                                                                    \
+        "passes", "16", "spp", "8", "max_backward_bounces", "4", NULL                    \
+    }
+
 /* Where the references are known to show another scene than the file describes, only the
    rest is compared:
    - veach-mis: the plates reflect 0.3 of what their metal does, with a Beckmann
      distribution (the reflection of a lamp over the lamp, and no light between two
      highlights); so the wall beside them, which is compared, is lit by them less.
+   - volumetric-caustic: light is followed for four bounces. What the ball lights by way
+   of the fog has more here, since photons' bounces in glass are not counted with those of
+     the path that meets them, and the lamp's images in it are pixels of very much light:
+     the side without it is compared.
    - coffee: its plastic is a lossless coat and colours are RGB: the orange is another;
      the grey floor and wall differ by what pbrt's thickness absorbs. */
 static const reference references[] = {
@@ -142,6 +151,14 @@ static const reference references[] = {
      0.07,
      0.09,
      AS_FOUND},
+    {"bitterli/volumetric-caustic/scene-v4.pbrt",
+     "bitterli/volumetric-caustic/TungstenRender.exr",
+     96,
+     96,
+     {0.55, 0.96, 0.25, 0.95},
+     0.03,
+     0.06,
+     FOUR_BOUNCES},
     {"spectral/ring.pbrt",
      "spectral/ring.exr",
      96,
