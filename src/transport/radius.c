@@ -34,7 +34,7 @@ static const double photons_wanted[N_PHOTON_CLASSES] = {600.0, 12000.0, 300.0};
 static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
 
 /* In the ball around a photon in a medium, in each pass. */
-static const double photons_wanted_in_media[N_PHOTON_CLASSES] = {8.0, 40.0, 4.0};
+#define WANTED_IN_MEDIA 8.0
 
 /* Beside a bright spot, radii are as wide as it takes to reach the wanted photons in it:
    this is light that is not there, in proportion to their share of all. So of a caustic's
@@ -196,7 +196,7 @@ static bool choose_in_media(pilot *p, photon_class c, const pilot_maps *maps,
     const photon_map *map = maps->in_media;
     double density = density_over_pilot(p, c, maps);
     const radius_rule rule = {
-        .scale = cbrt(photons_wanted_in_media[c] / PLACES_NEAREST / density),
+        .scale = cbrt(WANTED_IN_MEDIA / PLACES_NEAREST / density),
         .largest = 0.1 * (double)plan->scene->radius,
         .pixels = p->pixels,
     };
