@@ -1,6 +1,7 @@
 #include "photon/trace.h"
 
 #include "base/memory.h"
+#include "photon/trace_chunk.h"
 #include "scene/medium_sample.h"
 
 /* Photons emitted per parallel piece of work. */
@@ -8,14 +9,6 @@ enum { CHUNK = 4096 };
 
 /* Ways through media that each leave a photon, before fewer do. */
 enum { WAYS_KEPT = 8 };
-
-/* What one chunk stored, until the chunks are joined in order. */
-typedef struct chunk_store {
-    photon_store photons, in_media;
-    uint64_t n_rays, n_not_finite;
-    size_t offset, offset_in_media; /* of its photons in the whole */
-    GError *error;
-} chunk_store;
 
 /* One photon on its way. */
 typedef struct photon_path {
@@ -34,7 +27,7 @@ typedef struct photon_path {
     unsigned n_diffuse;
     unsigned n_after;    /* followed bounces since the last diffuse one */
     unsigned n_in_media; /* scatterings in media */
-    chunk_store *out;    /* NULL when telling */
+    trace_chunk *out;    /* NULL when telling */
     void (*tell)(const photon_event *event, void *data);
     void *tell_data;
 } photon_path;
@@ -150,20 +143,6 @@ static photon_class class_here(const photon_path *path)
     return path->n_followed > 0 ? PHOTON_CAUSTIC : PHOTON_DIRECT;
 }
 
-/* Puts a photon into one of the chunk's stores. */
-static void put(chunk_store *out, photon_store *store, const photon *p)
-{
-    if (!spectrum_is_finite(p->flux)) {
-        out->n_not_finite++;
-        return;
-    }
-    size_t more = MAX(2 * store->capacity, CHUNK);
-    if (out->error ||
-        (store->n == store->capacity && !photon_store_reserve(store, more, &out->error)))
-        return;
-    photon_store_put(store, p);
-}
-
 /* Of the middle of a task's slice of time. */
 static float middle_of(const trace_task *task)
 {
@@ -183,7 +162,7 @@ static void keep_for_slice(const trace_task *task, const surface_hit *hit, photo
 
 static void store(photon_path *path, const surface_hit *hit, unsigned flags)
 {
-    chunk_store *out = path->out;
+    trace_chunk *out = path->out;
     tell(path, PHOTON_STORED, hit, 0);
     if (!out)
         return;
@@ -199,7 +178,7 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
                 .home = scene_curve_of(s, hit)};
     if (scene_hit_moves(s, hit))
         keep_for_slice(path->task, hit, &p);
-    put(out, &out->photons, &p);
+    trace_chunk_put(out, &out->of.photons, &p);
 }
 
 /* Stores the photon if its class is the one traced and the surface has a lobe for it. */
@@ -285,7 +264,7 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
                                            lobes, TRANSPORT_IMPORTANCE, &next);
     spectrum flux = scattered ? path->flux * next.weight : (spectrum){0};
     if (path->out && !spectrum_is_finite(flux))
-        path->out->n_not_finite++;
+        path->out->of.n_not_finite++;
     float survival = survival_with(path, flux);
     if (scattered) {
         float share = share_at(path, hit, b, &next);
@@ -339,7 +318,7 @@ static void land_on_way(photon_path *path, float length)
                       .home = medium_home(m)};
     tell_flux(path, PHOTON_STORED, &hit, 0, p.flux);
     if (path->out)
-        put(path->out, &path->out->in_media, &p);
+        trace_chunk_put(path->out, &path->out->of.in_media, &p);
 }
 
 typedef enum medium_way { WAY_THROUGH, WAY_SCATTERED, WAY_ENDED } medium_way;
@@ -383,7 +362,7 @@ static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
     const bsdf_options options = {.deterministic = !task->how->multiple_samples};
     for (;;) {
         if (path->out)
-            path->out->n_rays++;
+            path->out->of.n_rays++;
         bool met = scene_intersect(task->scene, &path->ray, hit);
         if (path->ray.medium) {
             surface_hit within;
@@ -442,17 +421,16 @@ void photon_tell(const trace_task *task, uint64_t index,
 
 typedef struct trace_loop {
     const trace_task *task;
-    photon_store empty, empty_in_media; /* what each chunk starts from */
-    chunk_store *chunks;
+    trace_result empty; /* what each chunk starts from */
+    trace_chunk *chunks;
 } trace_loop;
 
-static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
+static void trace_some(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     trace_loop *loop = data;
-    chunk_store *out = &loop->chunks[begin / CHUNK];
-    out->photons = loop->empty;
-    out->in_media = loop->empty_in_media;
+    trace_chunk *out = &loop->chunks[begin / CHUNK];
+    out->of = loop->empty;
     for (size_t i = begin; i < end && !out->error; i++) {
         photon_path path = {
             .task = loop->task, .index = loop->task->first + i, .out = out};
@@ -460,81 +438,31 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
     }
 }
 
-typedef struct join_loop {
-    trace_result *result;
-    chunk_store *chunks;
-} join_loop;
-
-/* Copies a chunk to its place and frees it. */
-static void join_chunk(size_t i, size_t end, unsigned thread, void *data)
+static trace_result empty_result(const scene *s, bool oriented)
 {
-    (void)end, (void)thread;
-    join_loop *loop = data;
-    chunk_store *chunk = &loop->chunks[i];
-    photon_store_copy(&loop->result->photons, chunk->offset, &chunk->photons);
-    photon_store_copy(&loop->result->in_media, chunk->offset_in_media, &chunk->in_media);
-    photon_store_clear(&chunk->photons);
-    photon_store_clear(&chunk->in_media);
-}
-
-/* Gives each chunk its place in the whole. @return false if one failed. */
-static bool add_up(chunk_store *chunks, size_t n, trace_result *result, GError **error)
-{
-    size_t total = 0, in_media = 0;
-    for (size_t i = 0; i < n; i++) {
-        if (chunks[i].error) {
-            g_propagate_error(error, g_steal_pointer(&chunks[i].error));
-            return false;
-        }
-        chunks[i].offset = total;
-        chunks[i].offset_in_media = in_media;
-        total += chunks[i].photons.n;
-        in_media += chunks[i].in_media.n;
-        result->n_rays += chunks[i].n_rays;
-        result->n_not_finite += chunks[i].n_not_finite;
-    }
-    if (!photon_store_reserve(&result->photons, total, error) ||
-        !photon_store_reserve(&result->in_media, in_media, error))
-        return false;
-    result->photons.n = total;
-    result->in_media.n = in_media;
-    return true;
-}
-
-/* Puts the chunks behind one another. */
-static bool join(chunk_store *chunks, size_t n, const trace_loop *traced,
-                 trace_result *result, GError **error)
-{
-    if (!add_up(chunks, n, result, error))
-        return false;
-    join_loop loop = {result, chunks};
-    parallel_for(n, 1, (unsigned)traced->task->how->threads, NULL, join_chunk, &loop);
-    return true;
+    bool tagged = s->n_light_groups > 0;
+    return (trace_result){
+        .photons = {.oriented = oriented, .tagged = tagged, .homed = s->turns},
+        .in_media = {.tagged = tagged, .homed = true},
+    };
 }
 
 bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
                   GError **error)
 {
-    const photon_store empty = {.oriented = oriented,
-                                .tagged = task->scene->n_light_groups > 0,
-                                .homed = task->scene->turns};
-    const photon_store empty_in_media = {.tagged = empty.tagged, .homed = true};
-    *result = (trace_result){.photons = empty, .in_media = empty_in_media};
+    unsigned threads = (unsigned)task->how->threads;
+    *result = empty_result(task->scene, oriented);
     size_t n_chunks = ((size_t)task->n_photons + CHUNK - 1) / CHUNK;
-    chunk_store *chunks = big_alloc(n_chunks, sizeof *chunks, "photon chunks", error);
+    trace_chunk *chunks = big_alloc(n_chunks, sizeof *chunks, "photon chunks", error);
     if (!chunks)
         return false;
-    trace_loop loop = {task, empty, empty_in_media, chunks};
-    bool done = parallel_for((size_t)task->n_photons, CHUNK, (unsigned)task->how->threads,
-                             task->cancel, trace_chunk, &loop);
+    trace_loop loop = {task, *result, chunks};
+    bool done = parallel_for((size_t)task->n_photons, CHUNK, threads, task->cancel,
+                             trace_some, &loop);
     if (!done)
         error_set(error, ERROR_CANCELLED, "cancelled");
-    bool joined = done && join(chunks, n_chunks, &loop, result, error);
-    for (size_t i = 0; i < n_chunks; i++) {
-        photon_store_clear(&chunks[i].photons);
-        photon_store_clear(&chunks[i].in_media);
-        g_clear_error(&chunks[i].error);
-    }
+    bool joined = done && trace_chunks_join(chunks, n_chunks, threads, result, error);
+    trace_chunks_clear(chunks, n_chunks);
     big_free(chunks);
     if (!joined)
         trace_result_clear(result);

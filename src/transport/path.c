@@ -287,10 +287,16 @@ static void note_through_medium(path_walk *walk, const camera_path *path,
         radiance_sample_note(walk->out, hit, &b, -path->ray.direction, path->from);
 }
 
-/* Takes the path to where it is scattered next. @return 1, or 0: it meets an interface
-   between media, and goes on behind it; -1: it ends */
-static int come_to_scatterer(path_walk *walk, camera_path *path, surface_hit *hit,
-                             bsdf *b)
+/* What becomes of a path on its way to the next surface. */
+typedef enum path_way {
+    WAY_ENDS,    /* it leaves the scene */
+    WAY_PASSES,  /* it meets an interface, and goes on behind it */
+    WAY_SCATTERS /* at a surface or in a medium */
+} path_way;
+
+/* Takes the path to where it is scattered next. @param hit,b set where it is */
+static path_way come_to_scatterer(path_walk *walk, camera_path *path, surface_hit *hit,
+                                  bsdf *b)
 {
     const path_pass *pass = walk->pass;
     bool met = meet_surface(walk, path, hit);
@@ -301,23 +307,23 @@ static int come_to_scatterer(path_walk *walk, camera_path *path, surface_hit *hi
         float length = scene_medium_end(walk->scene, &path->ray, met ? hit->t : INFINITY);
         if (path_meets_medium(walk, path, length, &within, b)) {
             *hit = within;
-            return 1;
+            return WAY_SCATTERS;
         }
     }
     if (!met) {
         meet_sky(walk, path);
-        return -1;
+        return WAY_ENDS;
     }
     bool seen = path->bounces == 0 && !path->ray.medium;
     path->beta *= hit_transmittance(hit, &pass->w);
     meet_lamp(walk, path, hit);
     if (!scene_bsdf(walk->scene, hit, &pass->w, path->lane, &pass->options, b)) {
         path->ray = hit_ray(hit, path->ray.direction);
-        return 0;
+        return WAY_PASSES;
     }
     if (seen)
         radiance_sample_note(walk->out, hit, b, -path->ray.direction, path->from);
-    return 1;
+    return WAY_SCATTERS;
 }
 
 /* One more step of the path. @return false if it was the last. */
@@ -325,9 +331,9 @@ static bool path_goes_on(path_walk *walk, camera_path *path)
 {
     surface_hit hit;
     bsdf b;
-    int come = come_to_scatterer(walk, path, &hit, &b);
-    if (come <= 0)
-        return come == 0;
+    path_way way = come_to_scatterer(walk, path, &hit, &b);
+    if (way != WAY_SCATTERS)
+        return way == WAY_PASSES;
     if (path_is_cut(walk, path, 1))
         return false;
     camera_path seen = *path;
