@@ -304,8 +304,7 @@ static const view furnaces[] = {
      .text = FOG("f", "0", ".5", "0") WITHIN BETWEEN("f", "") FURNACE_BOX},
     {.name = "box-forward",
      .text = FOG("f", "0", "2.5", ".8") WITHIN BETWEEN("f", "") FURNACE_BOX,
-     .tolerance = 0.02,
-     .only = "path auto" /* photons are turned to lamps all around: too noisy */},
+     .tolerance = 0.02},
     {.name = "ball-in-box",
      .text = FOG("f", "0", "5", "-.6") WIDE_EYE("", "0 -.9 .1  0 0 .1", "50")
          BETWEEN("", "") FURNACE_BOX BETWEEN("f", "") BALL(".5")},

@@ -201,17 +201,17 @@ static void shade_medium(camera_tree *tree, camera_branch *branch, float length)
     static const radiance_layer layers[N_PHOTON_CLASSES] = {LAYER_DIRECT, LAYER_INDIRECT,
                                                             LAYER_CAUSTIC};
     const medium_look look = {&branch->ray, length, branch->beta, branch->lane, true};
-    direct_radiance found[FEW_LIGHTS];
-    int n = samples_lights ? photonmap_direct_in_medium(pass, &look, tree->random,
-                                                        tree->scratch, found)
-                           : 0;
-    for (int i = 0; i < n; i++)
-        add_from(tree, branch, LAYER_DIRECT, found[i].diffuse, found[i].light);
+    const spectrum *parts = tree->scratch->estimate.groups;
+    if (samples_lights) {
+        spectrum direct =
+            photonmap_direct_in_medium(pass, &look, tree->random, tree->scratch);
+        add_parts(tree, branch, LAYER_DIRECT, direct, parts);
+    }
     for (int c = samples_lights ? PHOTON_INDIRECT : PHOTON_DIRECT; c < N_PHOTON_CLASSES;
          c++) {
         spectrum radiance = photonmap_gather_medium(pass, (photon_class)c, &branch->ray,
                                                     length, tree->scratch);
-        add_parts(tree, branch, layers[c], radiance, tree->scratch->estimate.groups);
+        add_parts(tree, branch, layers[c], radiance, parts);
     }
     branch->beta *= medium_transmittance(branch->ray.medium, length, &pass->w);
 }

@@ -289,12 +289,9 @@ static spectrum cross_medium(const photonmap_pass *pass, gather_path *path, floa
     const bool samples_lights = pass->how->direct_illumination;
     const medium_look look = {&path->ray, length, path->beta, path->lane, false};
     spectrum sum = {0};
-    direct_radiance found[FEW_LIGHTS];
-    if (samples_lights &&
-        photonmap_direct_in_medium(pass, &look, random, scratch, found) > 0) {
-        sum = path->beta * found[0].diffuse;
-        if (scratch->gathered)
-            scratch->gathered[scene_light_group(pass->scene, found[0].light)] += sum;
+    if (samples_lights) {
+        sum = path->beta * photonmap_direct_in_medium(pass, &look, random, scratch);
+        collect(pass, scratch, path->beta, scratch->estimate.groups);
     }
     for (int c = samples_lights ? PHOTON_INDIRECT : PHOTON_DIRECT; c < N_PHOTON_CLASSES;
          c++) {

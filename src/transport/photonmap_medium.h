@@ -1,6 +1,6 @@
 /*
  * What photon mapping sees in a medium (Jensen 2001, §10.4): light that is scattered once
- * by sampling lamps from a point on the ray, all else from the volume photon map.
+ * from a point on the ray, all else from the volume photon map.
  */
 #pragma once
 
@@ -17,11 +17,10 @@ typedef struct medium_look {
 } medium_look;
 
 /** @brief Light that comes straight from lamps and is scattered once, toward the ray's
- * origin: from one point of the ray that stands for all.
- *  @return how many lamps gave something; found[i].diffuse is the radiance */
-int photonmap_direct_in_medium(const photonmap_pass *pass, const medium_look *look,
-                               sampler *random, transport_scratch *scratch,
-                               direct_radiance found[FEW_LIGHTS]);
+ * origin: from one point of the ray that stands for all, by sampling lamps and the phase
+ * function; scratch->estimate.groups are its parts. */
+spectrum photonmap_direct_in_medium(const photonmap_pass *pass, const medium_look *look,
+                                    sampler *random, transport_scratch *scratch);
 
 /** @brief Radiance that photons of one class, which were scattered in the medium that a
  * ray starts in, send along it; scratch->estimate.groups are its parts.
