@@ -230,6 +230,61 @@ static void test_field_of_view(void)
     view_close(w);
 }
 
+/* A ball of fog that takes most of the light, with the eye in it or without. */
+static window *open_fog_ball(const char *name, const char *eye)
+{
+    const char *rest = strstr(view_scene, "Camera ");
+    const char *world = strstr(view_scene, "WorldBegin\n") + strlen("WorldBegin\n");
+    g_autofree char *head = g_strndup(rest, (gsize)(world - rest));
+    g_autofree char *text = g_strconcat(
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n"
+        "    \"spectrum sigma_a\" [300 2 900 2] \"spectrum sigma_s\" [300 0.1 900 0.1]\n",
+        eye, head, "MediumInterface \"\" \"\"\n", world,
+        "MediumInterface \"fog\" \"\"\nMaterial \"interface\"\n"
+        "Shape \"sphere\" \"float radius\" 1\n",
+        NULL);
+    g_autofree char *path = view_write(name, text);
+    window *w = view_window();
+    window_open(w, path);
+    view_wait(view_is_done, w);
+    return w;
+}
+
+static double mean_of_picture(window *w)
+{
+    const NephImage *image = canvas_picture(w->canvas)->image;
+    NephImageDifference d;
+    g_assert_true(neph_image_compare(image, image, &d, NULL));
+    return d.mean_a;
+}
+
+static double mean_seen_from(window *w, double z)
+{
+    NephCamera camera = w->view.camera;
+    camera.position[2] = z;
+    window_camera_changed(&camera, w);
+    view_wait(view_is_rendering, w);
+    view_wait(view_is_done, w);
+    return mean_of_picture(w);
+}
+
+/* The eye that flies into fog sees what one does that was put there, and flown out again
+   what it saw before. */
+static void test_fly_into_fog(void)
+{
+    window *w = open_fog_ball("out.pbrt", "LookAt 0 0 -2  0 0 0  0 1 0\n");
+    double outside = mean_of_picture(w);
+    double flown_in = mean_seen_from(w, -0.8), flown_out = mean_seen_from(w, -2.0);
+    view_close(w);
+    w = open_fog_ball("in.pbrt", "MediumInterface \"\" \"fog\"\n"
+                                 "LookAt 0 0 -0.8  0 0 0  0 1 0\n");
+    double inside = mean_of_picture(w);
+    view_close(w);
+    g_assert_cmpfloat_with_epsilon(flown_in / inside, 1.0, 1e-3);
+    g_assert_cmpfloat_with_epsilon(flown_out / outside, 1.0, 1e-3);
+    g_assert_cmpfloat(fabs(inside / outside - 1.0), >, 0.2);
+}
+
 static bool is_read_again(window *w)
 {
     return view_is_done(w) && fabs(w->scene->camera.fov - 33.0) < 1e-4;
@@ -400,6 +455,7 @@ int main(int argc, char **argv)
     view_add_test("/view-panels/pick-in-fog", test_pick_in_fog);
     view_add_test("/view-panels/focus", test_focus);
     view_add_test("/view-panels/field-of-view", test_field_of_view);
+    view_add_test("/view-panels/fly-into-fog", test_fly_into_fog);
     view_add_test("/view-panels/save-view", test_save_view);
     view_add_test("/view-panels/save-view-of-obj", test_save_view_of_obj);
     view_add_test("/view-panels/inspect", test_inspect);
