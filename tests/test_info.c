@@ -193,6 +193,33 @@ static void test_fog_without_bounds(void)
     check_fog("LightSource \"point\" \"point3 from\" [0 0 5]\n", ball, false);
 }
 
+static void check_lamp(const char *before, const char *between, const char *text)
+{
+    g_autofree char *all = g_strconcat(
+        FOG, before, "LookAt 0 -9 2  0 0 0  0 0 1 Camera \"perspective\" WorldBegin\n",
+        between, "LightSource \"point\"\n", NULL);
+    g_autoptr(scene) s = scene_of(all);
+    g_autoptr(GPtrArray) warnings = describe_warnings(s);
+    g_assert_cmpuint(warnings->len, ==, text ? 1 : 0);
+    if (text)
+        g_assert_nonnull(strstr(warnings->pdata[0], text));
+}
+
+/* The way from the camera to a lamp leads through interfaces that fit. */
+static void test_lamp_in_medium(void)
+{
+#define AROUND "Material \"interface\" Shape \"sphere\" \"float radius\" 3\n"
+    check_lamp("", "MediumInterface \"fog\" \"\"" AROUND "MediumInterface \"fog\"\n",
+               NULL);
+    check_lamp("MediumInterface \"fog\"", "", NULL);
+    check_lamp("", "MediumInterface \"fog\" \"\"" AROUND,
+               "in medium 'none', but the way to it from the camera ends in 'fog'");
+    check_lamp("MediumInterface \"fog\"", "MediumInterface \"\"\n",
+               "in medium 'none', but the way to it from the camera ends in 'fog'");
+    check_lamp("", "MediumInterface \"fog\"" AROUND,
+               "in medium 'fog', but the way to it from the camera ends in 'none'");
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -205,5 +232,6 @@ int main(int argc, char **argv)
     g_test_add_func("/info/json", test_json);
     g_test_add_func("/info/media", test_media);
     g_test_add_func("/info/fog-without-bounds", test_fog_without_bounds);
+    g_test_add_func("/info/lamp-in-medium", test_lamp_in_medium);
     return g_test_run();
 }

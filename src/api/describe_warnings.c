@@ -1,11 +1,13 @@
 /*
  * What is allowed, but seldom meant: glass that encloses nothing, is turned inside out or
  * has a surface where another body has one, lamps shut into bodies that let no light out,
- * skies seen from behind their portal, scenes of strange size.
+ * skies seen from behind their portal or through fog that hides them, lamps that are not
+ * in the medium one sees them through, scenes of strange size.
  */
 #include "api/describe.h"
 
 #include "scene/mesh_closed.h"
+#include "scene/scene_media.h"
 
 #include <math.h>
 
@@ -204,6 +206,37 @@ static void inspect_sky(inspection *in, guint i)
          i, l->kind->name);
 }
 
+static const char *medium_name(const medium *m)
+{
+    return m ? m->name : "none";
+}
+
+/* A lamp in sight stands in the medium that the way from the camera leads to, or an
+   interface is missing. */
+static void inspect_lamp_in_medium(inspection *in, guint i)
+{
+    const scene *s = in->scene;
+    const wavelengths w = wavelengths_at(0.5f);
+    const light *l = s->lights->pdata[i];
+    ray r = {.origin = transform_point(&s->camera.to_world, (vec3){0}),
+             .medium = s->camera.medium};
+    light_sample seen;
+    if (!scene_has_media(s) ||
+        !l->kind->sample(l->self, &w, r.origin, 0.5f, (vec2){0.4f, 0.3f}, &seen) ||
+        !isfinite(seen.distance))
+        return;
+    r.direction = seen.wi;
+    r.t_max = seen.distance * (1.0f - 1e-3f);
+    const medium *behind = scene_medium_behind(s, r);
+    const medium *is = scene_light_medium(s, (int)i, seen.n, -seen.wi);
+    if (behind == is || scene_occluded(s, &r))
+        return;
+    warn(in,
+         "light %u (%s) is in medium '%s', but the way to it from the camera ends in "
+         "'%s': a MediumInterface is missing on it, at the light or before the camera",
+         i, l->kind->name, medium_name(is), medium_name(behind));
+}
+
 /* Less of a light is as good as none. */
 #define LEAST_LEFT 0.01f
 
@@ -247,6 +280,7 @@ GPtrArray *describe_warnings(const scene *s)
         else
             inspect_lamp(&in, i);
         inspect_fog(&in, i);
+        inspect_lamp_in_medium(&in, i);
     }
     if (s->shapes->len > 0 && (s->radius > LARGEST_RADIUS || s->radius < SMALLEST_RADIUS))
         warn(&in, "the scene is %g m wide; lengths are in metres",

@@ -108,18 +108,24 @@ spectrum scene_transmittance(const scene *s, const ray *r, const wavelengths *w)
     return out;
 }
 
+const medium *scene_medium_behind(const scene *s, ray r)
+{
+    for (int i = 0; i < MOST_CROSSINGS && isfinite(cross(s, &r)); i++)
+        continue;
+    return r.medium;
+}
+
 void scene_find_outer_medium(scene *s)
 {
     camera *c = &s->camera;
     vec3 away = c->medium_at - s->center;
     float distance = length3(away);
-    ray way = {.origin = c->medium_at,
-               .direction = distance > 0.0f ? away / distance : (vec3){0.0f, 0.0f, 1.0f},
-               .t_max = INFINITY,
-               .medium = c->medium_there};
-    for (int i = 0; i < MOST_CROSSINGS && isfinite(cross(s, &way)); i++)
-        continue;
-    s->outer_medium = way.medium;
+    const ray way = {.origin = c->medium_at,
+                     .direction =
+                         distance > 0.0f ? away / distance : (vec3){0.0f, 0.0f, 1.0f},
+                     .t_max = INFINITY,
+                     .medium = c->medium_there};
+    s->outer_medium = scene_medium_behind(s, way);
     s->media_radius = MEDIA_REACH * maxf(s->radius, distance);
 }
 
@@ -132,7 +138,5 @@ void scene_find_eye_medium(scene *s)
     if (!scene_has_media(s) || !(way.t_max > 0.0f) || !isfinite(way.t_max))
         return;
     way.direction = to / way.t_max;
-    for (int i = 0; i < MOST_CROSSINGS && isfinite(cross(s, &way)); i++)
-        continue;
-    c->medium = way.medium;
+    c->medium = scene_medium_behind(s, way);
 }
