@@ -305,6 +305,7 @@ static void test_files(void)
     check_same(path); /* with the sky and the camera it gets */
     folder_remove(&f);
     check_same(SOURCE_ROOT "/scenes/glass-ball/glass-ball.pbrt");
+    check_same(SOURCE_ROOT "/scenes/cobblers-globe/cobblers-globe.pbrt");
 }
 
 /* Media, maps with transforms, embedded images, lamps; repeated nodes are in gltf-maps.
