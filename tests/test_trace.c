@@ -156,6 +156,27 @@ static void test_indirect_flux_is_a_geometric_series(void)
     }
 }
 
+/* White walls keep photons for ever: after many bounces some are taken out, and the
+   others stand for them. */
+static void test_long_ways(void)
+{
+    settings how = quick_settings();
+    g_autofree char *white = g_strconcat(
+        CAMERA "WorldBegin Material \"diffuse\" \"rgb reflectance\" [1 1 1]\n" BOX,
+        lights[0], NULL);
+    g_autofree char *nearly = g_strconcat(
+        CAMERA
+        "WorldBegin Material \"diffuse\" \"rgb reflectance\" [.993 .993 .993]\n" BOX,
+        lights[0], NULL);
+    g_autoptr(scene) endless = scene_of(white), s = scene_of(nearly);
+    g_assert_cmpfloat(stored_flux(endless, &how, PHOTON_INDIRECT, 1 << 8).mean, >, 0);
+    wavelengths w = wavelengths_at(0.5f);
+    double expected = (double)spectrum_mean(power_of_lights(s, &w)) * 0.993 / 0.007;
+    flux_mean found = stored_flux(s, &how, PHOTON_INDIRECT, 1 << 17);
+    g_test_message("indirect %g +- %g, expected %g", found.mean, found.error, expected);
+    g_assert_cmpfloat(fabs(found.mean / expected - 1.0), <, 0.01);
+}
+
 static void test_bounce_limit_counts_scattering(void)
 {
     settings how = quick_settings();
@@ -231,6 +252,7 @@ static void test_integrating_sphere(void)
     g_autoptr(photon_map) map =
         photon_map_build(MAP_GRID, &result.photons, 0.5f, 2, NULL);
     memset(&result.photons, 0, sizeof result.photons);
+    trace_result_clear(&result);
     spectrum power = power_of_lights(s, &task.w);
     double expected = (double)spectrum_mean(power) / (4.0 * G_PI * 9.0) * 0.6 / 0.4,
            found = 0;
@@ -423,6 +445,7 @@ int main(int argc, char **argv)
     g_test_add_func("/trace/direct-flux", test_direct_map_holds_all_flux);
     g_test_add_func("/trace/indirect-flux", test_indirect_flux_is_a_geometric_series);
     g_test_add_func("/trace/bounce-limit", test_bounce_limit_counts_scattering);
+    g_test_add_func("/trace/long-ways", test_long_ways);
     g_test_add_func("/trace/aimed-flux", test_aimed_emission_has_the_same_flux);
     g_test_add_func("/trace/integrating-sphere", test_integrating_sphere);
     g_test_add_func("/trace/mirrors", test_indirect_photons_take_mirrors);

@@ -7,6 +7,10 @@
 /* Photons emitted per parallel piece of work. */
 enum { CHUNK = 4096 };
 
+/* A way of so many bounces is long; at each further one this share of photons ends. */
+enum { LONG_WAY = 500 };
+#define LONG_WAY_LOSS 0.005f
+
 /* Ways through media that each leave a photon, before fewer do. */
 enum { WAYS_KEPT = 8 };
 
@@ -387,13 +391,22 @@ static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
     }
 }
 
+/* White walls and white fog would keep a photon for ever: on a long way, roulette ends
+   some at every step. */
+static bool goes_further(photon_path *path, int64_t bounces)
+{
+    const float survival = 1.0f - LONG_WAY_LOSS;
+    return bounces < LONG_WAY ||
+           survives(path, path->flux, survival, sampler_1d(&path->random));
+}
+
 static void follow(photon_path *path)
 {
     int64_t limit = path->task->how->max_forward_bounces;
     surface_hit hit;
     bsdf b;
     for (int64_t bounces = 0; come_to_scatterer(path, &hit, &b); bounces++) {
-        if (limit >= 0 && bounces >= limit) {
+        if ((limit >= 0 && bounces >= limit) || !goes_further(path, bounces)) {
             tell(path, PHOTON_ENDED, &hit, 0);
             return;
         }

@@ -2,7 +2,11 @@
 #include "transport/path_walk.h"
 #include "transport/photonmap.h"
 
-enum { ROULETTE_BOUNCES = 4 };
+enum {
+    ROULETTE_BOUNCES = 4,
+    LONG_WAY = 500, /* from here on paths end by chance however white all is */
+};
+#define LONG_WAY_SURVIVAL 0.995f
 
 static radiance_layer layer_of(const camera_path *path)
 {
@@ -264,6 +268,8 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     if (path->bounces < ROULETTE_BOUNCES)
         return !spectrum_is_black(path->beta);
     float p = minf(1.0f, spectrum_mean(path->beta) * path->eta2);
+    if (path->bounces >= LONG_WAY)
+        p *= LONG_WAY_SURVIVAL;
     path->beta /= p;
     return sampler_1d(walk->random) < p;
 }
