@@ -7,10 +7,6 @@
 /* Photons emitted per parallel piece of work. */
 enum { CHUNK = 4096 };
 
-/* A way of so many bounces is long; at each further one this share of photons ends. */
-enum { LONG_WAY = 500 };
-#define LONG_WAY_LOSS 0.005f
-
 /* Ways through media that each leave a photon, before fewer do. */
 enum { WAYS_KEPT = 8 };
 
@@ -395,9 +391,8 @@ static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
    some at every step. */
 static bool goes_further(photon_path *path, int64_t bounces)
 {
-    const float survival = 1.0f - LONG_WAY_LOSS;
     return bounces < LONG_WAY ||
-           survives(path, path->flux, survival, sampler_1d(&path->random));
+           survives(path, path->flux, LONG_WAY_SURVIVAL, sampler_1d(&path->random));
 }
 
 static void follow(photon_path *path)

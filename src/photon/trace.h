@@ -29,6 +29,11 @@
 #include "photon/photon.h"
 #include "photon/share.h"
 
+/** After so many bounces, photons and paths from the eye go on by this chance at each,
+ * however white all is. */
+enum { LONG_WAY = 500 };
+#define LONG_WAY_SURVIVAL 0.995f
+
 /** @brief What to trace. A plain value; the pass is a pure function of it. */
 typedef struct trace_task {
     const scene *scene;

@@ -27,7 +27,6 @@ typedef struct volume_map volume_map;
 volume_map *volume_map_build(photon_store *store, const float *radii, unsigned threads,
                              GError **error);
 void volume_map_free(volume_map *map);
-const photon_store *volume_map_store(const volume_map *map);
 size_t volume_map_bytes(const volume_map *map); /**< memory kept, Embree's apart */
 
 /** @brief What to ask for. */

@@ -23,16 +23,6 @@ static const phase *phase_of(const bsdf *b)
     return (const phase *)b->data;
 }
 
-static spectrum phase_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
-                           transport_mode mode)
-{
-    (void)mode;
-    float p = lobe_wanted(lobes, PHASE_LOBE)
-                  ? phase_henyey_greenstein(phase_of(b)->g, dot3(wo, wi))
-                  : 0.0f;
-    return spectrum_fill(p);
-}
-
 static float phase_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
                        transport_mode mode)
 {
@@ -40,6 +30,12 @@ static float phase_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
     return lobe_wanted(lobes, PHASE_LOBE)
                ? phase_henyey_greenstein(phase_of(b)->g, dot3(wo, wi))
                : 0.0f;
+}
+
+static spectrum phase_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
+                           transport_mode mode)
+{
+    return spectrum_fill(phase_pdf(b, wo, wi, lobes, mode));
 }
 
 /* cosθ of the way on, by inverting the distribution; near g = 0 that would lose digits.

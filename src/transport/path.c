@@ -2,11 +2,7 @@
 #include "transport/path_walk.h"
 #include "transport/photonmap.h"
 
-enum {
-    ROULETTE_BOUNCES = 4,
-    LONG_WAY = 500, /* from here on paths end by chance however white all is */
-};
-#define LONG_WAY_SURVIVAL 0.995f
+enum { ROULETTE_BOUNCES = 4 };
 
 static radiance_layer layer_of(const camera_path *path)
 {

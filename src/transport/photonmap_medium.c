@@ -10,7 +10,6 @@
 enum { CHUNK = 1024 };
 
 typedef struct radius_loop {
-    const photonmap_pass *pass;
     const photon_store *store;
     const photon_map *places; /* whose numbers are radii of pass 0; NULL: one for all */
     double typical;           /* of pass 0 */
@@ -46,7 +45,6 @@ bool photonmap_keep_in_media(photonmap_pass *pass, int slice, photon_class c,
     if (!radii)
         return false;
     radius_loop loop = {
-        .pass = pass,
         .store = photons,
         .places = plan->radius_map_in_media[c],
         .typical = radius,
