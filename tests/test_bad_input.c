@@ -2,28 +2,13 @@
  * bad input: each mistake is told with its file, line and column, what was expected and
  * what was found; no input whatever may crash.
  */
-#include "scene_text.h"
+#include "refused_scene.h"
 
 #include "base/memory.h"
 
 #define CAMERA "Camera \"perspective\"\n"
 #define LIGHT "LightSource \"point\"\n"
 #define WORLD CAMERA "WorldBegin\n" LIGHT /* three lines */
-
-/** Loads a text that must be refused; every "%s" of the message is the file's name. */
-static void refuse(const char *text, const char *message)
-{
-    scene_folder f = folder_new(text);
-    g_autoptr(GError) error = NULL;
-    g_autoptr(scene) s = format_load(f.main, 1, NULL, &error);
-    g_assert_null(s);
-    g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
-    g_auto(GStrv) parts = g_strsplit(message, "%s", -1);
-    g_autofree char *want = g_strjoinv(f.main, parts);
-    if (strcmp(error->message, want) != 0)
-        g_error("of\n%s\nexpected\n%s\nfound\n%s", text, want, error->message);
-    folder_remove(&f);
-}
 
 static void test_files(void)
 {

@@ -3,7 +3,7 @@
  * MediumInterface is around what stands in its scope; in pbrt-v3's words too. What is
  * wrong with them is told at its place.
  */
-#include "scene_text.h"
+#include "refused_scene.h"
 
 #include "scene/medium_presets.h"
 
@@ -250,21 +250,6 @@ static void test_v3(void)
 /* ---- What is wrong ---- */
 
 #define WORLD CAMERA "WorldBegin\n" LIGHT /* three lines */
-
-/* Every "%s" of the message is the file's name. */
-static void refuse(const char *text, const char *message)
-{
-    scene_folder f = folder_new(text);
-    g_autoptr(GError) error = NULL;
-    g_autoptr(scene) s = format_load(f.main, 1, NULL, &error);
-    g_assert_null(s);
-    g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
-    g_auto(GStrv) parts = g_strsplit(message, "%s", -1);
-    g_autofree char *want = g_strjoinv(f.main, parts);
-    if (strcmp(error->message, want) != 0)
-        g_error("of\n%s\nexpected\n%s\nfound\n%s", text, want, error->message);
-    folder_remove(&f);
-}
 
 static void refuse_made(const char *given, const char *message)
 {

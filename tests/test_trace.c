@@ -3,6 +3,7 @@
  * emission, and an integrating sphere holds what theory says.
  */
 #include "base/memory.h"
+#include "flux_mean.h"
 #include "photon/estimate.h"
 #include "photon/trace.h"
 #include "scene_text.h"
@@ -69,38 +70,12 @@ static spectrum power_of_lights(const scene *s, const wavelengths *w)
     return sum;
 }
 
-/* Mean and standard error, over the mean of wavelengths, of the flux per emission. */
-typedef struct flux_mean {
-    double mean, error;
-} flux_mean;
-
-static flux_mean stored_flux_by(const transport_plan *plan, photon_class c, uint64_t n)
-{
-    enum { BATCHES = 16 };
-    double sum = 0, sum2 = 0;
-    for (uint32_t batch = 0; batch < BATCHES; batch++) {
-        trace_task task = task_for(plan->scene, &plan->how, c, n / BATCHES);
-        task.guide = plan->guide;
-        trace_result result;
-        task.pass = batch;
-        g_assert_true(photon_trace(&task, false, &result, NULL));
-        double flux = 0;
-        for (size_t i = 0; i < result.photons.n; i++)
-            flux += (double)spectrum_mean(result.photons.flux[i]);
-        trace_result_clear(&result);
-        sum += flux;
-        sum2 += flux * flux;
-    }
-    double mean = sum / BATCHES;
-    return (flux_mean){mean,
-                       sqrt(fmax(0.0, sum2 / BATCHES - mean * mean) / (BATCHES - 1))};
-}
-
+/* On surfaces. */
 static flux_mean stored_flux(const scene *s, const settings *how, photon_class c,
                              uint64_t n)
 {
     const transport_plan plan = {.scene = s, .how = *how};
-    return stored_flux_by(&plan, c, n);
+    return flux_left(&plan, c, false, n);
 }
 
 static void test_emitted_flux_is_the_power(void)
@@ -225,7 +200,7 @@ static void test_aimed_emission_has_the_same_flux(void)
         plan.how.caustic_emission = EMISSION_GUIDED;
         plan.n_photons[PHOTON_CAUSTIC] = 1;
         g_assert_true(aim_caustics(&plan, NULL, NULL, NULL, NULL));
-        flux_mean guided = stored_flux_by(&plan, PHOTON_CAUSTIC, 1 << 17);
+        flux_mean guided = flux_left(&plan, PHOTON_CAUSTIC, false, 1 << 17);
         transport_plan_clear(&plan);
         double guided_error =
             sqrt(plain.error * plain.error + guided.error * guided.error);

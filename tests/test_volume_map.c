@@ -3,6 +3,7 @@
  * law of free paths whatever way they are sent, and pictures of them that are the same
  * bits on any number of threads, in any unit, and apart by light groups.
  */
+#include "flux_mean.h"
 #include "fog_scenes.h"
 #include "photon/trace.h"
 #include "photon/volume_map.h"
@@ -119,37 +120,6 @@ static void test_against_the_sum(void)
 
 /* ---- Flux ---- */
 
-typedef struct flux_mean {
-    double mean, error;
-} flux_mean;
-
-/* Mean and standard error of the flux that is kept in media. */
-static flux_mean flux_in_media(const transport_plan *plan, photon_class c, uint64_t n)
-{
-    enum { BATCHES = 16 };
-    double sum = 0, sum2 = 0;
-    for (uint32_t batch = 0; batch < BATCHES; batch++) {
-        const trace_task task = {.scene = plan->scene,
-                                 .how = &plan->how,
-                                 .w = wavelengths_at(0.5f),
-                                 .pass = batch,
-                                 .photon_class = c,
-                                 .guide = plan->guide,
-                                 .n_photons = n / BATCHES};
-        trace_result result;
-        g_assert_true(photon_trace(&task, false, &result, NULL));
-        double flux = 0;
-        for (size_t i = 0; i < result.in_media.n; i++)
-            flux += (double)spectrum_mean(result.in_media.flux[i]);
-        trace_result_clear(&result);
-        sum += flux;
-        sum2 += flux * flux;
-    }
-    double mean = sum / BATCHES;
-    return (flux_mean){mean,
-                       sqrt(fmax(0.0, sum2 / BATCHES - mean * mean) / (BATCHES - 1))};
-}
-
 static double power_of(const scene *s)
 {
     const wavelengths w = wavelengths_at(0.5f);
@@ -176,7 +146,7 @@ static void test_first_scattering(void)
                         NULL);
         g_autoptr(scene) s = scene_of(all);
         transport_plan plan = {.scene = s, .how = settings_default()};
-        flux_mean direct = flux_in_media(&plan, PHOTON_DIRECT, 1 << 15);
+        flux_mean direct = flux_left(&plan, PHOTON_DIRECT, true, 1 << 15);
         double expected = power_of(s) * -expm1(-cases[i].tau);
         g_test_message("tau %g: %g, expected %g", cases[i].tau, direct.mean, expected);
         g_assert_cmpfloat(fabs(direct.mean / expected - 1), <, 2e-3);
@@ -192,8 +162,8 @@ static void test_series_of_scatterings(void)
             "f", "") "Material \"interface\" " BALL("9") BETWEEN("f", "f")
                      POINT("0 0 0"));
     transport_plan plan = {.scene = s, .how = settings_default()};
-    double direct = flux_in_media(&plan, PHOTON_DIRECT, 1 << 14).mean / power_of(s);
-    double later = flux_in_media(&plan, PHOTON_INDIRECT, 1 << 14).mean / power_of(s);
+    double direct = flux_left(&plan, PHOTON_DIRECT, true, 1 << 14).mean / power_of(s);
+    double later = flux_left(&plan, PHOTON_INDIRECT, true, 1 << 14).mean / power_of(s);
     g_test_message("direct %g of .75, later %g of 2.25", direct, later);
     g_assert_cmpfloat(fabs(direct / 0.75 - 1), <, 5e-3);
     g_assert_cmpfloat(fabs(later / 2.25 - 1), <, 1.5e-2);
@@ -226,8 +196,8 @@ static void test_ways_to_send(void)
             plan.how.caustic_emission = mode;
             plan.n_photons[PHOTON_CAUSTIC] = 20000;
             g_assert_true(aim_caustics(&plan, NULL, NULL, NULL, NULL));
-            found[mode] = flux_in_media(&plan, PHOTON_CAUSTIC,
-                                        mode == EMISSION_UNIFORM ? 1 << 19 : 1 << 16);
+            found[mode] = flux_left(&plan, PHOTON_CAUSTIC, true,
+                                    mode == EMISSION_UNIFORM ? 1 << 19 : 1 << 16);
             transport_plan_clear(&plan);
             double off = found[mode].mean - found[0].mean;
             double error = hypot(found[mode].error, found[0].error);
