@@ -186,6 +186,61 @@ static void test_defaults(void)
     g_string_free(kept.text, TRUE);
 }
 
+/* What a file requires, and what only looks otherwise without: shown, and said. What its
+ * data cannot be read without, and what nobody knows, is refused by name. */
+static void test_required(void)
+{
+    static const struct {
+        const char *name;
+        bool is_shown, is_noted;
+    } cases[] = {
+        {"KHR_materials_iridescence", true, true},
+        {"KHR_materials_sheen", true, true},
+        {"KHR_materials_volume_scatter", true, true},
+        {"KHR_materials_variants", true, true},
+        {"KHR_animation_pointer", true, true},
+        {"KHR_interactivity", true, true},
+        {"KHR_xmp_json_ld", true, true},
+        {"KHR_materials_specular", true, false},
+        {"KHR_materials_anisotropy", true, false},
+        {"KHR_materials_dispersion", true, false},
+        {"KHR_texture_transform", true, false},
+        {"KHR_node_visibility", true, false},
+        {"KHR_draco_mesh_compression", false, false},
+        {"KHR_meshopt_compression", false, false},
+        {"EXT_texture_webp", false, false},
+        {"XYZ_not_known", false, false},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        notes kept = {g_string_new(NULL)};
+        g_autoptr(GError) error = NULL;
+        g_autofree char *middle =
+            g_strdup_printf("\"extensionsUsed\":[\"%s\"],\"extensionsRequired\":[\"%s\"],"
+                            "\"materials\":[{}]," MESH("0") NODES,
+                            cases[i].name, cases[i].name);
+        g_autofree char *text = document(middle);
+        g_autoptr(scene) s = load_bytes("a.gltf", text, -1, &kept, &error);
+        g_test_message("%s", cases[i].name);
+        g_assert_true((s != NULL) == cases[i].is_shown);
+        const char *said = s ? kept.text->str : error->message;
+        bool is_named = strstr(said, cases[i].name) != NULL;
+        g_assert_true(is_named == (cases[i].is_noted || !cases[i].is_shown));
+        g_string_free(kept.text, TRUE);
+    }
+}
+
+/* A node that is not to be seen, and what hangs on it. */
+static void test_hidden(void)
+{
+#define HIDDEN ",\"extensions\":{\"KHR_node_visibility\":{\"visible\":false}}"
+    g_autoptr(scene) s = load(
+        "\"materials\":[{}]," MESH("0") "\"nodes\":[{\"mesh\":0},{\"children\":[2,3]"
+                                        "},{\"mesh\":0" HIDDEN
+                                        "},{\"children\":[4]" HIDDEN "},{\"mesh\":0}],",
+        NULL);
+    g_assert_cmpuint(s->shapes->len + s->instances->len, ==, 2); /* an object, once */
+}
+
 /* ---- What is refused ---- */
 
 static void test_refused(void)
@@ -302,6 +357,8 @@ int main(int argc, char **argv)
     g_test_add_func("/gltf/lights-and-camera", test_lights_and_camera);
     g_test_add_func("/gltf/spot-edges", test_spot_edges);
     g_test_add_func("/gltf/defaults", test_defaults);
+    g_test_add_func("/gltf/required", test_required);
+    g_test_add_func("/gltf/hidden", test_hidden);
     g_test_add_func("/gltf/refused", test_refused);
     g_test_add_func("/gltf/not-json", test_not_json);
     g_test_add_func("/gltf/damaged", test_damaged);

@@ -96,6 +96,14 @@ static void add_children(gltf *g, const json_value *nodes, const json_value *lis
     }
 }
 
+/* With all that hangs on it (KHR_node_visibility). */
+static bool is_hidden(const json_value *node)
+{
+    json_value extensions;
+    json_value e = gltf_extension(node, "KHR_node_visibility", &extensions);
+    return !json_flag(&e, "visible", true);
+}
+
 static void add_node(gltf *g, const json_value *nodes, guint index,
                      const transform *parent, unsigned depth)
 {
@@ -110,6 +118,8 @@ static void add_node(gltf *g, const json_value *nodes, guint index,
         return;
     }
     g->visited[index] = true;
+    if (is_hidden(&node))
+        return;
     if (!gltf_node_transform(&node, &own)) {
         if (!gltf_failed(g))
             gltf_note(g, LOG_WARNING, "a node scaled to nothing is left out");
@@ -161,43 +171,42 @@ static void check_version(gltf *g)
                   version ? version : "none");
 }
 
-/* What is left out may change what is seen, or how it is stored. */
-static bool may_be_required(const char *name)
+/* Element i of a list of names; NULL if it is not a string. */
+static const char *name_at(const json_value *list, guint i, json_value *name)
 {
-    const gltf_extension_row *row = gltf_find_extension(name);
-    return row && (row->support == GLTF_RENDERED || row->support == GLTF_APPROXIMATED);
+    *name = json_element(list, i);
+    bool is_text = JSON_NODE_HOLDS_VALUE(name->node) &&
+                   json_node_get_value_type(name->node) == G_TYPE_STRING;
+    return is_text ? json_node_get_string(name->node) : NULL;
 }
 
+/* Without what a file requires it may look otherwise; what can not be read without it is
+ * refused, and what is not known may be that. */
 static void check_required(gltf *g)
 {
-    json_value required = json_member(&g->root, "extensionsRequired");
+    json_value required = json_member(&g->root, "extensionsRequired"), at;
     guint n = json_length(&required);
     for (guint i = 0; i < n; i++) {
-        json_value name = json_element(&required, i);
-        bool is_text = JSON_NODE_HOLDS_VALUE(name.node) &&
-                       json_node_get_value_type(name.node) == G_TYPE_STRING;
-        if (!is_text)
-            json_fail(&name, "expected a string");
-        else if (!may_be_required(json_node_get_string(name.node)))
-            json_fail(&name, "the file requires the extension %s, which is not supported",
-                      json_node_get_string(name.node));
+        const char *name = name_at(&required, i, &at);
+        const gltf_extension_row *row = name ? gltf_find_extension(name) : NULL;
+        if (!name)
+            json_fail(&at, "expected a string");
+        else if (!row || row->support == GLTF_REFUSED)
+            json_fail(&at, "the file requires the extension %s, which is not supported",
+                      name);
     }
 }
 
 /* Of the extensions that a file uses, those that are left out, and those not known. */
-static void note_extensions(gltf *g)
+static void note_extensions(gltf *g, const char *list)
 {
-    json_value used = json_member(&g->root, "extensionsUsed");
+    json_value used = json_member(&g->root, list), at;
     guint n = json_length(&used);
     for (guint i = 0; i < n; i++) {
-        json_value name = json_element(&used, i);
-        if (!JSON_NODE_HOLDS_VALUE(name.node) ||
-            json_node_get_value_type(name.node) != G_TYPE_STRING)
-            continue;
-        const gltf_extension_row *row =
-            gltf_find_extension(json_node_get_string(name.node));
-        if (!row || row->support == GLTF_LEFT_OUT)
-            gltf_note(g, LOG_WARNING, "%s is left out", json_node_get_string(name.node));
+        const char *name = name_at(&used, i, &at);
+        const gltf_extension_row *row = name ? gltf_find_extension(name) : NULL;
+        if (name && (!row || row->support == GLTF_LEFT_OUT))
+            gltf_note(g, LOG_WARNING, "%s is left out", name);
     }
 }
 
@@ -233,7 +242,8 @@ static void read_document(gltf *g)
     make_room(g);
     gltf_find_parents(g);
     gltf_survey(g);
-    note_extensions(g);
+    note_extensions(g, "extensionsUsed");
+    note_extensions(g, "extensionsRequired");
     note_animations(g);
     if (!gltf_failed(g))
         add_scene(g);

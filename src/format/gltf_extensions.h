@@ -10,7 +10,7 @@
 typedef enum gltf_support {
     GLTF_RENDERED,
     GLTF_APPROXIMATED,
-    GLTF_LEFT_OUT, /**< with a note; refused where a file requires it */
+    GLTF_LEFT_OUT, /**< with a note, also where a file requires it: only looks differ */
     GLTF_REFUSED,  /**< data that can not be read without it */
 } gltf_support;
 
