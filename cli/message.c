@@ -14,7 +14,7 @@ int print_result(const char *format, ...)
     va_end(args);
     if (fputs(text, stdout) >= 0 && fflush(stdout) == 0)
         return EXIT_DONE;
-    say("cannot write to standard output: %s", g_strerror(errno));
+    tell("error", "cannot write to standard output: %s", g_strerror(errno));
     return EXIT_FAILED;
 }
 
@@ -25,6 +25,43 @@ void say(const char *format, ...)
     g_autofree char *text = g_strdup_vprintf(format, args);
     va_end(args);
     fprintf(stderr, "nephroid: %s\n", text);
+}
+
+/* Length of a place without the ":LINE" or ":LINE:COLUMN" at its end. */
+static size_t without_numbers(const char *text, size_t length)
+{
+    for (int i = 0; i < 2; i++) {
+        size_t digits = length;
+        while (digits > 0 && g_ascii_isdigit(text[digits - 1]))
+            digits--;
+        if (digits == length || digits == 0 || text[digits - 1] != ':')
+            break;
+        length = digits - 1;
+    }
+    return length;
+}
+
+/* Where a message goes on behind the place that it begins with: a file that is there,
+ * with line and column or without, and ": ". */
+static const char *behind_place(const char *text)
+{
+    for (const char *colon = text; (colon = strstr(colon, ": ")); colon += 2) {
+        size_t length = without_numbers(text, (size_t)(colon - text));
+        g_autofree char *file = g_strndup(text, length);
+        if (g_file_test(file, G_FILE_TEST_EXISTS))
+            return colon + 2;
+    }
+    return text;
+}
+
+void tell(const char *level, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    g_autofree char *text = g_strdup_vprintf(format, args);
+    va_end(args);
+    const char *what = behind_place(text);
+    fprintf(stderr, "%.*s%s: %s\n", (int)(what - text), text, level, what);
 }
 
 static int exit_code(const GError *error)
@@ -43,7 +80,7 @@ int report_error(const GError *error)
     g_auto(GStrv) lines = g_strsplit(error->message, "\n", -1);
     for (size_t i = 0; lines[i]; i++)
         if (*lines[i])
-            say("%s", lines[i]);
+            tell("error", "%s", lines[i]);
     return exit_code(error);
 }
 
@@ -53,8 +90,8 @@ int usage_error(const char *format, ...)
     va_start(args, format);
     g_autofree char *text = g_strdup_vprintf(format, args);
     va_end(args);
-    say("%s", text);
-    say("try '%s --help'", g_get_prgname());
+    tell("error", "%s", text);
+    tell("note", "try '%s --help'", g_get_prgname());
     return EXIT_USAGE;
 }
 
@@ -62,7 +99,7 @@ void log_to_stderr(NephLogLevel level, const char *text, void *data)
 {
     const bool *quiet = data;
     if (level == NEPH_LOG_WARNING)
-        say("warning: %s", text);
+        tell("warning", "%s", text);
     else if (!*quiet)
-        say("%s", text);
+        tell("note", "%s", text);
 }

@@ -183,8 +183,9 @@ static bool report_end(const NephRender *render, const GError *error, int *exit_
         statistics.passes_wanted
             ? g_strdup_printf(" of %" G_GINT64_FORMAT, statistics.passes_wanted)
             : g_strdup("");
-    say("stopped by %s after %" G_GINT64_FORMAT "%s passes; writing what there is",
-        stop_reason() ? stop_reason() : "request", statistics.passes, wanted);
+    tell("note",
+         "stopped by %s after %" G_GINT64_FORMAT "%s passes; writing what there is",
+         stop_reason() ? stop_reason() : "request", statistics.passes, wanted);
     return true;
 }
 

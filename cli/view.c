@@ -47,7 +47,7 @@ int command_view(int argc, char **argv)
         argv[0] = viewer;
         execv(viewer, argv);
     }
-    say("cannot start nephroid-view: %s",
-        viewer ? g_strerror(errno) : "it is not here (it is built where GTK 4 is)");
+    tell("error", "cannot start nephroid-view: %s",
+         viewer ? g_strerror(errno) : "it is not here (it is built where GTK 4 is)");
     return EXIT_FAILED;
 }

@@ -125,8 +125,39 @@ static void refuse(const folder *f, const char *first, const char *second,
     g_assert_cmpint(r.code, ==, 1);
     g_assert_cmpstr(r.out, ==, "");
     contains(r.err, part);
-    contains(r.err, "nephroid: ");
+    contains(r.err, "error: ");
     g_assert_cmpuint(folder_count(f), ==, before);
+}
+
+/* As compilers say it: what begins a line of stderr is a place, then what kind of line it
+ * is; without a place, the kind. */
+static void test_form_of_messages(folder *f, gconstpointer data)
+{
+    static const char *const cases[][3] = {
+        {"unknown", "render bad.pbrt", "bad.pbrt:6:1: error: expected a directive"},
+        {"no file", "render none.pbrt", "error: "},
+        {"usage", "frobnicate", "error: unknown command 'frobnicate'\nnote: try "},
+        {"option", "render --frobnicate", "error: "},
+        {"folder", "info .", ".: error: "},
+    };
+    (void)data;
+    g_autofree char *bad = g_strconcat(scene_head, unknown, NULL);
+    folder_write(f, "bad.pbrt", bad);
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_auto(result) r = run(f, cases[i][1]);
+        if (!g_str_has_prefix(r.err, cases[i][2]))
+            g_error("%s: expected %s, found %s", cases[i][0], cases[i][2], r.err);
+    }
+    g_autofree char *noted =
+        g_strconcat("Accelerator \"bvh\"\n", scene_head, scene_body, NULL);
+    folder_write(f, "noted.pbrt", noted);
+    g_auto(result) r = run(f, "info noted.pbrt");
+    g_assert_true(g_str_has_prefix(r.err, "noted.pbrt:1:13: note: Accelerator 'bvh'"));
+    g_autofree char *strange = g_strconcat(
+        scene_head, "WorldBegin LightSource \"point\"\nMaterial \"hair\"\n", NULL);
+    folder_write(f, "hair.pbrt", strange);
+    g_auto(result) warned = run(f, "info --lenient hair.pbrt");
+    contains(warned.err, "hair.pbrt:6:1: warning: material \"hair\" becomes");
 }
 
 static void test_bad_input(folder *f, gconstpointer data)
@@ -231,6 +262,7 @@ int main(int argc, char **argv)
     folder_add_test("/cli/usage", test_bad_usage);
     folder_add_test("/cli/settings", test_settings_listed);
     folder_add_test("/cli/input", test_bad_input);
+    folder_add_test("/cli/form-of-messages", test_form_of_messages);
     folder_add_test("/cli/missing", test_missing_files);
     folder_add_test("/cli/unwritable", test_unwritable_output);
     folder_add_test("/cli/settings-file", test_settings_file_is_read_strictly);
