@@ -225,6 +225,51 @@ static void test_models(void)
     g_assert_cmpuint(n_read, >, paths->len / step / 4);
 }
 
+/* What is missing is said, by name; what is there is not. */
+static void keep_text(log_level level, const char *text, void *data)
+{
+    if (level == LOG_WARNING)
+        g_string_append_printf(data, "%s\n", text);
+}
+
+static void test_missing_materials(void)
+{
+    static const struct {
+        const char *head, *mtl_name, *said, *not_said; /* NULL: nothing is said */
+    } cases[] = {
+        {"mtllib m.mtl\nusemtl a\n", "m.mtl", NULL, NULL},
+        {"mtllib my own.mtl \r\nusemtl a\r\n", "my own.mtl", NULL, NULL},
+        {"mtllib gone.mtl\nusemtl a\n", "m.mtl", "'gone.mtl' (mtllib)", "usemtl"},
+        {"mtllib gone.mtl\nusemtl a\n", "a.mtl", "a.mtl instead", "usemtl"},
+        {"mtllib m.mtl\nusemtl b\nusemtl a\n", "m.mtl", "'b' (usemtl)", "'a'"},
+        {"usemtl b\n", "m.mtl", "no file of them (mtllib)", "'b'"},
+        {"", "m.mtl", NULL, NULL},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autoptr(GString) said = g_string_new(NULL);
+        g_autoptr(GError) error = NULL;
+        const log_sink sink = {keep_text, said};
+        scene_folder f = folder_new("");
+        g_autofree char *obj =
+            g_strconcat(cases[i].head, TRIANGLE "f 1/1 2/2 3/3\n", NULL);
+        folder_write(&f, "a.obj", obj, -1);
+        folder_write(&f, cases[i].mtl_name, "# one\n  newmtl a\r\nKd 1 0 0\n", -1);
+        g_autofree char *path = g_build_filename(f.path, "a.obj", NULL);
+        const log_sink quiet = {0};
+        scene *s = format_load(path, 1, &sink, &error);
+        g_assert_no_error(error);
+        s->log = quiet;
+        scene_free(s);
+        folder_remove(&f);
+        g_test_message("%s: %s", cases[i].head, said->str);
+        g_assert_true((strstr(said->str, "mtl") != NULL) == (cases[i].said != NULL));
+        if (cases[i].said)
+            g_assert_nonnull(strstr(said->str, cases[i].said));
+        if (cases[i].not_said)
+            g_assert_null(strstr(said->str, cases[i].not_said));
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -235,5 +280,6 @@ int main(int argc, char **argv)
     g_test_add_func("/assimp/stl-and-ply", test_stl_and_ply);
     g_test_add_func("/assimp/refused", test_refused);
     g_test_add_func("/assimp/models", test_models);
+    g_test_add_func("/assimp/missing-materials", test_missing_materials);
     return g_test_run();
 }

@@ -10,6 +10,7 @@
 #include "base/intern.h"
 #include "base/memory.h"
 #include "format/defaults.h"
+#include "format/obj_materials.h"
 #include "format/reader.h"
 #include "scene/mesh_closed.h"
 
@@ -225,6 +226,7 @@ static bool build(assimp_reader *r, GError **error)
 {
     const transform identity = transform_identity();
     note_left_out(r);
+    obj_check_materials(r->scene, r->path);
     return add_node(r, r->source->mRootNode, &identity, 0, error) &&
            assimp_add_lights(r, error) && assimp_add_camera(r, error) &&
            scene_complete(r->scene, r->path, r->up, r->scene->lights->len > 0, error);

@@ -1,0 +1,156 @@
+/*
+ * What an OBJ file names and what its MTL files define are read side by side, line by
+ * line; all else in them is the importer's. A name is the rest of its line. Where a file
+ * of materials is missing the importer tries the one named like the OBJ file, and so does
+ * this.
+ */
+#include "format/obj_materials.h"
+
+#include "format/input.h"
+
+#include <string.h>
+
+enum { MOST_NAMED = 10 }; /* missing materials that are told one by one */
+
+typedef struct obj_names {
+    scene *scene;
+    const char *path;
+    char *directory;
+    GHashTable *files, *defined, *used; /* char* */
+    GPtrArray *in_order;                /* those used; borrowed */
+    bool has_library;                   /* one that could be read */
+} obj_names;
+
+/* ---- Lines ---- */
+
+typedef void (*line_func)(obj_names *names, const char *line, size_t length);
+
+/* What follows a word at the start of a line, without blanks around it; NULL if the line
+ * begins otherwise, or nothing follows. */
+static char *after(const char *word, const char *line, size_t length)
+{
+    size_t n = strlen(word);
+    if (length <= n || memcmp(line, word, n) != 0 || !g_ascii_isspace(line[n]))
+        return NULL;
+    char *rest = g_strstrip(g_strndup(line + n, length - n));
+    if (!*rest)
+        g_clear_pointer(&rest, g_free);
+    return rest;
+}
+
+static bool each_line(obj_names *names, const char *path, line_func told)
+{
+    input in;
+    if (!g_file_test(path, G_FILE_TEST_IS_REGULAR) || !input_open(&in, path, NULL))
+        return false;
+    const char *at = in.data, *end = in.data + in.size;
+    while (at < end) {
+        const char *stop = memchr(at, '\n', (size_t)(end - at));
+        stop = stop ? stop : end;
+        while (at < stop && (*at == ' ' || *at == '\t'))
+            at++;
+        told(names, at, (size_t)(stop - at));
+        at = stop + 1;
+    }
+    input_close(&in);
+    return true;
+}
+
+/* ---- Names ---- */
+
+static void note_definition(obj_names *names, const char *line, size_t length)
+{
+    char *name = after("newmtl", line, length);
+    if (name)
+        g_hash_table_add(names->defined, name);
+}
+
+static char *own_library(const obj_names *names)
+{
+    g_autofree char *base = g_path_get_basename(names->path);
+    char *dot = strrchr(base, '.');
+    if (dot)
+        *dot = '\0';
+    g_autofree char *name = g_strconcat(base, ".mtl", NULL);
+    return g_build_filename(names->directory, name, NULL);
+}
+
+/* Takes the name. */
+static void read_library(obj_names *names, char *name)
+{
+    if (!g_hash_table_add(names->files, name))
+        return;
+    g_autofree char *path = g_canonicalize_filename(name, names->directory);
+    g_autofree char *own = own_library(names);
+    scene_sources_add(names->scene->sources, path);
+    bool found = each_line(names, path, note_definition);
+    bool has_own = !found && each_line(names, own, note_definition);
+    names->has_library |= found || has_own;
+    if (found)
+        return;
+    g_autofree char *instead =
+        has_own ? g_path_get_basename(own) : g_strdup("grey materials");
+    log_message(&names->scene->log, LOG_WARNING,
+                "%s: its file of materials '%s' (mtllib) can not be read: %s instead",
+                names->path, name, instead);
+}
+
+static void note_line(obj_names *names, const char *line, size_t length)
+{
+    char *library = after("mtllib", line, length);
+    char *used = after("usemtl", line, length);
+    if (library)
+        read_library(names, library);
+    if (used && g_hash_table_add(names->used, used))
+        g_ptr_array_add(names->in_order, used);
+}
+
+static void tell_missing(const obj_names *names)
+{
+    const log_sink *log = &names->scene->log;
+    guint n_missing = 0;
+    if (g_hash_table_size(names->files) == 0 && names->in_order->len > 0)
+        log_message(log, LOG_WARNING,
+                    "%s: it names materials (usemtl) and no file of them (mtllib): they "
+                    "are grey",
+                    names->path);
+    for (guint i = 0; i < names->in_order->len && names->has_library; i++) {
+        const char *name = names->in_order->pdata[i];
+        if (g_hash_table_contains(names->defined, name) || ++n_missing > MOST_NAMED)
+            continue;
+        log_message(log, LOG_WARNING,
+                    "%s: material '%s' (usemtl) is in none of its files of materials: "
+                    "it is grey",
+                    names->path, name);
+    }
+    if (n_missing > MOST_NAMED)
+        log_message(log, LOG_WARNING, "%s: %u more materials are missing", names->path,
+                    n_missing - MOST_NAMED);
+}
+
+static GHashTable *names_new(void)
+{
+    return g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+}
+
+void obj_check_materials(scene *s, const char *path)
+{
+    g_autofree char *lower = g_ascii_strdown(path, -1);
+    g_autofree char *absolute = g_canonicalize_filename(path, NULL);
+    g_autofree char *directory = g_path_get_dirname(absolute);
+    if (!g_str_has_suffix(lower, ".obj"))
+        return;
+    obj_names names = {.scene = s,
+                       .path = path,
+                       .directory = directory,
+                       .files = names_new(),
+                       .defined = names_new(),
+                       .used = names_new(),
+                       .in_order = g_ptr_array_new()};
+    each_line(&names, path, note_line);
+    tell_missing(&names);
+    g_hash_table_unref(names.files);
+    g_hash_table_unref(names.defined);
+    g_hash_table_unref(names.used);
+    g_ptr_array_unref(names.in_order);
+}
