@@ -39,8 +39,8 @@ static vec2 nephroid(double t)
                   (float)(0.25 * (3 * sin(t) - sin(3 * t)))};
 }
 
-/* Reflections of light from the point (-1, 0) of the unit circle: the cardioid, its cusp, at
-   t = π, at (1/3, 0). */
+/* Reflections of light from the point (-1, 0) of the unit circle: the cardioid, its cusp,
+   at t = π, at (1/3, 0). */
 static vec2 cardioid(double t)
 {
     return (vec2){(float)(-(2 * cos(t) + cos(2 * t)) / 3),
@@ -134,7 +134,7 @@ static void test_cardioid(void)
 {
     g_autoptr(scene) s =
         scene_of(CAMERA "WorldBegin LightSource \"point\" \"rgb I\" [1 1 1] "
-                               "\"point3 from\" [-0.999 0 0.9]\n" CUP);
+                        "\"point3 from\" [-0.999 0 0.9]\n" CUP);
     settings how = settings_default();
     how.max_forward_bounces = 1;
     trace_result r = caustic_photons(s, &how, 800000);
@@ -244,6 +244,68 @@ static void test_glass_ball_focus(void)
     check_focus(1.8, BALL(1.8));
 }
 
+/* ---- Far lamps ---- */
+
+/* What a ball of radius 5 mm at the origin is lit with, by light sampling. */
+static double flux_on_ball(const scene *s)
+{
+    const wavelengths w = wavelengths_at(0.5f);
+    const light *l = scene_light(s, 0);
+    light_sample at;
+    g_assert_true(l->kind->sample(l->self, &w, (vec3){0}, 0.5f, (vec2){0.5f, 0.5f}, &at));
+    return (double)(spectrum_mean(at.radiance) / at.pdf) * G_PI * 0.005 * 0.005;
+}
+
+/* A lamp askew, so that no coordinate is round, and a ball of glass that bends nothing
+   before a screen: the caustic's flux is what falls on the ball. False alarm by chance
+   below 1e-6. */
+static void check_far_lamp(double distance, const char *lamp)
+{
+    enum { N = 40000 };
+    g_autofree char *text = g_strdup_printf(
+        CAMERA "WorldBegin AttributeBegin LookAt 0 0 0  0.3 0.5 1  0 1 0 Translate 0 0 "
+               "%.9g %s AttributeEnd Material \"dielectric\" \"float eta\" 1 Shape "
+               "\"sphere\" \"float radius\" 0.005 Material \"diffuse\" Shape "
+               "\"sphere\" \"float radius\" 0.1 \"float zmax\" 0",
+        distance, lamp);
+    g_autoptr(scene) s = scene_of(text);
+    settings how = settings_default();
+    how.max_forward_bounces = 4;
+    trace_result r = caustic_photons(s, &how, N);
+    double sum = 0.0, sum2 = 0.0, expected = flux_on_ball(s);
+    for (size_t i = 0; i < r.photons.n; i++) {
+        double flux = (double)spectrum_mean(r.photons.flux[i]);
+        sum += flux;
+        sum2 += flux * flux;
+    }
+    double error = sqrt(MAX(sum2 - sum * sum / N, 0.0));
+    g_test_message("%g m: %zu photons, flux %g +- %g of what falls on the ball", distance,
+                   r.photons.n, sum / expected, error / expected);
+    g_assert_cmpuint(r.photons.n, >, N / 20);
+    g_assert_cmpfloat(fabs(sum - expected), <, 5.0 * error + 0.001 * expected);
+    trace_result_clear(&r);
+}
+
+static void test_far_lamps(void)
+{
+    static const double distances[] = {0.5, 40.0, 400.0, 1e4};
+    for (size_t i = 0; i < G_N_ELEMENTS(distances); i++) {
+        double d = distances[i];
+        g_autofree char *disk =
+            g_strdup_printf("Rotate 180 1 0 0 AreaLightSource \"diffuse\" Shape \"disk\" "
+                            "\"float radius\" "
+                            "%.9g",
+                            d / 1000);
+        g_autofree char *ball = g_strdup_printf(
+            "AreaLightSource \"diffuse\" Shape \"sphere\" \"float radius\" %.9g",
+            d / 1000);
+        check_far_lamp(d, "LightSource \"point\"");
+        check_far_lamp(d, "LightSource \"spot\" \"point3 to\" [0 0 -1]");
+        check_far_lamp(d, disk);
+        check_far_lamp(d, ball);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -252,5 +314,6 @@ int main(int argc, char **argv)
     g_test_add_func("/caustic/cardioid", test_cardioid);
     g_test_add_func("/caustic/ball/flux", test_glass_ball_flux);
     g_test_add_func("/caustic/ball/focus", test_glass_ball_focus);
+    g_test_add_func("/caustic/far-lamps", test_far_lamps);
     return g_test_run();
 }

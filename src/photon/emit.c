@@ -124,12 +124,16 @@ static bool emit_at_disc(const scene *s, const light *l, const wavelengths *w,
     return !l->kind->admits || l->kind->admits(l->self, &out->ray);
 }
 
-/* 1 - cos of the half angle of the cone in which p sees the sphere. */
+/* How far off rounding may turn a unit direction (radians). */
+#define DIRECTION_ERROR 2e-7
+
+/* 1 - cos of the half angle of the cone in which p sees the sphere, for all that rounding
+   does to the directions in it. */
 static float cone_of_sphere(const scene *s, vec3 p)
 {
-    vec3 to = s->caustic_center - p;
-    float sine2 = minf(1.0f, square(s->caustic_radius) / length3_2(to));
-    return sine2 / (1.0f + sqrtf(1.0f - sine2));
+    double distance = (double)length3(s->caustic_center - p);
+    double sine = (double)s->caustic_radius / distance + DIRECTION_ERROR;
+    return (float)one_minus_cos_of_sine2(fmin(sine * sine, 1.0));
 }
 
 float photon_cone_pdf(const scene *s, vec3 p)
@@ -145,6 +149,13 @@ static vec3 direction_to_sphere(const scene *s, vec3 p, vec2 u, float *density)
     return frame_to_world(&f, warp_cone(u, cone_of_sphere(s, p)));
 }
 
+/* A point in direction d from p and at least as far as q: so far that rounding of its
+   coordinates does not turn the direction. */
+static vec3 far_along(vec3 p, vec3 d, vec3 q)
+{
+    return p + (length3(p) + length3(q)) * d;
+}
+
 /* From a lamp apart: the place is drawn by the lamp, the direction in the cone. The lamp
    is asked twice, since the cone depends on the place. */
 static bool emit_in_cone(const scene *s, const light *l, const wavelengths *w,
@@ -155,7 +166,7 @@ static bool emit_in_cone(const scene *s, const light *l, const wavelengths *w,
     *out = (light_emission){0};
     l->kind->emit_toward(l->self, w, u[1], u_place, s->caustic_center, out);
     vec3 d = direction_to_sphere(s, out->ray.origin, (vec2){u[4], u[5]}, &density);
-    vec3 target = out->ray.origin + s->caustic_radius * d;
+    vec3 target = far_along(out->ray.origin, d, s->caustic_center);
     if (!l->kind->emit_toward(l->self, w, u[1], u_place, target, out))
         return false;
     out->flux /= density;

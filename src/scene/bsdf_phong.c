@@ -44,6 +44,13 @@ static float highlight_chance(const bsdf *b, unsigned lobes)
     return s + d > 0.0f ? s / (s + d) : 0.0f;
 }
 
+/* cosⁿ of unit h by its sine, which keeps the digits that a high n needs near the top. */
+static float cosine_power(vec3 h, float n)
+{
+    float sine2 = h[0] * h[0] + h[1] * h[1];
+    return sine2 < 1.0f ? expf(0.5f * n * log1pf(-sine2)) : powf(fabsf(h[2]), n);
+}
+
 static spectrum phong_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
                            transport_mode mode)
 {
@@ -55,8 +62,8 @@ static spectrum phong_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
     if (lobe_wanted(lobes, MATT))
         f += p->diffuse * INV_PI_F;
     if (lobe_wanted(lobes, shine_lobe(p))) {
-        float cos_h = fabsf(normalize3(wo + wi)[2]);
-        f += p->specular * (p->factor * powf(cos_h, p->exponent));
+        vec3 h = normalize3(wo + wi);
+        f += p->specular * (p->factor * cosine_power(h, p->exponent));
     }
     return f;
 }
@@ -71,7 +78,7 @@ static float phong_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
     if (chance > 0.0f) {
         float n = data_of(b)->exponent;
         vec3 h = normalize3(wo + wi);
-        float of_h = (n + 1.0f) * 0.5f * INV_PI_F * powf(fabsf(h[2]), n);
+        float of_h = (n + 1.0f) * 0.5f * INV_PI_F * cosine_power(h, n);
         pdf += chance * of_h / (4.0f * fabsf(dot3(wo, h)));
     }
     return pdf + (1.0f - chance) * fabsf(wi[2]) * INV_PI_F;
@@ -80,9 +87,9 @@ static float phong_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
 /* Normals with density (n+1)/(2π) cosⁿ. */
 static vec3 sample_half(float n, vec2 u)
 {
-    float z = powf(1.0f - u.x, 1.0f / (n + 1.0f)), phi = 2.0f * PI_F * u.y;
-    float r = sqrtf(maxf(0.0f, 1.0f - z * z));
-    return vec3_make(r * cosf(phi), r * sinf(phi), z);
+    float sine2 = -expm1f(2.0f / (n + 1.0f) * log1pf(-u.x)), phi = 2.0f * PI_F * u.y;
+    float r = sqrtf(sine2);
+    return vec3_make(r * cosf(phi), r * sinf(phi), sqrtf(1.0f - sine2));
 }
 
 static bool phong_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned lobes,

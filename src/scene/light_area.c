@@ -219,7 +219,10 @@ static bool emit_toward(const void *self, const wavelengths *w, float u_primitiv
 {
     const area_light *l = self;
     shape_sample at = shape_sample_area(l->on, u_primitive, u);
-    vec3 direction = normalize3(target - at.p);
+    /* From where the ray will start: off the surface by what may be much of a far target.
+     */
+    vec3 start = offset_point(at.p, at.n, 0.0f, at.error, target - at.p);
+    vec3 direction = normalize3(target - start);
     float cosine = dot3(at.n, direction);
     leave(l, &at, direction, out);
     out->flux = shines_from(l, &at, w) * (fabsf(cosine) * l->on->area);

@@ -12,6 +12,7 @@
  * cumulative distribution of x, counted from the dark end.
  */
 #include "math/frame.h"
+#include "math/warp.h"
 #include "scene/light_kinds.h"
 
 typedef struct spot_light {
@@ -24,8 +25,7 @@ typedef struct spot_light {
 
 static float one_minus_cos(float degrees)
 {
-    double half = sin(0.5 * (double)degrees / 180.0 * G_PI);
-    return (float)(2.0 * half * half);
+    return (float)one_minus_cos_of_angle((double)degrees / 180.0 * G_PI);
 }
 
 static void free_spot(void *self)

@@ -8,6 +8,7 @@
 #include "scene/scene_commit.h"
 
 #include "base/memory.h"
+#include "math/warp.h"
 #include "scene/light_lines.h"
 #include "scene/scene_geometry.h"
 #include "scene/scene_media.h"
@@ -63,9 +64,9 @@ static float caustic_share(const scene *s, light *l, const wavelengths *w)
     vec3 nearest = max3(bound.box.low, min3(s->caustic_center, bound.box.high));
     l->is_apart = bound.is_local &&
                   length3(nearest - s->caustic_center) > 1.01f * s->caustic_radius;
-    float distance = length3(box3_center(bound.box) - s->caustic_center);
-    float sine = s->caustic_radius / distance;
-    return l->is_apart ? 1.0f - sqrtf(maxf(0.0f, 1.0f - sine * sine)) : 1.0f;
+    double distance = (double)length3(box3_center(bound.box) - s->caustic_center);
+    double sine = (double)s->caustic_radius / distance;
+    return l->is_apart ? (float)one_minus_cos_of_sine2(sine * sine) : 1.0f;
 }
 
 static bool find_caustic_power(scene *s, GError **error)

@@ -9,6 +9,7 @@
  *
  * with 1 − cos kept instead of cos, so that small and far spheres keep their digits.
  */
+#include "math/warp.h"
 #include "scene/shape_kinds.h"
 #include "scene/shape_quadric.h"
 
@@ -160,11 +161,6 @@ static bool visible_cone(const sphere *s, vec3 ref, double axis[3], double *sin2
     return *sin2_max < 1.0 - 1e-5;
 }
 
-static double one_minus_cos(double sin2)
-{
-    return sin2 / (1.0 + sqrt(1.0 - sin2));
-}
-
 static bool sample_toward(const void *self, vec3 ref, float u_primitive, vec2 u,
                           shape_sample *out)
 {
@@ -177,7 +173,7 @@ static bool sample_toward(const void *self, vec3 ref, float u_primitive, vec2 u,
         out->pdf *= distance2 * sqrtf(distance2) / fabsf(dot3(out->n, d));
         return isfinite(out->pdf) && out->pdf > 0.0f;
     }
-    double x = (double)u.x * one_minus_cos(sin2_max), sin2 = x * (2.0 - x);
+    double x = (double)u.x * one_minus_cos_of_sine2(sin2_max), sin2 = x * (2.0 - x);
     double cos_alpha =
         sin2 / sqrt(sin2_max) + (1.0 - x) * sqrt(MAX(1.0 - sin2 / sin2_max, 0.0));
     float sin_alpha = (float)sqrt(MAX(1.0 - cos_alpha * cos_alpha, 0.0));
@@ -187,7 +183,7 @@ static bool sample_toward(const void *self, vec3 ref, float u_primitive, vec2 u,
     vec3 n = f.s * (sin_alpha * cosf(phi)) + f.t * (sin_alpha * sinf(phi)) -
              f.n * (float)cos_alpha;
     *out = (shape_sample){.n = s->q.flip ? -n : n,
-                          .pdf = (float)(1.0 / (2.0 * G_PI * one_minus_cos(sin2_max)))};
+                          .pdf = (float)(1.0 / (2.0 * G_PI * one_minus_cos_of_sine2(sin2_max)))};
     for (int i = 0; i < 3; i++)
         out->p[i] = (float)(s->center[i] + s->world_radius * (double)n[i]);
     return isfinite(out->pdf);
@@ -198,7 +194,7 @@ static float pdf_toward(const void *self, vec3 ref, const surface_hit *hit)
     const sphere *s = self;
     double axis[3], sin2_max;
     if (visible_cone(s, ref, axis, &sin2_max))
-        return (float)(1.0 / (2.0 * G_PI * one_minus_cos(sin2_max)));
+        return (float)(1.0 / (2.0 * G_PI * one_minus_cos_of_sine2(sin2_max)));
     vec3 d = hit->p - ref;
     float distance2 = length3_2(d);
     float pdf = distance2 * sqrtf(distance2) / (fabsf(dot3(hit->n_geom, d)) * s->q.area);
