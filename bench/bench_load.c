@@ -128,7 +128,10 @@ int main(int argc, char **argv)
     GError *error = NULL;
     g_autofree char *folder = g_dir_make_tmp("nephroid-load-XXXXXX", &error);
     g_autofree char *path = folder ? g_build_filename(folder, "a.ply", NULL) : NULL;
-    if (!path || !ply_write(path, &m, &error))
+    output *out = path ? output_open(path, &error) : NULL;
+    if (out)
+        ply_write(out, &m);
+    if (!out || !output_commit(out, &error))
         give_up(error);
     size_t n = m.n_triangles;
     double embree = time_embree(&m);

@@ -94,12 +94,13 @@ static NephScene *open_material(const char *name, size_t *i, GError **error)
     return scene;
 }
 
-static int write_diagram(const char *svg)
+static int write_diagram(const NephScene *scene, const char *svg)
 {
     g_autoptr(GError) error = NULL;
     if (!given.output)
         return print_result("%s", svg);
-    if (!neph_file_write(given.output, svg, &error))
+    if (!neph_file_spares(given.output, neph_scene_files(scene), &error) ||
+        !neph_file_write(given.output, svg, &error))
         return report_error(error);
     return print_result("wrote %s\n", given.output);
 }
@@ -123,5 +124,5 @@ int command_bsdf(int argc, char **argv)
     if (!plot)
         return report_error(error);
     g_autofree char *svg = neph_bsdf_plot_svg(plot, argv[1]);
-    return write_diagram(svg);
+    return write_diagram(scene, svg);
 }

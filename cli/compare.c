@@ -65,7 +65,9 @@ static bool write_map(const NephImage *image, const NephImage *reference, GError
 
 static bool compare_files(char *const names[2], NephImageDifference *out, GError **error)
 {
-    if (output && !neph_image_can_write(output, error))
+    const char *const inputs[] = {names[0], names[1], NULL};
+    if (output && (!neph_file_spares(output, inputs, error) ||
+                   !neph_image_can_write(output, error)))
         return false;
     g_autoptr(NephImage) image = neph_image_read(names[0], error);
     g_autoptr(NephImage) reference = image ? neph_image_read(names[1], error) : NULL;

@@ -35,7 +35,7 @@ typedef struct job {
     double exposure;
 } job;
 
-static bool job_init(job *j, GError **error)
+static bool job_init(job *j, char **images, GError **error)
 {
     *j = (job){.columns = 1};
     return (!given.size ||
@@ -44,6 +44,7 @@ static bool job_init(job *j, GError **error)
             argument_count("--columns", given.columns, 1, 1000, &j->columns, error)) &&
            (!given.exposure ||
             argument_real("--exposure", given.exposure, &j->exposure, error)) &&
+           neph_file_spares(given.output, (const char *const *)images, error) &&
            neph_image_can_write(given.output, error);
 }
 
@@ -89,7 +90,7 @@ int command_image(int argc, char **argv)
         return exit_code;
     if (!given.output)
         return usage_error("-o FILE is missing");
-    if (!job_init(&j, &error) || !write_all(&j, argv + 1, argc - 1, &error))
+    if (!job_init(&j, argv + 1, &error) || !write_all(&j, argv + 1, argc - 1, &error))
         return report_error(error);
     return EXIT_DONE;
 }

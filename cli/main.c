@@ -4,6 +4,7 @@
 #include "command.h"
 
 #include "message.h"
+#include "stop.h"
 
 #include <locale.h>
 #include <nephroid/nephroid.h>
@@ -34,8 +35,8 @@ static char *help_text(void)
     g_string_append(out, "\nOptions:\n"
                          "  -h, --help     show this help; also after a command\n"
                          "  -V, --version  show the version\n\n"
-                         "Exit codes: 0 done, 1 bad input, 2 bad usage, 3 failed or "
-                         "stopped while running.\n");
+                         "Exit codes: 0 done, 1 bad input, 2 bad usage, 3 failed, or a "
+                         "render was stopped.\n");
     return g_string_free(out, FALSE);
 }
 
@@ -51,6 +52,7 @@ int main(int argc, char **argv)
 {
     setlocale(LC_CTYPE, ""); /* file names; numbers stay with the point */
     g_set_prgname("nephroid");
+    stop_init();
     g_autofree char *help = help_text();
     if (argc < 2)
         return usage_error("no command given");

@@ -97,7 +97,9 @@ static int work_on(const char *file, unsigned threads, size_t n_stories)
         return report_error(error);
     g_autoptr(NephSettings) settings = neph_scene_settings(scene);
     int result = EXIT_DONE;
-    if (!overrides_apply(&given.settings, settings, &error))
+    if ((given.output &&
+         !neph_file_spares(given.output, neph_scene_files(scene), &error)) ||
+        !overrides_apply(&given.settings, settings, &error))
         result = report_error(error);
     if (!result && n_stories)
         result = tell_story(scene, settings, n_stories);

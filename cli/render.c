@@ -58,14 +58,15 @@ static const usage how = {
     .n_operands = 1,
     .summary = "Renders a scene (pbrt, glTF, OBJ, STL, PLY) by photon mapping.",
     .description =
-        "Without -o the image goes where the scene's Film says, else to the scene's "
-        "name with\n.exr in the current folder.\n\n"
+        "Without -o the image goes to the name in the scene's Film, without its folders, "
+        "else to\nthe scene's name with .exr; both in the current folder.\n\n"
         "Settings: the scene's are overridden by --settings, these by --set in the "
         "order given,\nthese by --spp, --passes, --time, --noise, --integrator, "
         "--threads "
         "and --seed.\n'nephroid settings' lists them all. With --time or --noise the "
         "scene's own number of\npasses is no limit; --passes N is.\n\n"
-        "Ctrl-C writes what there is and exits with 3; a second one ends at once.\n",
+        "Ctrl-C (SIGTERM, SIGHUP) writes the passes that are done and exits with 3; "
+        "before the\nfirst is done it writes nothing. A second one ends at once.\n",
     .entries = entries,
     .loads_scene = true};
 
@@ -115,14 +116,34 @@ static char *default_output(const char *scene_file)
     return g_strconcat(name, ".exr", NULL);
 }
 
+/* No file is written that was read, and none twice. */
+static bool check_distinct(const job *j, const NephScene *scene, GError **error)
+{
+    g_autoptr(GStrvBuilder) builder = g_strv_builder_new();
+    g_strv_builder_addv(builder, (const char **)neph_scene_files(scene));
+    if (given.settings.file)
+        g_strv_builder_add(builder, given.settings.file);
+    g_auto(GStrv) inputs = g_strv_builder_end(builder);
+    const char *const *others = (const char *const *)inputs;
+    for (char **path = j->outputs; *path; path++) {
+        const char *const *rest = (const char *const *)path + 1;
+        const char *const text[] = {given.stats, NULL};
+        if (!neph_file_spares(*path, others, error) ||
+            !neph_file_spares(*path, rest, error) ||
+            !neph_file_spares(*path, text, error))
+            return false;
+    }
+    return !given.stats || neph_file_spares(given.stats, others, error);
+}
+
 static bool choose_outputs(job *j, const NephScene *scene, GError **error)
 {
     if (j->outputs)
-        return true;
+        return check_distinct(j, scene, error);
     const char *named = neph_scene_output(scene);
     j->outputs = g_new0(char *, 2);
     j->outputs[0] = named ? g_strdup(named) : default_output(j->scene_file);
-    if (check_outputs(j->outputs, error))
+    if (check_outputs(j->outputs, error) && check_distinct(j, scene, error))
         return true;
     g_prefix_error(error, "the scene's output, which -o would replace: ");
     return false;
@@ -179,13 +200,19 @@ static bool report_end(const NephRender *render, const GError *error, int *exit_
         return statistics.passes > 0;
     }
     *exit_code = EXIT_FAILED;
+    const char *reason = stop_reason() ? stop_reason() : "request";
+    if (statistics.passes == 0) {
+        tell("note", "stopped by %s before the first pass was done; nothing is written",
+             reason);
+        return false;
+    }
     g_autofree char *wanted =
         statistics.passes_wanted
             ? g_strdup_printf(" of %" G_GINT64_FORMAT, statistics.passes_wanted)
             : g_strdup("");
     tell("note",
          "stopped by %s after %" G_GINT64_FORMAT "%s passes; writing what there is",
-         stop_reason() ? stop_reason() : "request", statistics.passes, wanted);
+         reason, statistics.passes, wanted);
     return true;
 }
 
@@ -209,9 +236,7 @@ static int run(job *j, NephRender *render)
     g_autoptr(GError) error = NULL;
     int ended = EXIT_DONE;
     watch w = {j, render, progress_begin(given.quiet)};
-    stop_watch(render);
     bool done = neph_render_run(render, look_on, &w, &error);
-    stop_unwatch();
     progress_end(&w.shown);
     if (!done && !report_end(render, error, &ended))
         return ended;
@@ -228,7 +253,12 @@ static int render_scene(job *j)
     if (!scene)
         return report_error(error);
     g_autoptr(NephRender) render = prepare(j, scene, &error);
-    return render ? run(j, render) : report_error(error);
+    if (!render)
+        return report_error(error);
+    stop_watch(render);
+    int result = run(j, render);
+    stop_unwatch();
+    return result;
 }
 
 int command_render(int argc, char **argv)

@@ -1,8 +1,13 @@
+#define _GNU_SOURCE /* pseudo-terminals */
 #include "cli_run.h"
 
+#include <fcntl.h>
 #include <glib/gstdio.h>
+#include <poll.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 /* ---- A folder with a scene ---- */
 
@@ -116,6 +121,40 @@ void run_well(const folder *f, const char *arguments)
     g_auto(result) r = run(f, arguments);
     g_assert_cmpint(r.code, ==, 0);
 }
+
+/* ---- Terminals ---- */
+
+int terminal_open(char **name)
+{
+    int terminal = posix_openpt(O_RDWR | O_NOCTTY);
+    if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0)
+        return -1;
+    *name = g_strdup(ptsname(terminal));
+    return terminal;
+}
+
+void terminal_enter(gpointer name)
+{
+    int fd = open(name, O_WRONLY | O_NOCTTY);
+    if (fd >= 0)
+        dup2(fd, STDERR_FILENO);
+}
+
+bool terminal_wait(int terminal, const char *part, GString *seen)
+{
+    for (int tries = 0; tries < 300 && !strstr(seen->str, part); tries++) {
+        struct pollfd ready = {.fd = terminal, .events = POLLIN};
+        char buffer[256];
+        if (poll(&ready, 1, 100) <= 0)
+            continue;
+        ssize_t n = read(terminal, buffer, sizeof buffer);
+        if (n > 0)
+            g_string_append_len(seen, buffer, n);
+    }
+    return strstr(seen->str, part) != NULL;
+}
+
+/* ---- Texts ---- */
 
 void contains(const char *text, const char *part)
 {

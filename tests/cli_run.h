@@ -38,6 +38,13 @@ const char *run_program(void);
 result run(const folder *f, const char *arguments);
 /** @brief The same, and asserts that all is well. */
 void run_well(const folder *f, const char *arguments);
+/** @brief A pseudo-terminal. @param name of what stands at its other end; freed by the
+ * caller @return -1 if there are none */
+int terminal_open(char **name);
+/** @brief In a child, before it becomes the program: its errors go to that terminal. */
+void terminal_enter(gpointer name);
+/** @brief Reads until the text appears; false after half a minute. */
+bool terminal_wait(int terminal, const char *part, GString *seen);
 /** @brief Asserts that text contains part. */
 void contains(const char *text, const char *part);
 unsigned count_parts(const char *text, const char *part);

@@ -2,16 +2,12 @@
  * The command line at work: images and statistics written, settings in their order of
  * precedence, photons saved and told, and Ctrl-C that loses nothing.
  */
-#define _GNU_SOURCE /* pseudo-terminals */
 #include "cli_run.h"
 #include "json_check.h"
 
-#include <fcntl.h>
 #include <glib/gstdio.h>
 #include <math.h>
-#include <poll.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -54,13 +50,19 @@ static void test_quiet_is_quiet(folder *f, gconstpointer data)
 static void test_scene_names_the_output(folder *f, gconstpointer data)
 {
     (void)data;
-    g_autofree char *scene =
-        g_strconcat(scene_head, "    \"string filename\" \"named.pfm\"\n",
-                    scene_integrator, scene_body, NULL);
-    folder_write(f, "box.pbrt", scene);
-    run_well(f, "render box.pbrt -q");
-    g_assert_true(folder_has(f, "named.pfm"));
-    g_assert_cmpuint(folder_count(f), ==, 2);
+    static const char *const names[] = {"named.pfm", "../named.pfm", "/named.pfm",
+                                        "a/b/named.pfm"};
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        g_autofree char *scene =
+            g_strconcat(scene_head, "    \"string filename\" \"", names[i], "\"\n",
+                        scene_integrator, scene_body, NULL);
+        folder_write(f, "box.pbrt", scene);
+        run_well(f, "render box.pbrt -q");
+        g_assert_true(folder_has(f, "named.pfm"));
+        g_assert_cmpuint(folder_count(f), ==, 2);
+        g_autofree char *path = g_build_filename(f->path, "named.pfm", NULL);
+        g_assert_cmpint(g_remove(path), ==, 0);
+    }
 }
 
 static void test_order_of_settings(folder *f, gconstpointer data)
@@ -168,42 +170,10 @@ static void test_every_is_read(folder *f, gconstpointer data)
 
 /* ---- Ctrl-C ---- */
 
-static int open_terminal(char **name)
-{
-    int terminal = posix_openpt(O_RDWR | O_NOCTTY);
-    if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0)
-        return -1;
-    *name = g_strdup(ptsname(terminal));
-    return terminal;
-}
-
-/* In the child: its errors go to the terminal. */
-static void enter_terminal(gpointer name)
-{
-    int fd = open(name, O_WRONLY | O_NOCTTY);
-    if (fd >= 0)
-        dup2(fd, STDERR_FILENO);
-}
-
-/* Reads until the text appears; false after half a minute. */
-static bool wait_for(int terminal, const char *part, GString *seen)
-{
-    for (int tries = 0; tries < 300 && !strstr(seen->str, part); tries++) {
-        struct pollfd ready = {.fd = terminal, .events = POLLIN};
-        char buffer[256];
-        if (poll(&ready, 1, 100) <= 0)
-            continue;
-        ssize_t n = read(terminal, buffer, sizeof buffer);
-        if (n > 0)
-            g_string_append_len(seen, buffer, n);
-    }
-    return strstr(seen->str, part) != NULL;
-}
-
 static void stop_by(const folder *f, int signal_number)
 {
     g_autofree char *name = NULL;
-    int terminal = open_terminal(&name);
+    int terminal = terminal_open(&name);
     if (terminal < 0) {
         g_test_skip("no pseudo-terminals here");
         return;
@@ -214,12 +184,12 @@ static void stop_by(const folder *f, int signal_number)
     g_autoptr(GError) error = NULL;
     g_autoptr(GString) seen = g_string_new(NULL);
     g_spawn_async(f->path, (char **)argv, NULL,
-                  G_SPAWN_DO_NOT_REAP_CHILD | G_SPAWN_STDOUT_TO_DEV_NULL, enter_terminal,
+                  G_SPAWN_DO_NOT_REAP_CHILD | G_SPAWN_STDOUT_TO_DEV_NULL, terminal_enter,
                   name, &child, &error);
     g_assert_no_error(error);
-    bool begun = wait_for(terminal, "pass 2", seen);
+    bool begun = terminal_wait(terminal, "pass 2", seen);
     kill(child, begun ? signal_number : SIGKILL);
-    bool told = begun && wait_for(terminal, "writing what there is", seen);
+    bool told = begun && terminal_wait(terminal, "writing what there is", seen);
     if (!told)
         kill(child, SIGKILL);
     int status = 0;
@@ -324,6 +294,8 @@ int main(int argc, char **argv)
     g_test_add("/cli/interrupt", folder, GINT_TO_POINTER(SIGINT), folder_set_up,
                test_ctrl_c_writes, folder_tear_down);
     g_test_add("/cli/terminate", folder, GINT_TO_POINTER(SIGTERM), folder_set_up,
+               test_ctrl_c_writes, folder_tear_down);
+    g_test_add("/cli/hang-up", folder, GINT_TO_POINTER(SIGHUP), folder_set_up,
                test_ctrl_c_writes, folder_tear_down);
     folder_add_test("/cli/compare", test_compare);
     folder_add_test("/cli/image", test_image);

@@ -163,6 +163,59 @@ static void test_output_reports_a_full_disk(void)
     g_assert_error(error, NEPH_ERROR, ERROR_FAILED);
 }
 
+/* What was committed stays, what was not goes, closed or open. */
+static void test_output_abandons(void)
+{
+    g_autofree char *whole = g_build_filename(folder, "whole", NULL);
+    output *open[3];
+    for (int i = 0; i < 3; i++) {
+        g_autofree char *name = g_strdup_printf("%d", i);
+        g_autofree char *path = g_build_filename(folder, name, NULL);
+        open[i] = output_open(path, NULL);
+        fputs("half", output_stream(open[i]));
+    }
+    g_assert_true(output_write_text(whole, "whole", NULL));
+    g_assert_true(output_close(open[1], NULL));
+    g_assert_cmpuint(count_entries(), ==, 4);
+    output_abandon_all();
+    g_assert_cmpuint(count_entries(), ==, 1);
+    for (int i = 0; i < 3; i++)
+        output_discard(open[i]);
+    g_assert_true(output_write_text(whole, "again", NULL));
+    g_assert_cmpuint(count_entries(), ==, 1);
+    g_remove(whole);
+}
+
+static void test_output_spares(void)
+{
+    g_autofree char *a = g_build_filename(folder, "a", NULL);
+    g_autofree char *b = g_build_filename(folder, "b", NULL);
+    g_autofree char *soft = g_build_filename(folder, "soft", NULL);
+    g_autofree char *hard = g_build_filename(folder, "hard", NULL);
+    g_autofree char *around = g_build_filename(folder, ".", "a", NULL);
+    g_assert_true(output_write_text(a, "a", NULL));
+    g_assert_cmpint(symlink("a", soft), ==, 0);
+    g_assert_cmpint(link(a, hard), ==, 0);
+    const char *const same[] = {a, soft, hard, around};
+    const char *const inputs[] = {"/dev/null", "/nowhere/at/all", a, NULL};
+    for (size_t i = 0; i < G_N_ELEMENTS(same); i++) {
+        g_autoptr(GError) error = NULL;
+        g_assert_false(output_spares(same[i], inputs, &error));
+        g_assert_error(error, NEPH_ERROR, ERROR_USAGE);
+        g_assert_nonnull(strstr(error->message, same[i]));
+    }
+    g_assert_true(output_spares(b, inputs, NULL));
+    g_assert_true(output_spares("/dev/null", inputs, NULL));
+    g_assert_true(output_spares(a, NULL, NULL));
+    const char *const missing[] = {b, NULL};
+    g_autofree char *around_b =
+        g_build_filename(folder, "..", strrchr(folder, '/'), "b", NULL);
+    g_assert_false(output_spares(around_b, missing, NULL));
+    g_remove(a);
+    g_remove(soft);
+    g_remove(hard);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -173,6 +226,8 @@ int main(int argc, char **argv)
     g_test_add_func("/output/whole", test_output_is_whole_or_absent);
     g_test_add_func("/output/links", test_output_keeps_links_and_umask);
     g_test_add_func("/output/refuses", test_output_refuses);
+    g_test_add_func("/output/abandons", test_output_abandons);
+    g_test_add_func("/output/spares", test_output_spares);
     g_test_add_func("/output/full", test_output_reports_a_full_disk);
     int result = g_test_run();
     g_rmdir(folder);

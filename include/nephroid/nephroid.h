@@ -53,6 +53,13 @@ typedef void (*NephLogFunc)(NephLogLevel level, const char *text, void *data);
 NEPH_API bool neph_file_can_write(const char *path, GError **error);
 /** @brief Writes a text under a temporary name beside it and renames it when whole. */
 NEPH_API bool neph_file_write(const char *path, const char *text, GError **error);
+/** @brief Refuses a path whose file is one of others, such as neph_scene_files, by
+ * whatever name or link: NEPH_ERROR_USAGE naming both. @param others NULL-terminated */
+NEPH_API bool neph_file_spares(const char *path, const char *const *others,
+                               GError **error);
+/** @brief Removes the temporary files of all that is being written. For the handler of a
+ * signal that is about to end the program: no file can be finished afterwards. */
+NEPH_API void neph_file_abandon_all(void);
 
 /* ---- Settings ---- */
 
@@ -146,10 +153,12 @@ NEPH_API bool neph_scene_resize(NephScene *scene, int width, int height, GError 
  * meshes, images, spectra, buffers, materials; also those that it names, does without and
  * that are missing. Absolute paths, each once, NULL-terminated; the scene's. */
 NEPH_API const char *const *neph_scene_files(const NephScene *scene);
-/** @brief The output name in the file, or NULL. Owned by the scene. */
+/** @brief The output name in the file, without folders, since a scene is not to choose
+ * what of the user's files it replaces; or NULL. Owned by the scene. */
 NEPH_API const char *neph_scene_output(const NephScene *scene);
 /** @brief Writes a scene of any format as pbrt-v4 text (out ends in .pbrt), its meshes as
- * PLY and its images into a folder beside it. log may be NULL. */
+ * PLY and its images into a folder beside it, all at once in the end; a file that was
+ * read is not replaced (NEPH_ERROR_USAGE). log may be NULL. */
 NEPH_API bool neph_scene_convert(const char *in, const char *out, NephLogFunc log,
                                  void *log_data, GError **error);
 /** @brief The same by options; threads have no effect. */

@@ -3,6 +3,8 @@
 #include "format/convert.h"
 #include "format/format.h"
 
+#include <string.h>
+
 /* Beyond it the film alone would not fit into any machine. */
 enum { LARGEST_SIDE = 65536 };
 
@@ -112,5 +114,7 @@ const char *const *neph_scene_files(const NephScene *s)
 
 const char *neph_scene_output(const NephScene *s)
 {
-    return s->scene->film.filename;
+    const char *name = s->scene->film.filename;
+    const char *slash = name ? strrchr(name, '/') : NULL;
+    return slash ? slash + 1 : name;
 }

@@ -2,19 +2,57 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* A temporary file that a signal must not leave behind. A handler may look at any moment,
+   so nodes stay once they are there, and whoever takes the path out of one owns it. */
+typedef struct unfinished {
+    _Atomic(char *) path; /* NULL: the node is free */
+    struct unfinished *next;
+} unfinished;
+
+static _Atomic(unfinished *) all_unfinished;
+
 struct output {
-    char *path;      /* symbolic links resolved, so that they survive the rename */
-    char *temporary; /* NULL: path is not a regular file and is written directly */
-    FILE *stream;
+    char *path;       /* symbolic links resolved, so that they survive the rename */
+    char *temporary;  /* NULL: path is not a regular file and is written directly */
+    unfinished *node; /* of temporary */
+    FILE *stream;     /* NULL: closed */
 };
+
+static unfinished *note_unfinished(const char *path)
+{
+    char *copy = g_strdup(path);
+    for (unfinished *u = atomic_load(&all_unfinished); u; u = u->next) {
+        char *none = NULL;
+        if (atomic_compare_exchange_strong(&u->path, &none, copy))
+            return u;
+    }
+    unfinished *made = g_new(unfinished, 1);
+    atomic_init(&made->path, copy);
+    made->next = atomic_load(&all_unfinished);
+    while (!atomic_compare_exchange_weak(&all_unfinished, &made->next, made))
+        ;
+    return made;
+}
+
+void output_abandon_all(void)
+{
+    for (unfinished *u = atomic_load(&all_unfinished); u; u = u->next) {
+        char *path = atomic_exchange(&u->path, NULL);
+        if (path)
+            unlink(path);
+    }
+}
 
 static void output_free(output *out)
 {
+    if (out->node)
+        g_free(atomic_exchange(&out->node->path, NULL));
     g_free(out->path);
     g_free(out->temporary);
     g_free(out);
@@ -36,6 +74,9 @@ static FILE *open_temporary(output *out)
     for (int attempt = 0; attempt < 100; attempt++) {
         g_free(out->temporary);
         out->temporary = g_strdup_printf("%s/.%s.%08x", folder, name, g_random_int());
+        if (out->node)
+            g_free(atomic_exchange(&out->node->path, NULL));
+        out->node = note_unfinished(out->temporary);
         int fd = open(out->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (fd >= 0)
             return fdopen(fd, "wb");
@@ -72,29 +113,36 @@ FILE *output_stream(output *out)
     return out->stream;
 }
 
-/* Flushes and syncs; devices and pipes know no sync. */
-static bool finish(output *out)
+static bool refuse(const output *out, GError **error)
 {
-    bool written = !ferror(out->stream) && fflush(out->stream) == 0 &&
-                   (!out->temporary || fsync(fileno(out->stream)) == 0);
+    error_set(error, ERROR_FAILED, "cannot write %s: %s", out->path,
+              g_strerror(errno ? errno : EIO));
+    return false;
+}
+
+/* Flushes and syncs; devices and pipes know no sync. */
+bool output_close(output *out, GError **error)
+{
+    FILE *stream = g_steal_pointer(&out->stream);
+    if (!stream)
+        return true;
+    errno = 0;
+    bool written = !ferror(stream) && fflush(stream) == 0 &&
+                   (!out->temporary || fsync(fileno(stream)) == 0);
     int reason = errno;
-    bool closed = fclose(out->stream) == 0;
+    bool closed = fclose(stream) == 0;
     if (!written)
         errno = reason;
-    return written && closed &&
-           (!out->temporary || rename(out->temporary, out->path) == 0);
+    return (written && closed) || refuse(out, error);
 }
 
 bool output_commit(output *out, GError **error)
 {
-    errno = 0;
-    bool done = finish(out);
-    if (!done) {
-        error_set(error, ERROR_FAILED, "cannot write %s: %s", out->path,
-                  g_strerror(errno ? errno : EIO));
-        if (out->temporary)
-            unlink(out->temporary);
-    }
+    bool done = output_close(out, error);
+    if (done && out->temporary && rename(out->temporary, out->path) != 0)
+        done = refuse(out, error);
+    if (!done && out->temporary)
+        unlink(out->temporary);
     output_free(out);
     return done;
 }
@@ -103,7 +151,8 @@ void output_discard(output *out)
 {
     if (!out)
         return;
-    fclose(out->stream);
+    if (out->stream)
+        fclose(out->stream);
     if (out->temporary)
         unlink(out->temporary);
     output_free(out);
@@ -114,6 +163,37 @@ bool output_possible(const char *path, GError **error)
     output *out = output_open(path, error);
     output_discard(out);
     return out != NULL;
+}
+
+/* Of what is not there yet: its folder's true path with its name. */
+static char *true_name(const char *path)
+{
+    g_autofree char *folder = g_path_get_dirname(path);
+    g_autofree char *name = g_path_get_basename(path);
+    g_autofree char *resolved = resolve(folder);
+    return g_build_filename(resolved, name, NULL);
+}
+
+static bool is_same_file(const char *a, const char *b)
+{
+    struct stat of_a, of_b;
+    if (stat(a, &of_a) == 0 && stat(b, &of_b) == 0)
+        return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev &&
+               of_a.st_ino == of_b.st_ino;
+    g_autofree char *name_a = true_name(a), *name_b = true_name(b);
+    return strcmp(name_a, name_b) == 0;
+}
+
+bool output_spares(const char *path, const char *const *others, GError **error)
+{
+    for (; others && *others; others++) {
+        if (!is_same_file(path, *others))
+            continue;
+        error_set(error, ERROR_USAGE, "cannot write %s: it would replace %s", path,
+                  *others);
+        return false;
+    }
+    return true;
 }
 
 bool output_write_text(const char *path, const char *text, GError **error)

@@ -18,6 +18,9 @@ typedef struct output output;
 output *output_open(const char *path, GError **error);
 /** @brief Where to write; owned by the output. Write errors may be left to the commit. */
 FILE *output_stream(output *out);
+/** @brief Ends writing, so that nothing but the renaming is left to the commit: for files
+ * that are to appear together. ERROR_FAILED if anything was not written. */
+bool output_close(output *out, GError **error);
 /** @brief Ends the file and frees out. ERROR_FAILED if anything was not written; then the
  * old file, if any, is still there. */
 bool output_commit(output *out, GError **error);
@@ -27,5 +30,11 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(output, output_discard)
 
 /** @brief Whether output_open would succeed, without leaving a trace. */
 bool output_possible(const char *path, GError **error);
+/** @brief Refuses a path whose file is one of others (NULL-terminated; NULL: none), by
+ * whatever name or link: what was read must not be replaced. ERROR_USAGE naming both. */
+bool output_spares(const char *path, const char *const *others, GError **error);
+/** @brief Removes the temporary files of all that is being written. For a signal handler
+ * that is about to end the program; no file can be committed afterwards. */
+void output_abandon_all(void);
 /** @brief A whole small file at once. */
 bool output_write_text(const char *path, const char *text, GError **error);

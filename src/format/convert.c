@@ -269,13 +269,12 @@ static void on_mesh(void *data, const mesh *m, const shape_place *at)
 {
     converter *c = data;
     begin_shape(c, at, NULL);
-    if (converted_files_folder(&c->files)) {
-        g_autofree char *name = g_strdup_printf("mesh-%u.ply", ++c->n_meshes);
-        g_autofree char *path = g_build_filename(c->files.directory, name, NULL);
+    g_autofree char *name = g_strdup_printf("mesh-%u.ply", ++c->n_meshes);
+    output *out = converted_files_open(&c->files, name);
+    if (out) {
         g_autofree char *shown = g_strdup_printf("%s/%s", c->files.folder, name);
-        GError *error = NULL;
-        if (!ply_write(path, m, &error))
-            c->files.error = error;
+        ply_write(out, m);
+        converted_files_close(&c->files, name, out);
         g_string_append(c->world, "Shape \"plymesh\" \"string filename\" ");
         pbrt_text_string(c->world, shown);
     }
@@ -471,8 +470,8 @@ bool format_convert(const char *in, const char *out, const load_options *options
     g_autoptr(scene) s = scene_new(options ? options->log : NULL);
     s->lenient = options && options->lenient;
     s->thin_glass = options && options->thin_glass;
-    if (options)
-        s->sources = scene_sources_new(options->source, options->source_data);
+    s->sources = scene_sources_new(options ? options->source : NULL,
+                                   options ? options->source_data : NULL);
     s->listener = &listener;
     c.scene = s;
     c.files.scene = s;
@@ -481,7 +480,8 @@ bool format_convert(const char *in, const char *out, const load_options *options
         g_propagate_error(error, g_steal_pointer(&c.files.error));
         done = false;
     }
-    done = done && write_scene(&c, in, out, error);
+    done = done && output_spares(out, scene_sources_paths(s->sources), error) &&
+           converted_files_commit(&c.files, error) && write_scene(&c, in, out, error);
     converter_clear(&c);
     return done;
 }

@@ -3,8 +3,6 @@
  */
 #include "format/ply_write.h"
 
-#include "base/output.h"
-
 #include <string.h>
 
 /* What is written of a vertex, as ply.c reads it. */
@@ -40,11 +38,8 @@ static void write_header(FILE *to, const mesh *m, const column columns[N_COLUMNS
             m->n_triangles);
 }
 
-bool ply_write(const char *path, const mesh *m, GError **error)
+void ply_write(output *out, const mesh *m)
 {
-    g_autoptr(output) out = output_open(path, error);
-    if (!out)
-        return false;
     FILE *to = output_stream(out);
     column columns[N_COLUMNS];
     list_columns(m, columns);
@@ -58,5 +53,4 @@ bool ply_write(const char *path, const mesh *m, GError **error)
         fputc(3, to);
         fwrite(m->indices + 3 * i, sizeof(uint32_t), 3, to);
     }
-    return output_commit(g_steal_pointer(&out), error);
 }

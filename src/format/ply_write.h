@@ -3,8 +3,9 @@
  */
 #pragma once
 
+#include "base/output.h"
 #include "scene/shape.h"
 
-/** @brief Writes positions, normals and uv (whichever there are) and triangles.
- * @return false with ERROR_INPUT or ERROR_FAILED naming the file */
-bool ply_write(const char *path, const mesh *m, GError **error);
+/** @brief Writes positions, normals and uv (whichever there are) and triangles; what
+ * fails shows at the output's end. */
+void ply_write(output *out, const mesh *m);
