@@ -203,6 +203,39 @@ static gboolean write_number(GtkSpinButton *spin, void *data)
     return TRUE;
 }
 
+/* ---- The wheel ---- */
+
+static void set_wheel(GtkWidget *input, GtkPropagationPhase phase)
+{
+    g_autoptr(GListModel) all = gtk_widget_observe_controllers(input);
+    for (guint i = 0; i < g_list_model_get_n_items(all); i++) {
+        g_autoptr(GtkEventController) one = g_list_model_get_item(all, i);
+        if (GTK_IS_EVENT_CONTROLLER_SCROLL(one))
+            gtk_event_controller_set_propagation_phase(one, phase);
+    }
+}
+
+static void take_wheel(GtkEventController *focus)
+{
+    set_wheel(gtk_event_controller_get_widget(focus), GTK_PHASE_BUBBLE);
+}
+
+static void leave_wheel(GtkEventController *focus)
+{
+    set_wheel(gtk_event_controller_get_widget(focus), GTK_PHASE_NONE);
+}
+
+/* The wheel is the page's, over whatever it comes to be: it turns a number only where the
+   user has gone into it. */
+static void wheel_needs_focus(GtkWidget *input)
+{
+    GtkEventController *focus = gtk_event_controller_focus_new();
+    g_signal_connect(focus, "enter", G_CALLBACK(take_wheel), NULL);
+    g_signal_connect(focus, "leave", G_CALLBACK(leave_wheel), NULL);
+    gtk_widget_add_controller(input, focus);
+    set_wheel(input, GTK_PHASE_NONE);
+}
+
 GtkWidget *spin_make(double low, double high, double step, bool whole)
 {
     GtkWidget *spin = gtk_spin_button_new_with_range(low, high, step);
@@ -213,6 +246,7 @@ GtkWidget *spin_make(double low, double high, double step, bool whole)
     g_signal_connect(spin, "input", G_CALLBACK(read_number), NULL);
     g_signal_connect(spin, "output", G_CALLBACK(write_number), NULL);
     gtk_spin_button_update(GTK_SPIN_BUTTON(spin));
+    wheel_needs_focus(spin);
     return spin;
 }
 
@@ -224,6 +258,7 @@ GtkWidget *slider_make(double low, double high, double step, int digits)
     gtk_scale_set_draw_value(GTK_SCALE(scale), TRUE);
     gtk_scale_set_value_pos(GTK_SCALE(scale), GTK_POS_LEFT);
     gtk_widget_set_size_request(scale, 170, -1);
+    wheel_needs_focus(scale);
     return scale;
 }
 

@@ -33,9 +33,10 @@ GtkWidget *row_add_captioned(GtkWidget *list, const char *title, const char *cap
 /** @brief A row whose right side is a text to be set. */
 GtkWidget *value_row_add(GtkWidget *list, const char *title);
 /** @brief A spin button whose numbers are written with a point and without trailing
- * zeros, in any locale. */
+ * zeros, in any locale. The wheel is left to the page while it has not the focus. */
 GtkWidget *spin_make(double low, double high, double step, bool whole);
-/** @brief A horizontal slider that shows its value with so many digits. */
+/** @brief A horizontal slider that shows its value with so many digits; the wheel as
+ * above. */
 GtkWidget *slider_make(double low, double high, double step, int digits);
 /** @brief A whole number with its thousands apart; owned by the caller. */
 char *count_text(guint64 n);

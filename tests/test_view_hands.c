@@ -3,13 +3,11 @@
  * keys as the X server sends them, and what the screen shows of it, at any scale
  * (GDK_SCALE).
  */
-#include "view_run.h"
+#include "view_hands.h"
 
 #include "projection.h"
 #include "screenshot.h"
 
-#include <dlfcn.h>
-#include <gdk/x11/gdkx.h>
 #include <math.h>
 #include <string.h>
 
@@ -170,90 +168,7 @@ static void test_recent(void)
     view_close(w);
 }
 
-/* ---- Hands, by the X server's own test extension ---- */
-
-typedef struct hands {
-    Display *display;
-    int (*move)(Display *, int, int, int, unsigned long);
-    int (*press)(Display *, unsigned, int, unsigned long);
-    int (*key)(Display *, unsigned, int, unsigned long);
-    KeyCode (*code)(Display *, KeySym);
-    int (*sync)(Display *, int);
-} hands;
-
-/* false, and the test is skipped: no X server, or no libXtst. */
-static bool find_hands(hands *h)
-{
-    GdkDisplay *display = gdk_display_get_default();
-    void *test = dlopen("libXtst.so.6", RTLD_NOW), *x = dlopen("libX11.so.6", RTLD_NOW);
-    if (!GDK_IS_X11_DISPLAY(display) || !test || !x) {
-        g_test_skip("no X server, or no libXtst");
-        return false;
-    }
-    G_GNUC_BEGIN_IGNORE_DEPRECATIONS
-    h->display = gdk_x11_display_get_xdisplay(display);
-    G_GNUC_END_IGNORE_DEPRECATIONS
-    *(void **)&h->move = dlsym(test, "XTestFakeMotionEvent");
-    *(void **)&h->press = dlsym(test, "XTestFakeButtonEvent");
-    *(void **)&h->key = dlsym(test, "XTestFakeKeyEvent");
-    *(void **)&h->code = dlsym(x, "XKeysymToKeycode");
-    *(void **)&h->sync = dlsym(x, "XSync");
-    return h->move && h->press && h->key && h->code && h->sync;
-}
-
-/* Lets events arrive and frames pass: so long at least, and until nothing has happened
-   for longer than a frame lasts, on a busy machine too. */
-static void pause_for(int ms)
-{
-    const gint64 frame = 25000, patience = 150000; /* µs */
-    gint64 now = g_get_monotonic_time(), until = now + 1000 * ms, busy = now;
-    for (gint64 limit = until + patience;
-         now < until || (now < busy + frame && now < limit);
-         now = g_get_monotonic_time()) {
-        if (g_main_context_iteration(NULL, FALSE))
-            busy = g_get_monotonic_time();
-        else
-            g_usleep(500);
-    }
-}
-
-/* The pointer at a place of a widget, 0..1 each. */
-static void point(const hands *h, GtkWidget *widget, double x, double y)
-{
-    GtkNative *native = gtk_widget_get_native(widget);
-    double wx, wy, sx, sy;
-    int scale = gtk_widget_get_scale_factor(widget);
-    gtk_widget_translate_coordinates(widget, GTK_WIDGET(native),
-                                     x * gtk_widget_get_width(widget),
-                                     y * gtk_widget_get_height(widget), &wx, &wy);
-    gtk_native_get_surface_transform(native, &sx, &sy);
-    h->move(h->display, -1, (int)(scale * (wx + sx)), (int)(scale * (wy + sy)), 0);
-    h->sync(h->display, 0);
-    pause_for(20);
-}
-
-static void press(const hands *h, unsigned button, bool down)
-{
-    h->press(h->display, button, down, 0);
-    h->sync(h->display, 0);
-    pause_for(20);
-}
-
-static void key(const hands *h, unsigned keyval, bool down)
-{
-    h->key(h->display, h->code(h->display, keyval), down, 0);
-    h->sync(h->display, 0);
-    pause_for(20);
-}
-
-static void drag(const hands *h, GtkWidget *widget, unsigned button)
-{
-    point(h, widget, 0.5, 0.5);
-    press(h, button, true);
-    for (int i = 1; i <= 4; i++)
-        point(h, widget, 0.5 + 0.03 * i, 0.5);
-    press(h, button, false);
-}
+/* ---- Drags and keys ---- */
 
 static double moved_by(const double a[3], const double b[3])
 {
@@ -269,65 +184,57 @@ static bool stands_still(window *w)
 static void test_drags(void)
 {
     hands h;
-    if (!find_hands(&h))
+    if (!hands_find(&h))
         return;
     window *w = open_scene("drags.pbrt");
     GtkWidget *area = canvas_widget(w->canvas);
     const NephCamera *camera = &w->view.camera;
     NephCamera old = *camera;
     double far = moved_by(old.position, w->view.pivot);
-    drag(&h, area, 1); /* around: as far away as before, from elsewhere */
+    hands_drag(&h, area, 1); /* around: as far away as before, from elsewhere */
     g_assert_cmpfloat(moved_by(old.position, camera->position), >, 0.05);
     g_assert_cmpfloat_with_epsilon(moved_by(camera->position, w->view.pivot), far, 1e-6);
     old = *camera;
-    drag(&h, area, 3); /* looks around on the spot */
+    hands_drag(&h, area, 3); /* looks around on the spot */
     g_assert_cmpfloat(moved_by(old.position, camera->position), <, 1e-9);
     g_assert_cmpfloat(moved_by(old.direction, camera->direction), >, 0.02);
     old = *camera;
-    key(&h, GDK_KEY_Shift_L, true);
-    drag(&h, area, 1); /* across */
-    key(&h, GDK_KEY_Shift_L, false);
+    hands_key(&h, GDK_KEY_Shift_L, true);
+    hands_drag(&h, area, 1); /* across */
+    hands_key(&h, GDK_KEY_Shift_L, false);
     g_assert_cmpfloat(moved_by(old.position, camera->position), >, 0.01);
     g_assert_cmpfloat(moved_by(old.direction, camera->direction), <, 1e-9);
     old = *camera;
     far = moved_by(old.position, w->view.pivot);
-    press(&h, 4, true); /* the wheel */
-    press(&h, 4, false);
+    hands_press(&h, 4, true); /* the wheel */
+    hands_press(&h, 4, false);
     g_assert_cmpfloat(moved_by(camera->position, w->view.pivot), <, far - 1e-3);
     view_wait(stands_still, w);
     view_close(w);
 }
 
-static void hold(const hands *h, unsigned keyval)
-{
-    key(h, keyval, true);
-    pause_for(250);
-    key(h, keyval, false);
-    pause_for(50);
-}
-
 static void test_keys(void)
 {
     hands h;
-    if (!find_hands(&h))
+    if (!hands_find(&h))
         return;
     window *w = open_scene("keys.pbrt");
     const NephCamera *camera = &w->view.camera;
-    point(&h, canvas_widget(w->canvas), 0.5, 0.5);
+    hands_point(&h, canvas_widget(w->canvas), 0.5, 0.5);
     static const unsigned keys[] = {GDK_KEY_w,    GDK_KEY_d,      GDK_KEY_e,
                                     GDK_KEY_Left, GDK_KEY_Right,  GDK_KEY_Up,
                                     GDK_KEY_Down, GDK_KEY_Page_Up};
     for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
         NephCamera old = *camera;
-        hold(&h, keys[i]);
+        hands_hold(&h, keys[i]);
         g_assert_cmpfloat(moved_by(old.position, camera->position), >, 1e-3);
     }
-    hold(&h, GDK_KEY_Home);
+    hands_hold(&h, GDK_KEY_Home);
     g_assert_cmpfloat(moved_by(w->scene->camera.position, camera->position), <, 1e-9);
     view_wait(view_is_done, w);
-    hold(&h, GDK_KEY_F9);
+    hands_hold(&h, GDK_KEY_F9);
     g_assert_false(gtk_widget_get_visible(w->sidebar));
-    hold(&h, GDK_KEY_F9);
+    hands_hold(&h, GDK_KEY_F9);
     view_close(w);
 }
 
@@ -335,7 +242,7 @@ static void test_keys(void)
 static void test_pick(void)
 {
     hands h;
-    if (!find_hands(&h))
+    if (!hands_find(&h))
         return;
     window *w = open_scene("hand-pick.pbrt");
     view_activate(w, "win.trace-photons");
@@ -343,14 +250,14 @@ static void test_pick(void)
     while (!w->photons || w->tracing)
         g_main_context_iteration(NULL, TRUE);
     GtkWidget *area = photon_view_widget(w->photon_view);
-    drag(&h, area, 1);
+    hands_drag(&h, area, 1);
     g_assert_false(w->has_pick);
-    point(&h, area, 0.5, 0.5);
-    press(&h, 1, true);
-    press(&h, 1, false);
+    hands_point(&h, area, 0.5, 0.5);
+    hands_press(&h, 1, true);
+    hands_press(&h, 1, false);
     g_assert_true(w->has_pick);
     w->has_pick = false;
-    hold(&h, GDK_KEY_Return);
+    hands_hold(&h, GDK_KEY_Return);
     g_assert_true(w->has_pick);
     view_close(w);
 }
@@ -372,7 +279,7 @@ static bool is_divided_elsewhere(window *w)
 static void test_divider(void)
 {
     hands h;
-    if (!find_hands(&h))
+    if (!hands_find(&h))
         return;
     window *w = open_scene("divider.pbrt");
     g_autofree char *saved = g_build_filename(view_folder(), "divider.exr", NULL);
@@ -382,11 +289,11 @@ static void test_divider(void)
     NephCamera old = w->view.camera;
     g_assert_cmpfloat(fabs(canvas_divider(w->canvas) - 0.5), <, 1e-12);
     for (int i = 0; i < 100 && !grips_divider(w); i++) {
-        point(&h, canvas_widget(w->canvas), 0.4, 0.5);
-        point(&h, canvas_widget(w->canvas), 0.5, 0.5);
+        hands_point(&h, canvas_widget(w->canvas), 0.4, 0.5);
+        hands_point(&h, canvas_widget(w->canvas), 0.5, 0.5);
     }
     g_assert_true(grips_divider(w));
-    drag(&h, canvas_widget(w->canvas), 1);
+    hands_drag(&h, canvas_widget(w->canvas), 1);
     view_wait(is_divided_elsewhere, w);
     g_assert_cmpfloat(moved_by(old.position, w->view.camera.position), <, 1e-12);
     view_close(w);
@@ -485,7 +392,7 @@ static void expect_all_bright(window *w)
     photon_view_set_style(w->photon_view, &style);
     int n = 0, bright = -1;
     for (int i = 0; i < 20 && bright != n; i++) {
-        pause_for(100);
+        hands_pause(100);
         bright = count_bright(w, &n);
     }
     g_assert_cmpint(n, >, 100);
@@ -562,7 +469,7 @@ static void assert_whole(GtkWidget *widget, int *n)
 {
     GtkWidget *cut = find_cut(widget, n);
     for (int i = 0; i < 40 && cut; i++) {
-        pause_for(50);
+        hands_pause(50);
         cut = find_cut(widget, n);
     }
     if (cut)
@@ -586,7 +493,7 @@ static void test_nothing_cut(void)
         bool page = i < G_N_ELEMENTS(pages);
         gtk_widget_activate_action(GTK_WIDGET(w->gtk), page ? "win.page" : "win.view",
                                    "s", page ? pages[i] : views[i - G_N_ELEMENTS(pages)]);
-        pause_for(100);
+        hands_pause(100);
         assert_whole(w->sidebar, &n);
         assert_whole(w->views, &n);
     }
