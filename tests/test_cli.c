@@ -100,7 +100,6 @@ static const char zero_light[] =
     "WorldBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n"
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2]\n"
     "    \"point3 P\" [0 0 0  1 0 0  2 0 0]\n";
-static const char no_light[] = "WorldBegin\nShape \"sphere\"\n";
 static const char unknown[] = "WorldBegin\nFrobnicate \"x\"\n";
 static const char wrong_type[] =
     "WorldBegin\nLightSource \"point\"\nShape \"sphere\" \"string radius\" \"big\"\n";
@@ -169,7 +168,6 @@ static void test_bad_input(folder *f, gconstpointer data)
     refuse(f, scene_head, nan_mesh, "bad.pbrt:");
     refuse(f, scene_head, zero_light, "bad.pbrt:");
     refuse(f, scene_head, bad_ply, "cut.ply");
-    refuse(f, scene_head, no_light, "light");
     refuse(f, "", scene_body, "amera");
     refuse(f, huge_film, scene_body, "bad.pbrt:");
     refuse(f, "Integrator \"photonmap\" \"integer photns\" 1\n", scene_body,

@@ -373,6 +373,33 @@ static void keep_note(log_level level, const char *text, void *data)
     g_string_append_printf(data, "%s\n", text);
 }
 
+/* As pbrt reads it: the last counts, whatever its type, and so does what is given itself
+ * before what Attribute gives. */
+static void test_last_of_repeated_counts(void)
+{
+    g_autoptr(GString) notes = g_string_new(NULL);
+    log_sink sink = {keep_note, notes};
+    scene_folder f =
+        folder_new(CAMERA "WorldBegin\n" LIGHT
+                          "Shape \"sphere\" \"float radius\" 1 \"float radius\" [3]\n"
+                          "Attribute \"shape\" \"float radius\" 4 \"float radius\" 5\n"
+                          "Shape \"sphere\" \"string radius\" \"x\" \"float radius\" 2\n"
+                          "Shape \"sphere\"\n");
+    g_autoptr(GError) error = NULL;
+    g_autoptr(scene) s = format_load(f.main, 1, &sink, &error);
+    g_assert_no_error(error);
+    static const float want[] = {3, 2, 5};
+    for (guint i = 0; i < 3; i++)
+        g_assert_true(fabsf(sphere_radius(s, i) - want[i]) < 1e-4f);
+    g_autofree char *text =
+        g_strdup_printf("%s:4:33: parameter 'radius' is given again: the last counts\n"
+                        "%s:5:36: parameter 'radius' is given again: the last counts\n"
+                        "%s:6:36: parameter 'radius' is given again: the last counts\n",
+                        f.main, f.main, f.main);
+    g_assert_cmpstr(notes->str, ==, text);
+    folder_remove(&f);
+}
+
 static void test_notes_say_what_was_chosen(void)
 {
     g_autoptr(GString) notes = g_string_new(NULL);
@@ -479,6 +506,7 @@ int main(int argc, char **argv)
     g_test_add_func("/pbrt/path", test_paths_become_auto_or_vcm);
     g_test_add_func("/pbrt/own-integrators", test_own_integrators_keep_their_names);
     g_test_add_func("/pbrt/no-integrator", test_no_integrator_is_the_default);
+    g_test_add_func("/pbrt/repeated", test_last_of_repeated_counts);
     g_test_add_func("/pbrt/notes", test_notes_say_what_was_chosen);
     g_test_add_func("/pbrt/published-scenes", test_published_scenes_load_unchanged);
     g_test_add_func("/pbrt/own-scenes", test_own_scenes_load);

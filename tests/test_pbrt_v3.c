@@ -172,6 +172,79 @@ static void test_rest(void)
         check_alike(&pairs[i]);
 }
 
+static void keep_note(log_level level, const char *text, void *data)
+{
+    if (level == LOG_NOTE)
+        g_string_append_printf(data, "%s\n", strchr(text, ':'));
+}
+
+/* The scene of a text that must be right, and what is noted of it. */
+static scene *noted_scene(const char *text, GString *notes)
+{
+    scene_folder f = folder_new(text);
+    const log_sink sink = {keep_note, notes};
+    g_autoptr(GError) error = NULL;
+    scene *s = format_load(f.main, 1, &sink, &error);
+    g_assert_no_error(error);
+    folder_remove(&f);
+    return s;
+}
+
+/* pbrt-v3 warns of parameters that it does not know, and goes on. */
+static void test_unknown_parameters(void)
+{
+    static const char *const texts[][2] = {
+        {"Material \"matte\" \"float shine\" 2 " BALL,
+         "'shine' of material 'diffuse' is left out"},
+        {"Shape \"sphere\" \"float shine\" 2\n", "'shine' of shape \"sphere\" is left out"},
+        {"LightSource \"point\" \"float shine\" 2\n",
+         "'shine' of light \"point\" is left out"},
+        {"Texture \"t\" \"float\" \"constant\" \"float shine\" 2\n",
+         "'shine' of texture 'constant' is left out"},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(texts); i++) {
+        g_autofree char *text = g_strconcat(LOOK FILM3 "WorldBegin\n" LAMP FLOOR,
+                                            texts[i][0], "WorldEnd\n", NULL);
+        g_autoptr(GString) notes = g_string_new(NULL);
+        g_autoptr(scene) s = noted_scene(text, notes);
+        if (!strstr(notes->str, texts[i][1]))
+            g_error("expected %s, found %s", texts[i][1], notes->str);
+    }
+    g_autoptr(GString) notes = g_string_new(NULL);
+    g_autoptr(scene) s = noted_scene(
+        LOOK "Film \"image\" \"float shine\" 1 Sampler \"halton\" \"float shine\" 1\n"
+             "Integrator \"path\" \"float shine\" 1 PixelFilter \"box\" \"float "
+             "shine\" 1 Accelerator \"bvh\" \"float shine\" 1\nWorldBegin WorldEnd\n",
+        notes);
+    static const char *const of[] = {"film", "Sampler", "Integrator", "filter",
+                                     "accelerator"};
+    for (size_t i = 0; i < G_N_ELEMENTS(of); i++) {
+        g_autofree char *part = g_strdup_printf("unknown parameter 'shine' of %s", of[i]);
+        if (!strstr(notes->str, part))
+            g_error("expected %s, found %s", part, notes->str);
+    }
+}
+
+/* A texture goes before a value in pbrt-v3, whichever comes last. */
+static void test_texture_before_value(void)
+{
+#define STRIPES                                                                          \
+    "Texture \"t\" \"color\" \"checkerboard\" \"rgb tex1\" [.9 .1 .1] \"rgb tex2\" "     \
+    "[.1 .1 .9] "
+    static const pair pairs[] = {
+        {"last",
+         WORLD3(STRIPES "Material \"matte\" \"texture Kd\" \"t\" \"rgb Kd\" [.5 "
+                        ".5 .5] " BALL),
+         WORLD3(STRIPES "Material \"matte\" \"texture Kd\" \"t\" " BALL)},
+        {"first",
+         WORLD3(STRIPES "Material \"matte\" \"rgb Kd\" [.5 .5 .5] \"texture "
+                        "Kd\" \"t\" " BALL),
+         WORLD3(STRIPES "Material \"matte\" \"texture Kd\" \"t\" " BALL)},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
+        check_alike(&pairs[i]);
+}
+
 /* Film and integrator where nothing is said, or in v3's words. */
 static void test_settings(void)
 {
@@ -211,6 +284,8 @@ int main(int argc, char **argv)
     g_test_add_func("/pbrt-v3/lights", test_lights);
     g_test_add_func("/pbrt-v3/rest", test_rest);
     g_test_add_func("/pbrt-v3/settings", test_settings);
+    g_test_add_func("/pbrt-v3/unknown-parameters", test_unknown_parameters);
+    g_test_add_func("/pbrt-v3/texture-before-value", test_texture_before_value);
     g_test_add_func("/pbrt-v3/recognised", test_recognised);
     return g_test_run();
 }

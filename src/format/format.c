@@ -58,12 +58,23 @@ static void refuse(const char *path, GError **error)
              has_extension ? dot : "no extension");
 }
 
+/** In the dark a scene can be looked at all the same. */
+static void warn_of_darkness(const scene *s, const char *path)
+{
+    if (!scene_is_lit(s))
+        log_message(&s->log, LOG_WARNING,
+                    "%s: the scene has no light%s: its picture is black", path,
+                    s->lights->len ? " but what is black" : "");
+}
+
 /** What only the whole scene can tell has no line; the file it is of is named. */
 static bool commit(scene *s, const char *path, unsigned threads, GError **error)
 {
     g_autoptr(GError) inner = NULL;
-    if (scene_commit(s, threads, &inner))
+    if (scene_commit(s, threads, &inner)) {
+        warn_of_darkness(s, path);
         return true;
+    }
     bool is_input = g_error_matches(inner, NEPH_ERROR, ERROR_INPUT);
     if (is_input && !g_str_has_prefix(inner->message, path))
         g_prefix_error(&inner, "%s: ", path);

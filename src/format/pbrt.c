@@ -299,9 +299,6 @@ static void check_end(pbrt_parser *parser, source_place end)
         return;
     if (!parser->in_world)
         pbrt_error(parser, end, "expected WorldBegin, found the end of the file");
-    else if (parser->errors->len == 0 && parser->scene->lights->len == 0)
-        pbrt_error(parser, end,
-                   "expected a light in the scene, found the end of the file");
 }
 
 static void read_main(pbrt_parser *parser, const char *path, const input *in)

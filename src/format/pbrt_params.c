@@ -205,6 +205,24 @@ static bool add_spectrum(pbrt_parser *parser, params *p, const declaration *d,
                               (const float *)numbers->data, numbers->len, error);
 }
 
+/** Of a parameter that is given again the last counts, but pbrt-v3 takes a texture before
+ * a value. @return whether this one counts */
+static bool replace_older(pbrt_parser *parser, params *p, const declaration *d)
+{
+    const param *older = params_find(p, d->name);
+    source_place at = d->token.place;
+    if (!older)
+        return true;
+    bool stays =
+        parser->is_v3 && older->type == PARAM_TEXTURE && d->type->type != PARAM_TEXTURE;
+    log_message(&parser->scene->log, LOG_NOTE,
+                "%s:%d:%d: parameter '%s' is given again: %s", at.file, at.line,
+                at.column, d->name, stays ? "the texture counts" : "the last counts");
+    if (!stays)
+        params_remove(p, d->name);
+    return !stays;
+}
+
 static bool add_values(pbrt_parser *parser, params *p, const declaration *d,
                        const GPtrArray *strings, GError **error)
 {
@@ -239,7 +257,8 @@ static bool read_param(pbrt_parser *parser, params *p)
     g_autoptr(GPtrArray) strings = g_ptr_array_new_with_free_func(g_free);
     GError *error = NULL;
     bool fine = read_declaration(parser, &d) && read_values(parser, &d, strings);
-    if (fine && !add_values(parser, p, &d, strings, &error)) {
+    if (fine && replace_older(parser, p, &d) &&
+        !add_values(parser, p, &d, strings, &error)) {
         pbrt_report(parser, error);
         fine = false;
     }
@@ -251,6 +270,7 @@ params *pbrt_read_params(pbrt_parser *parser, source_place place)
 {
     g_autoptr(params) p = params_new(place, parser->base_directory, parser->state.space);
     p->to_world = parser->state.ctm;
+    p->unknown_to = parser->is_v3 ? &parser->scene->log : NULL;
     while (lexer_peek(parser->words).kind == TOKEN_STRING)
         if (!read_param(parser, p))
             return NULL;

@@ -103,6 +103,8 @@ bool photon_emit(const scene *s, const wavelengths *w, sampler *random, photon_s
 {
     float u[EMISSION_DIMENSIONS];
     light_emission emission;
+    if (!scene_is_lit(s))
+        return false;
     float density = emission_guide_draw(NULL, random, u);
     const light *l = choose_light(s, &s->light_power, &u[0], out);
     if (!l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]}, (vec2){u[4], u[5]},

@@ -14,7 +14,7 @@ static double seconds(void)
 
 static bool is_possible(const scene *s, photon_class c)
 {
-    return c != PHOTON_CAUSTIC || s->n_casters > 0;
+    return c != PHOTON_CAUSTIC || scene_may_cast_caustics(s);
 }
 
 /* The classes that can be there, sharing `photons` where they have no budget of their

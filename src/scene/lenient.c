@@ -69,8 +69,7 @@ static bool copy_param(params *to, const param *q, GError **error)
 static params *keep_params(const substitute *sub, const params *p, GString *dropped,
                            GError **error)
 {
-    g_autoptr(params) kept = params_new(p->place, p->base_directory, p->space);
-    kept->to_world = p->to_world;
+    g_autoptr(params) kept = params_new_like(p);
     for (guint i = 0; i < p->list->len; i++) {
         param *q = p->list->pdata[i];
         bool is_type = strcmp(q->name, "type") == 0; /* of MakeNamedMaterial */
@@ -153,8 +152,7 @@ params *lenient_film(const scene *s, const char **kind, const params *p, GError 
                  sensor->strings[0]);
     if (!s->lenient || !(is_spectral || sensor))
         return NULL;
-    g_autoptr(params) kept = params_new(p->place, p->base_directory, p->space);
-    kept->to_world = p->to_world;
+    g_autoptr(params) kept = params_new_like(p);
     for (guint i = 0; i < p->list->len; i++) {
         param *q = p->list->pdata[i];
         bool leaves = q == sensor || (is_spectral && is_of_spectra(q->name));
@@ -185,7 +183,7 @@ params *lenient_texture(const scene *s, const char **kind, bool is_spectrum,
         return NULL;
     }
     const float half[] = {0.5f, 0.5f, 0.5f};
-    params *kept = params_new(p->place, p->base_directory, p->space);
+    params *kept = params_new_like(p);
     for (guint i = 0; i < p->list->len; i++)
         ((param *)p->list->pdata[i])->used = true;
     scene_is_lenient(s, p->place, "texture \"ptex\" becomes a constant of 0.5");

@@ -191,7 +191,8 @@ float light_tree_probability(const light_tree *tree, vec3 ref, int i)
     float share = distant_share(tree, ref);
     int place = tree->place[i];
     if (place < 0)
-        return share * tree->irradiance[-1 - place] / tree->total_distant;
+        return share > 0.0f ? share * tree->irradiance[-1 - place] / tree->total_distant
+                            : 0.0f;
     float p = tree->n_distant > 0 ? 1.0f - share : 1.0f;
     for (const tree_node *node = node_at(tree, place); node->parent >= 0;) {
         const tree_node *parent = node_at(tree, node->parent);

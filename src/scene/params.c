@@ -55,6 +55,14 @@ params *params_new(source_place place, const char *base_directory,
     return p;
 }
 
+params *params_new_like(const params *p)
+{
+    params *like = params_new(p->place, p->base_directory, p->space);
+    like->to_world = p->to_world;
+    like->unknown_to = p->unknown_to;
+    return like;
+}
+
 void params_free(params *p)
 {
     if (!p)
@@ -133,6 +141,13 @@ bool params_add_strings(params *p, source_place place, param_type type, const ch
         q->strings[i] = g_strdup(strings[i]);
     g_ptr_array_add(p->list, q);
     return true;
+}
+
+void params_remove(params *p, const char *name)
+{
+    param *q = look_up(p, name);
+    if (q)
+        g_ptr_array_remove(p->list, q);
 }
 
 const param *params_find(const params *p, const char *name)
@@ -286,15 +301,29 @@ static bool is_listed(const char *name, const char *list)
     return false;
 }
 
+/* Noted and passed over, or an error. */
+static bool meet_unknown(const params *p, param *q, const char *what, GError **error)
+{
+    if (!p->unknown_to) {
+        error_at(error, q->place, "unknown parameter '%s' of %s", q->name, what);
+        return false;
+    }
+    log_message(p->unknown_to, LOG_NOTE,
+                "%s:%d:%d: unknown parameter '%s' of %s is left out",
+                q->place.file ? q->place.file : "", q->place.line, q->place.column,
+                q->name, what);
+    q->used = true;
+    return true;
+}
+
 bool params_known(const params *p, const char *what, const char *names, const char *more,
                   GError **error)
 {
     for (guint i = 0; i < p->list->len; i++) {
-        const param *q = p->list->pdata[i];
-        if (q->used || is_listed(q->name, names) || is_listed(q->name, more))
-            continue;
-        error_at(error, q->place, "unknown parameter '%s' of %s", q->name, what);
-        return false;
+        param *q = p->list->pdata[i];
+        bool known = q->used || is_listed(q->name, names) || is_listed(q->name, more);
+        if (!known && !meet_unknown(p, q, what, error))
+            return false;
     }
     return true;
 }
@@ -302,11 +331,9 @@ bool params_known(const params *p, const char *what, const char *names, const ch
 bool params_all_used(const params *p, const char *what, GError **error)
 {
     for (guint i = 0; i < p->list->len; i++) {
-        const param *q = p->list->pdata[i];
-        if (!q->used) {
-            error_at(error, q->place, "unknown parameter '%s' of %s", q->name, what);
+        param *q = p->list->pdata[i];
+        if (!q->used && !meet_unknown(p, q, what, error))
             return false;
-        }
     }
     return true;
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/log.h"
 #include "color/curve.h"
 #include "math/transform.h"
 #include "math/vec.h"
@@ -51,10 +52,14 @@ typedef struct params {
     const color_space *space;
     transform to_world; /**< from the space that the directive stands in; identity unless
                            the reader says otherwise */
+    const log_sink *unknown_to; /**< where a parameter that its consumer does not know is
+                                   noted (pbrt-v3 goes on); NULL: it is an error */
 } params;
 
 params *params_new(source_place place, const char *base_directory,
                    const color_space *space);
+/** @brief An empty list with the context of another. */
+params *params_new_like(const params *p);
 void params_free(params *p);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(params, params_free)
 
@@ -66,6 +71,8 @@ bool params_add_integers(params *p, source_place place, param_type type, const c
 bool params_add_strings(params *p, source_place place, param_type type, const char *name,
                         const char *const *strings, size_t n, GError **error);
 
+/** @brief Takes the parameter of that name out, if there is one. */
+void params_remove(params *p, const char *name);
 /** @brief The parameter of that name, marked used; NULL if there is none. */
 const param *params_find(const params *p, const char *name);
 bool params_has(const params *p, const char *name); /**< does not mark it used */

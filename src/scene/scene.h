@@ -257,6 +257,18 @@ void scene_come_from_outside(const scene *s, ray *r);
  * (scene_occluded): it goes through interfaces between them. */
 spectrum scene_transmittance(const scene *s, const ray *r, const wavelengths *w);
 
+/** @brief True unless all is dark: there is no light, or all that there is is black. */
+static inline bool scene_is_lit(const scene *s)
+{
+    return distribution_total(&s->light_power) > 0.0;
+}
+
+/** @brief True if light may meet something that casts caustics. */
+static inline bool scene_may_cast_caustics(const scene *s)
+{
+    return s->n_casters > 0 && distribution_total(&s->caustic_power) > 0.0;
+}
+
 /** @brief A point on the surfaces that cast caustics, uniform by area but for instances
  * that are stretched. */
 vec3 scene_caustic_target(const scene *s, float u_shape, vec2 u, float time);

@@ -16,6 +16,16 @@
 
 /* ---- Lights ---- */
 
+static bool check_strength(const scene *s, GError **error)
+{
+    double total = distribution_total(&s->light_power);
+    if (!isfinite(total)) {
+        error_set(error, ERROR_INPUT, "the scene's lights are infinitely strong");
+        return false;
+    }
+    return true;
+}
+
 static bool find_lights(scene *s, GError **error)
 {
     light_lines lines = {.n = 0};
@@ -42,15 +52,7 @@ static bool find_lights(scene *s, GError **error)
     bool done = distribution_init(&s->light_power, power, n, error);
     big_free(power);
     big_free(bounds);
-    double total = done ? distribution_total(&s->light_power) : 0.0;
-    if (done && !(total > 0.0 && isfinite(total))) {
-        error_set(error, ERROR_INPUT,
-                  n == 0        ? "the scene has no light"
-                  : total > 0.0 ? "the scene's lights are infinitely strong"
-                                : "the scene has no light: all its lights are black");
-        done = false;
-    }
-    return done;
+    return done && check_strength(s, error);
 }
 
 /* The share of a light's power that may meet the sphere around what casts caustics:

@@ -46,7 +46,7 @@ uint64_t caustic_budget(const transport_plan *plan)
     int64_t own = how->class_photons[PHOTON_CAUSTIC];
     int64_t samples = (int64_t)film->width * film->height * how->spp;
     int64_t most = MAX(PHOTONS_PER_SAMPLE * samples, LEAST_PHOTONS);
-    if (plan->scene->n_casters == 0)
+    if (!scene_may_cast_caustics(plan->scene))
         return 0;
     return (uint64_t)(own > 0 ? own : MIN(settings_photons(how), most));
 }

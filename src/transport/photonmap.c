@@ -36,11 +36,13 @@ static bool needs_direct_map(const settings *how)
 
 static bool class_needed(const transport_plan *plan, photon_class c)
 {
+    if (!scene_is_lit(plan->scene))
+        return false;
     switch (c) {
     case PHOTON_DIRECT:
         return needs_direct_map(&plan->how);
     case PHOTON_CAUSTIC:
-        return plan->scene->n_casters > 0;
+        return scene_may_cast_caustics(plan->scene);
     default:
         return plan->how.max_forward_bounces != 0;
     }

@@ -192,6 +192,8 @@ static bool emit(light_walk *l)
     const distribution *power = &pass->scene->light_power;
     float u_light = sampler_1d(&l->random), u_primitive = sampler_1d(&l->random);
     vec2 u_position = sampler_2d(&l->random), u_direction = sampler_2d(&l->random);
+    if (!scene_is_lit(pass->scene))
+        return false;
     size_t index = distribution_sample(power, &u_light);
     const light *from = scene_light(pass->scene, (int)index);
     light_emission e = {.primitive = 0};
