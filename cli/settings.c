@@ -26,7 +26,8 @@ static char *range_text(const NephSettingInfo *row)
     if (row->type == NEPH_SETTING_CHOICE)
         return g_strjoinv(", ", (char **)row->words);
     if (row->type == NEPH_SETTING_COUNT)
-        return g_strdup_printf("%.0f … %.0f", row->low, row->high);
+        return g_strdup_printf("%s%.0f … %.0f", row->initial < row->low ? "0, " : "",
+                               row->low, row->high);
     return g_strdup_printf("%.10g … %.10g", row->low, row->high);
 }
 

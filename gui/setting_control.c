@@ -14,6 +14,7 @@ struct setting_control {
     setting_changed changed;
     void *data;
     bool showing; /* the value comes from the program, not from the user */
+    double value; /* of a number whose least value stands apart */
 };
 
 char *setting_title(const NephSettingInfo *info)
@@ -39,10 +40,16 @@ static char *default_text(const NephSettingInfo *info)
     return number_text(info->initial);
 }
 
+/* The least value, which may stand apart from the others. */
+static double least_of(const NephSettingInfo *info)
+{
+    return fmin(info->low, info->initial);
+}
+
 char *setting_special(const NephSettingInfo *info)
 {
     bool number = info->type == NEPH_SETTING_COUNT || info->type == NEPH_SETTING_REAL;
-    g_autofree char *low = number_text(info->low);
+    g_autofree char *low = number_text(least_of(info));
     g_autofree char *pattern = g_strdup_printf("(?:^|[ (])%s(?:: | is )([^;.,(:]+)", low);
     g_autoptr(GRegex) regex = g_regex_new(pattern, 0, 0, NULL);
     g_autoptr(GMatchInfo) match = NULL;
@@ -96,8 +103,25 @@ static void show_reset(setting_control *c)
     gtk_widget_set_opacity(c->reset, differs ? 1.0 : 0.0);
 }
 
+/* Between the least value and the others there is nothing: on to the other side. */
+static bool leaps_gap(setting_control *c)
+{
+    const NephSettingInfo *info = c->info;
+    if (!(info->initial < info->low) || !GTK_IS_SPIN_BUTTON(c->input))
+        return false;
+    double before = c->value;
+    c->value = gtk_spin_button_get_value(GTK_SPIN_BUTTON(c->input));
+    if (!(c->value > info->initial && c->value < info->low))
+        return false;
+    double other = before < info->low ? info->low : info->initial;
+    gtk_spin_button_set_value(GTK_SPIN_BUTTON(c->input), other);
+    return true;
+}
+
 static void on_input(setting_control *c)
 {
+    if (leaps_gap(c))
+        return; /* and came here again */
     show_reset(c);
     if (c->showing)
         return;
@@ -154,7 +178,7 @@ static GtkWidget *number_make(const NephSettingInfo *info)
     bool whole = info->type == NEPH_SETTING_COUNT;
     if (!whole && info->high - info->low <= SLIDER_RANGE)
         return slider_make(info->low, info->high, 0.01, 3);
-    return spin_make(info->low, info->high, step_of(info), whole);
+    return spin_make(least_of(info), info->high, step_of(info), whole);
 }
 
 /* Words behind that of `high` name presets and are no values. */
@@ -192,12 +216,13 @@ static char *tooltip_text(const NephSettingInfo *info)
 {
     g_autofree char *initial = default_text(info);
     g_autofree char *low = number_text(info->low), *high = number_text(info->high);
+    const char *none = info->initial < info->low ? "0, or " : "";
     bool number = info->type == NEPH_SETTING_COUNT || info->type == NEPH_SETTING_REAL;
     const char *space = *info->unit ? " " : "";
     GString *out = g_string_new(info->doc);
     g_string_append_printf(out, "\n\nDefault: %s%s%s", initial, space, info->unit);
     if (number)
-        g_string_append_printf(out, "\nRange: %s to %s%s%s", low, high, space,
+        g_string_append_printf(out, "\nRange: %s%s to %s%s%s", none, low, high, space,
                                info->unit);
     g_string_append_printf(out, "\nName: %s", info->name);
     return g_string_free(out, FALSE);

@@ -122,6 +122,32 @@ static void test_neighbours(void)
     }
 }
 
+/* Where renders look for the nearest, so does an estimate without a radius of its own:
+   the last of them is the radius and is not counted. */
+static void test_nearest(void)
+{
+    enum { K = 12 };
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    g_autoptr(NephSettings) settings = neph_scene_settings(scene);
+    g_assert_true(neph_settings_set(settings, "photons", "20000", NULL));
+    g_assert_true(neph_settings_set(settings, "indirect_nearest", "12", NULL));
+    g_autoptr(NephPhotons) photons = neph_photons_trace(scene, settings, NULL);
+    const double at[3] = {0, -3, 0}, up[3] = {0, 1, 0};
+    size_t n_near = 0, index[K];
+    NephEstimate e;
+    neph_photons_estimate(photons, at, up, 0.0, &e);
+    g_assert_cmpuint(e.n[NEPH_PHOTON_INDIRECT], ==, K - 1);
+    for (size_t i = 0; i < neph_photons_count(photons); i++) {
+        NephPhoton p;
+        neph_photons_get(photons, i, &p);
+        n_near += p.photon_class == NEPH_PHOTON_INDIRECT && p.direction[1] > 0.0f &&
+                  distance_to(photons, i, at) <= 1.00001 * e.radius[NEPH_PHOTON_INDIRECT];
+    }
+    g_assert_cmpuint(n_near, ==, K);
+    g_assert_cmpuint(neph_photons_near(photons, at, up, 0.0, index, K), ==,
+                     e.n[0] + e.n[1] + e.n[2]);
+}
+
 /* ---- Photons in media ---- */
 
 /* Fog of 0.2 scatterings a metre in all of the scene. */
@@ -265,6 +291,7 @@ int main(int argc, char **argv)
     g_test_add_func("/api-photons/neighbours", test_neighbours);
     g_test_add_func("/api-photons/fog-paths", test_fog_paths);
     g_test_add_func("/api-photons/fog-flux", test_fog_flux);
+    g_test_add_func("/api-photons/nearest", test_nearest);
     g_test_add_func("/api-photons/fog-estimate", test_fog_estimate);
     int result = g_test_run();
     remove_folder();

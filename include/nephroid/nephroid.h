@@ -75,7 +75,8 @@ typedef struct NephSettingInfo {
     const char *name;
     NephSettingType type;
     const char *unit;          /**< "" if none */
-    double low, high, initial; /**< inclusive; index for a choice */
+    double low, high, initial; /**< inclusive; index for a choice. An initial value below
+                                  low is allowed too, and means none. */
     const char *const *words;  /**< of a choice, NULL-terminated; NULL otherwise */
     const char *aliases;       /**< other accepted names, blank-separated */
     const char *users;         /**< the integrators that read it */
@@ -415,7 +416,8 @@ typedef struct NephEstimate {
 } NephEstimate;
 
 /** @brief The estimate of irradiance on a surface at a point, with the kernels of the
- * settings, without probing edges. radius: m; 0: those of the statistics. */
+ * settings, without probing edges. radius: m; 0: as a render would gather, within those
+ * of the statistics or nearer than the last of so many nearest. */
 NEPH_API void neph_photons_estimate(const NephPhotons *photons, const double point[3],
                                     const double normal[3], double radius,
                                     NephEstimate *out);

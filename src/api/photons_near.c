@@ -2,12 +2,16 @@
  * The photons around a point, and the estimate they make: the naive way, one look at each
  * photon, since nobody asks for it more than once a click.
  *
- *   E = Σ κ(d) Φ / ∫∫ κ(s) s ds dθ      over photons on surfaces within r, arrived
- * on the normal's side
+ *   E = Σ κ(d) Φ / ∫∫ κ(s) s ds dθ      over photons on surfaces nearer than r, arrived
+ *                                       on the normal's side
+ *
+ * What counts as near is asked of the renders' own probe, so that it is seen here as
+ * there.
  */
 #include "api/photons.h"
 
 #include "photon/kernel.h"
+#include "photon/probe.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,38 +26,73 @@ static vec3 to_vec3(const double v[3])
     return vec3_make((float)v[0], (float)v[1], (float)v[2]);
 }
 
-static float radius_of(const NephPhotons *photons, double radius, int c)
+static photon_probe probe_at(const NephPhotons *photons, int c, vec3 p, vec3 n)
+{
+    const photon_filter filter = {
+        .n = n, .one_sided = true, .flatten = (float)photons->traced->plan.how.flatten};
+    return photon_probe_make(&photons->traced->stores[c], p, &filter);
+}
+
+static bool counts(const photon_probe *probe, size_t i, float r2, float *distance2)
+{
+    *distance2 = probe_distance2(probe, i);
+    return *distance2 < r2 && probe_accepts(probe, i);
+}
+
+static int by_distance(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Squared distance to the k-th nearest, or where all are asked for the furthest; r2 if
+   fewer lie within. */
+static float nearest_radius2(const photon_probe *probe, size_t k, float r2)
+{
+    g_autoptr(GArray) found = g_array_new(FALSE, FALSE, sizeof(float));
+    float distance2;
+    for (size_t i = 0; i < probe->store->n; i++)
+        if (counts(probe, i, r2, &distance2))
+            g_array_append_val(found, distance2);
+    g_array_sort(found, by_distance);
+    if (found->len >= k)
+        return g_array_index(found, float, k - 1);
+    return isinf(r2) && found->len > 0 ? g_array_index(found, float, found->len - 1) : r2;
+}
+
+/* Squared radius of a class: the given one, or that which a render would gather in. */
+static float radius2_of(const NephPhotons *photons, int c, double radius,
+                        const photon_probe *probe)
 {
     double own = photons->traced->statistics.radius[c];
-    return (float)(radius > 0.0 ? radius : own);
+    const settings *how = &photons->traced->plan.how;
+    size_t nearest = (size_t)how->class_nearest[c];
+    if (radius > 0.0)
+        return square((float)radius);
+    if (nearest == 0 || probe->store->n == 0)
+        return square((float)own);
+    return nearest_radius2(probe, nearest,
+                           how->radius > 0.0 ? square((float)own) : INFINITY);
 }
 
-/* True if photon i of the store counts for a disc or ball of radius r around p. */
-static bool counts(const photon_store *store, size_t i, vec3 p, vec3 n, float r,
-                   float *distance2)
-{
-    vec3 d = vec3_make(store->x[i], store->y[i], store->z[i]) - p;
-    *distance2 = dot3(d, d);
-    return *distance2 < r * r && dot3(direction_unpack(store->wi[i]), n) > 0.0f;
-}
-
-static void estimate_class(const NephPhotons *photons, int c, vec3 p, vec3 n,
-                           NephEstimate *out)
+static void estimate_class(const NephPhotons *photons, int c, const photon_probe *probe,
+                           float r2, NephEstimate *out)
 {
     const photon_store *store = &photons->traced->stores[c];
     const settings *how = &photons->traced->plan.how;
     const kernel k = {(kernel_choice)how->class_kernel[c], (float)how->class_cone_k[c]};
-    float r = (float)out->radius[c], distance2, rgb[3];
+    float distance2, rgb[3];
     spectrum sum = {0};
-    if (!(r > 0.0f))
+    if (!(r2 > 0.0f) || isinf(r2)) /* the nearest are asked for, and there are none */
         return;
+    out->radius[c] = (double)sqrtf(r2);
     for (size_t i = 0; i < store->n; i++) {
-        if (!counts(store, i, p, n, r, &distance2))
+        if (!counts(probe, i, r2, &distance2))
             continue;
-        sum += kernel_eval(&k, distance2, r * r) * photon_store_get(store, i).flux;
+        sum += kernel_eval(&k, distance2, r2) * photon_store_get(store, i).flux;
         out->n[c]++;
     }
-    photons_rgb(photons, sum / kernel_area(&k, r * r), rgb);
+    photons_rgb(photons, sum / kernel_area(&k, r2), rgb);
     for (int axis = 0; axis < 3; axis++)
         out->irradiance[c][axis] = (double)rgb[axis];
 }
@@ -63,8 +102,8 @@ void neph_photons_estimate(const NephPhotons *photons, const double point[3],
 {
     *out = (NephEstimate){0};
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        out->radius[c] = (double)radius_of(photons, radius, c);
-        estimate_class(photons, c, to_vec3(point), to_vec3(normal), out);
+        photon_probe probe = probe_at(photons, c, to_vec3(point), to_vec3(normal));
+        estimate_class(photons, c, &probe, radius2_of(photons, c, radius, &probe), out);
     }
 }
 
@@ -81,14 +120,14 @@ size_t neph_photons_near(const NephPhotons *photons, const double point[3],
                          size_t capacity)
 {
     g_autoptr(GArray) found = g_array_new(FALSE, FALSE, sizeof(neighbour));
-    vec3 p = to_vec3(point), n = to_vec3(normal);
     size_t offset = 0;
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         const photon_store *store = &photons->traced->stores[c];
-        float r = radius_of(photons, radius, c);
+        photon_probe probe = probe_at(photons, c, to_vec3(point), to_vec3(normal));
+        float r2 = radius2_of(photons, c, radius, &probe);
         for (size_t i = 0; i < store->n; i++) {
             neighbour one = {offset + i, 0.0f};
-            if (counts(store, i, p, n, r, &one.distance2))
+            if (counts(&probe, i, r2, &one.distance2))
                 g_array_append_val(found, one);
         }
         offset += render_photons_count(photons->traced, (photon_class)c);

@@ -107,7 +107,9 @@ static void describe_row(GString *out, const setting_row *row, const char *initi
         g_autofree char *words = g_strjoinv(" | ", (char **)row->words);
         g_string_append_printf(out, "   (%s)", words);
     } else if (row->type == SETTING_COUNT) {
-        g_string_append_printf(out, "   (%.0f .. %.0f)", row->low, row->high);
+        g_string_append_printf(out, "   (%s%.0f .. %.0f)",
+                               row->initial < row->low ? "0 or " : "", row->low,
+                               row->high);
     } else if (row->type == SETTING_REAL) {
         char low[G_ASCII_DTOSTR_BUF_SIZE], high[G_ASCII_DTOSTR_BUF_SIZE];
         g_string_append_printf(out, "   (%s .. %s)", number_text(row->low, low),

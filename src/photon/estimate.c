@@ -252,17 +252,23 @@ static bool gather_nearest(gather *g, const photon_map *map, estimate_scratch *s
     if (hits->n > 0 && (all_found || isinf(radius))) {
         size_t last = furthest(hits);
         set_radius2(g, hits->distance2[last]);
-        if (options->unbiased_nearest) {
-            hits->n--;
-            hits->index[last] = hits->index[hits->n];
-            hits->distance2[last] = hits->distance2[hits->n];
-        }
+        hits->n--;
+        hits->index[last] = hits->index[hits->n];
+        hits->distance2[last] = hits->distance2[hits->n];
     }
     gather_hits(g, hits);
     return true;
 }
 
 /* ---- The estimate ---- */
+
+/* The root of r2, or next to it, whose square is not above r2: what lies at r2 is out of
+   reach, as the k-th of the nearest is. */
+static float root_within(float r2)
+{
+    float r = sqrtf(r2);
+    return r * r > r2 ? nextafterf(r, 0.0f) : r;
+}
 
 static bool gather_once(gather *g, const photon_map *map, estimate_scratch *scratch)
 {
@@ -314,7 +320,7 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
     neighbourhood hood = {.scene = options->scene,
                           .p = g->probe.p,
                           .n = g->probe.n,
-                          .radius = sqrtf(g->r2),
+                          .radius = root_within(g->r2),
                           .time = options->time};
     bool bounded = g->n > 0 && isfinite(hood.radius);
     if (options->curve && bounded)

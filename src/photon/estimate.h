@@ -8,6 +8,13 @@
  * over the true surface) see the shading normal as light does. Unless the BSDF transmits,
  * photons that arrived on the far side of the surface are not seen at all: they weigh
  * nothing and never shrink the radius.
+ *
+ * Of the k nearest, the k-th tells how far r reaches and is not counted: given r, the
+ * other k-1 lie evenly in the disc, so that the sum is on average (k-1)/(π r²) times
+ * their flux whatever the kernel, and E[(k-1)/(π r²)] is the density of photons, as π r²
+ * times it is a sum of k exponential variables and E[1/that] = 1/(k-1). It takes two
+ * photons at least. With the k-th counted a constant kernel would show k/(k-1) times the
+ * light.
  */
 #pragma once
 
@@ -18,13 +25,11 @@
 /** @brief How to estimate. */
 typedef struct estimate_options {
     kernel kernel;
-    size_t nearest; /**< k; 0: all within radius */
+    size_t nearest; /**< k >= 2; 0: all within radius */
     float radius;   /**< m; with k nearest the largest allowed (INFINITY: none), and the
                        one used when fewer than k are found in it */
     float flatten;  /**< photons further than flatten * r from the tangent plane are left
                        out, without shrinking r (see photon_filter); 1: a ball */
-    bool unbiased_nearest;   /**< k nearest: r reaches to the k-th, which itself is not
-                                counted */
     const scene *scene;      /**< to probe edges, corners and thin walls with (see
                                 neighbourhood.h); NULL: the disc is taken as whole */
     float time;              /**< of the shutter, at which they are probed */

@@ -77,7 +77,9 @@ static char *expected(const setting_row *row, const char *name)
         return g_strdup_printf("one of %s", words);
     }
     double low = is_depth(name) ? 0.0 : row->low;
-    return g_strdup_printf("%s from %.16g to %.16g%s%s",
+    g_autofree char *none =
+        row->initial < low ? g_strdup_printf("%.16g or ", row->initial) : g_strdup("");
+    return g_strdup_printf("%s%s from %.16g to %.16g%s%s", none,
                            row->type == SETTING_COUNT ? "a whole number" : "a number",
                            low, row->high, *row->unit ? " " : "", row->unit);
 }
@@ -114,6 +116,12 @@ static bool read_number(const char *text, double *out)
     return end != text && !*end && isfinite(*out);
 }
 
+static bool is_in_range(const setting_row *row, double x)
+{
+    bool is_none = row->initial < row->low && fabs(x - row->initial) <= 0.0;
+    return (x >= row->low && x <= row->high) || is_none;
+}
+
 static bool read_value(const setting_row *row, const char *text, double *out)
 {
     switch (row->type) {
@@ -122,10 +130,10 @@ static bool read_value(const setting_row *row, const char *text, double *out)
     case SETTING_CHOICE:
         return read_choice(row->words, text, out);
     case SETTING_COUNT:
-        return read_number(text, out) && *out >= row->low && *out <= row->high &&
+        return read_number(text, out) && is_in_range(row, *out) &&
                fabs(*out - rint(*out)) <= 0.0;
     case SETTING_REAL:
-        return read_number(text, out) && *out >= row->low && *out <= row->high;
+        return read_number(text, out) && is_in_range(row, *out);
     }
     return false;
 }

@@ -84,7 +84,8 @@ typedef struct setting_row {
     setting_type type;
     size_t offset;             /**< in struct settings */
     const char *unit;          /**< "" if none */
-    double low, high, initial; /**< inclusive; index for a choice, 0/1 for a bool */
+    double low, high, initial; /**< inclusive; index for a choice, 0/1 for a bool. An
+                                  initial value below low is allowed too: none */
     const char *const *words;  /**< of a choice, NULL-terminated; behind that of `high`
                                   come names of presets */
     const char *aliases;       /**< other accepted names, blank-separated, "" if none */

@@ -76,15 +76,18 @@ static const setting_row table[] = {
      NULL, "CAUSTIC_PHOTONS_PER_LIGHT causticphotons", "photonmap auto",
      "Photons emitted a pass for the caustic map, over all lights; 0: a share of "
      "photons."},
-    {"direct_nearest", SETTING_COUNT, AT(class_nearest[0]), "photons", 0, 1e7, 0, NULL,
+    {"direct_nearest", SETTING_COUNT, AT(class_nearest[0]), "photons", 2, 1e7, 0, NULL,
      "DIRECT_NEARBY_PHOTONS", "photonmap",
-     "Nearest direct photons in an estimate; 0: all within the radius."},
-    {"indirect_nearest", SETTING_COUNT, AT(class_nearest[1]), "photons", 0, 1e7, 0, NULL,
+     "Nearest direct photons in an estimate, the last of which only tells how far it "
+     "reaches; 0: all within the radius."},
+    {"indirect_nearest", SETTING_COUNT, AT(class_nearest[1]), "photons", 2, 1e7, 0, NULL,
      "INDIRECT_NEARBY_PHOTONS", "photonmap",
-     "Nearest indirect photons in an estimate; 0: all within the radius."},
-    {"caustic_nearest", SETTING_COUNT, AT(class_nearest[2]), "photons", 0, 1e7, 0, NULL,
+     "Nearest indirect photons in an estimate, the last of which only tells how far it "
+     "reaches; 0: all within the radius."},
+    {"caustic_nearest", SETTING_COUNT, AT(class_nearest[2]), "photons", 2, 1e7, 0, NULL,
      "CAUSTIC_NEARBY_PHOTONS", "photonmap auto",
-     "Nearest caustic photons in an estimate; 0: all within the radius."},
+     "Nearest caustic photons in an estimate, the last of which only tells how far it "
+     "reaches; 0: all within the radius."},
     {"radius", SETTING_REAL, AT(radius), "m", 0, 1e12, 0, NULL,
      "photonRadius gather_radius", "photonmap auto vcm",
      "Radius of the estimate in the first pass, or its bound for nearest photons; 0: "
