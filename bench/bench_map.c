@@ -8,7 +8,7 @@
 #include "math/sampler.h"
 #include "math/warp.h"
 #include "photon/estimate.h"
-#include "scene/bsdf_models.h"
+#include "bsdf/bsdf_models.h"
 
 #include <glib.h>
 #include <stdio.h>

@@ -3,8 +3,8 @@
  */
 #pragma once
 
-#include "scene/bsdf_gltf.h"
-#include "scene/bsdf_models.h"
+#include "bsdf/bsdf_gltf.h"
+#include "bsdf/bsdf_models.h"
 
 /* A bsdf to be tested. */
 typedef struct model {

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "scene/bsdf_models.h"
+#include "bsdf/bsdf_models.h"
 #include "scene_text.h"
 
 /* ---- Files ---- */
@@ -87,7 +87,7 @@ static inline scene *load_bytes(const char *name, const char *bytes, gssize size
         .threads = 1, .thin_glass = thin_glass, .log = kept ? &sink : NULL};
     scene *s = format_load_with(path, &how, error);
     if (s && kept)
-        s->log = (log_sink){0};
+        s->build.log = (log_sink){0};
     folder_remove(&f);
     return s;
 }

@@ -4,11 +4,11 @@
  */
 #pragma once
 
+#include "accel/accel.h"
 #include "base/memory.h"
 #include "math/sampler.h"
 #include "math/warp.h"
-#include "scene/accel.h"
-#include "scene/shape_kinds.h"
+#include "shape/shape_kinds.h"
 
 #include <glib.h>
 #include <string.h>

@@ -4,9 +4,9 @@
  */
 #include "scene_text.h"
 
+#include "bsdf/bsdf_models.h"
 #include "format/height_map.h"
 #include "image/image.h"
-#include "scene/bsdf_models.h"
 
 #include <math.h>
 
@@ -258,7 +258,7 @@ static void test_missing_materials(void)
         const log_sink quiet = {0};
         scene *s = format_load(path, 1, &sink, &error);
         g_assert_no_error(error);
-        s->log = quiet;
+        s->build.log = quiet;
         scene_free(s);
         folder_remove(&f);
         g_test_message("%s: %s", cases[i].head, said->str);

@@ -6,9 +6,9 @@
  * Statistical checks: each χ² must have p > 1e-8, so that a run of all of them fails by
  * chance with p < 1e-6; means are compared within 5.5 standard errors. Seeds are fixed.
  */
+#include "bsdf/fresnel.h"
 #include "bsdf_zoo.h"
 #include "chi2.h"
-#include "scene/fresnel.h"
 
 #define TINY_P 1e-8
 

@@ -51,10 +51,10 @@ static void fill_height(int x, int y, float rgb[3])
     rgb[0] = rgb[1] = rgb[2] = 2.0f * u + 3.0f * v;
 }
 
-static bsdf bsdf_at(const scene *s, params *p, const surface_hit *hit)
+static bsdf bsdf_at(const build_context *context, params *p, const surface_hit *hit)
 {
     GError *error = NULL;
-    material *m = material_new(s, "diffuse", p, &error);
+    material *m = material_new(context, "diffuse", p, &error);
     g_assert_no_error(error);
     const wavelengths w = wavelengths_at(0.5f);
     const bsdf_options plain = {0};
@@ -130,7 +130,8 @@ static void test_displacement(void)
         p = list();
         params_add_strings(p, here, PARAM_TEXTURE, "displacement", &name, 1, NULL);
         vec3 expected = normalize3(vec3_make(-slope_x, -slope_y, 1));
-        g_assert_cmpfloat(length3(bsdf_at(s, p, &hit).shading.n - expected), <, 2e-2f);
+        g_assert_cmpfloat(length3(bsdf_at(&s->build, p, &hit).shading.n - expected), <,
+                          2e-2f);
     }
     scene_free(s);
 }

@@ -1,9 +1,9 @@
 /*
  * camera and filter: rays go where pbrt's go, and samples fall as their filter says.
  */
+#include "camera/camera.h"
+#include "camera/filter.h"
 #include "math/sampler.h"
-#include "scene/camera.h"
-#include "scene/filter.h"
 
 #include <glib.h>
 #include <math.h>

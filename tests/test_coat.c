@@ -9,8 +9,8 @@
  * are compared within 5.5 standard errors (p < 1e-7 each, 460 of them) and 0.6 per cent
  * for the closed form's table.
  */
-#include "scene/bsdf_models.h"
-#include "scene/fresnel.h"
+#include "bsdf/bsdf_models.h"
+#include "bsdf/fresnel.h"
 
 #include "math/sampler.h"
 #include "math/warp.h"

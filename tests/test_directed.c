@@ -7,9 +7,9 @@
  */
 #include "chi2.h"
 #include "image/image.h"
+#include "light/ies.h"
+#include "light/light_kinds.h"
 #include "math/warp.h"
-#include "scene/ies.h"
-#include "scene/light_kinds.h"
 
 #include <glib/gstdio.h>
 

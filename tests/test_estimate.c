@@ -3,10 +3,10 @@
  * either side of a thin wall, and every short cut gives what the formula says.
  */
 #include "base/memory.h"
+#include "bsdf/bsdf_models.h"
 #include "math/sampler.h"
 #include "math/warp.h"
 #include "photon/estimate.h"
-#include "scene/bsdf_models.h"
 #include "transport/photonmap.h"
 
 #include <glib.h>

@@ -6,7 +6,7 @@
  * A wavelength that a path does not carry may get any weight; hence everything is
  * weighed by what is carried, which also bounds it: no draw may make its sum grow.
  */
-#include "scene/medium_sample.h"
+#include "medium/medium_sample.h"
 
 #include <float.h>
 #include <glib.h>

@@ -3,9 +3,9 @@
  * coordinates and its own KHR_texture_transform, colours of vertices, and meshes that
  * several nodes show, against the same scene with all of it done by hand.
  */
+#include "bsdf/bsdf.h"
 #include "format/format.h"
 #include "math/sampler.h"
-#include "scene/bsdf.h"
 #include "scene_text.h"
 
 #include <math.h>

@@ -5,9 +5,9 @@
  * Statistical tests: six standard errors, χ² with p > 1e-6.
  */
 #include "chi2.h"
+#include "light/light_kinds.h"
 #include "math/warp.h"
-#include "scene/light_kinds.h"
-#include "scene/sphere_map.h"
+#include "texture/sphere_map.h"
 
 #include <glib/gstdio.h>
 

@@ -5,8 +5,8 @@
  *
  * Statistical tests: six standard errors, chi-square below its 1 - 1e-6 quantile.
  */
+#include "light/light_kinds.h"
 #include "math/frame.h"
-#include "scene/light_kinds.h"
 #include "shape_subjects.h"
 
 /* ---- Lights to test ---- */

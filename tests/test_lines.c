@@ -5,8 +5,8 @@
  */
 #include "color/grid.h"
 #include "color/observer.h"
+#include "light/light_lines.h"
 #include "render_with.h"
-#include "scene/light_lines.h"
 
 /* 532 nm is between two of the wavelengths of a pass, as are 589 nm. */
 #define LASER "\"spectrum I\" [530.5 0 531.5 1 532.5 1 533.5 0]"

@@ -2,9 +2,9 @@
  * material: parameters mean what pbrt-v4 says, every one acts, and what is wrong or not
  * known is refused at its place.
  */
-#include "scene/bsdf_models.h"
-#include "scene/fresnel.h"
-#include "scene/material.h"
+#include "bsdf/bsdf_models.h"
+#include "bsdf/fresnel.h"
+#include "material/material.h"
 #include "scene/scene.h"
 
 #include <string.h>
@@ -42,27 +42,12 @@ static void add_bool(params *p, const char *name, int value)
     g_assert_true(params_add_integers(p, here, PARAM_BOOL, name, &value, 1, NULL));
 }
 
-/* A scene is only looked into for textures. */
-static scene empty_scene(void)
-{
-    return (scene){.float_textures = g_hash_table_new(g_str_hash, g_str_equal),
-                   .spectrum_textures = g_hash_table_new(g_str_hash, g_str_equal)};
-}
-
-static void clear_scene(scene *s)
-{
-    g_hash_table_unref(s->float_textures);
-    g_hash_table_unref(s->spectrum_textures);
-}
-
 static material *make(const char *kind, params *p)
 {
-    scene s = empty_scene();
     GError *error = NULL;
-    material *m = material_new(&s, kind, p, &error);
+    material *m = material_new(NULL, kind, p, &error);
     g_assert_no_error(error);
     params_free(p);
-    clear_scene(&s);
     return m;
 }
 
@@ -76,13 +61,11 @@ static bsdf at(const material *m, const bsdf_options *options)
 
 static void refuse(const char *kind, params *p, const char *message)
 {
-    scene s = empty_scene();
     g_autoptr(GError) error = NULL;
-    g_assert_null(material_new(&s, kind, p, &error));
+    g_assert_null(material_new(NULL, kind, p, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
     g_assert_cmpstr(error->message, ==, message);
     params_free(p);
-    clear_scene(&s);
 }
 
 static void test_diffuse(void)
@@ -333,22 +316,23 @@ static void test_phong(void)
 
 static void test_textured_inputs(void)
 {
-    scene s = empty_scene();
+    build_context context;
+    build_context_init(&context, NULL, NULL);
     params *p = list();
     add_float(p, "value", 0.25f);
-    texture *number = texture_new(&s, "constant", false, p, NULL);
+    texture *number = texture_new(&context, "constant", false, p, NULL);
     params_free(p);
     p = list();
     add_rgb(p, "value", 0.3f, 0.3f, 0.3f);
-    texture *colour = texture_new(&s, "constant", true, p, NULL);
+    texture *colour = texture_new(&context, "constant", true, p, NULL);
     params_free(p);
     g_assert_true(number && colour);
-    g_hash_table_insert(s.float_textures, (char *)"n", number);
-    g_hash_table_insert(s.spectrum_textures, (char *)"c", colour);
+    g_hash_table_insert(context.float_textures, g_strdup("n"), number);
+    g_hash_table_insert(context.spectrum_textures, g_strdup("c"), colour);
 
     p = list();
     add_string(p, PARAM_TEXTURE, "reflectance", "c");
-    material *m = material_new(&s, "diffuse", p, NULL);
+    material *m = material_new(&context, "diffuse", p, NULL);
     g_assert_nonnull(m);
     g_assert_cmpfloat(fabsf(at(m, &plain).rho[4] - 0.3f), <, 2e-3f);
     material_free(m);
@@ -356,7 +340,7 @@ static void test_textured_inputs(void)
 
     p = list();
     add_string(p, PARAM_TEXTURE, "roughness", "n");
-    m = material_new(&s, "dielectric", p, NULL);
+    m = material_new(&context, "dielectric", p, NULL);
     g_assert_nonnull(m);
     g_assert_true(material_casts_caustics(m));
     g_assert_cmpuint(at(m, &plain).lobes, ==, LOBE_GLOSSY | LOBE_ANY_SIDE);
@@ -366,14 +350,14 @@ static void test_textured_inputs(void)
     p = list();
     add_string(p, PARAM_TEXTURE, "reflectance", "n");
     g_autoptr(GError) error = NULL;
-    g_assert_null(material_new(&s, "diffuse", p, &error));
+    g_assert_null(material_new(&context, "diffuse", p, &error));
     g_assert_cmpstr(error->message, ==,
                     "m.pbrt:4:9: parameter 'reflectance': expected a spectrum texture, "
                     "but 'n' is of the other type");
     params_free(p);
     texture_free(number);
     texture_free(colour);
-    clear_scene(&s);
+    build_context_clear(&context);
 }
 
 /* Each part is met as often as "amount" says, always the same one at a point, with its
@@ -392,7 +376,7 @@ static void test_mix(void)
         params *p = list();
         params_add_strings(p, here, PARAM_STRING, "materials", names, 2, NULL);
         add_float(p, "amount", amount);
-        material *m = material_new(s, "mix", p, &error);
+        material *m = material_new(&s->build, "mix", p, &error);
         g_assert_no_error(error);
         g_assert_true(material_casts_caustics(m));
         int n_metal = 0;
@@ -415,7 +399,7 @@ static void test_mix(void)
     const char *const bad[] = {"matt", "nothing"};
     params *p = list();
     params_add_strings(p, here, PARAM_STRING, "materials", bad, 2, NULL);
-    g_assert_null(material_new(s, "mix", p, &error));
+    g_assert_null(material_new(&s->build, "mix", p, &error));
     g_assert_nonnull(strstr(error->message, "'nothing'"));
     g_clear_error(&error);
     params_free(p);

@@ -5,9 +5,9 @@
  */
 #include "rooms.h"
 
+#include "bsdf/fresnel.h"
+#include "medium/medium.h"
 #include "photon/trace.h"
-#include "scene/fresnel.h"
-#include "scene/medium.h"
 
 /* A slab 0.5 thick and wide enough to have no edges, before a lamp that fills the view.
    The camera looks straight through it. */

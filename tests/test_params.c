@@ -2,7 +2,7 @@
  * params: typed access tells wrong types and counts at their place, and what nobody
  * asked for is found.
  */
-#include "scene/params.h"
+#include "params/params.h"
 
 #include <math.h>
 

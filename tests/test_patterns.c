@@ -38,7 +38,7 @@ static params *named(params *p, const char *name, const char *of)
 static texture *make(const scene *s, const char *kind, bool is_spectrum, params *p)
 {
     GError *error = NULL;
-    texture *t = texture_new(s, kind, is_spectrum, p, &error);
+    texture *t = texture_new(&s->build, kind, is_spectrum, p, &error);
     g_assert_no_error(error);
     params_free(p);
     return t;

@@ -5,7 +5,7 @@
  */
 #include "refused_scene.h"
 
-#include "scene/medium_presets.h"
+#include "medium/medium_presets.h"
 
 #include <math.h>
 

@@ -6,8 +6,8 @@
  *
  * Statistical checks: χ² with p > 1e-8 each, seeds fixed.
  */
+#include "bsdf/bsdf_models.h"
 #include "chi2.h"
-#include "scene/bsdf_models.h"
 
 #define TINY_P 1e-8
 

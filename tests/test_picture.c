@@ -2,9 +2,9 @@
  * pictures: texels keep every bit of an image in as few bytes as can be, are halved to
  * means, and are shared by all that read a file alike.
  */
-#include "scene/picture.h"
 #include "scene/scene.h"
 #include "scene_text.h"
+#include "texture/picture.h"
 
 #include <string.h>
 
@@ -65,7 +65,7 @@ static picture *read_with(const scene *s, params *p, image_encoding encoding)
 {
     const image_read_options options = {.encoding = encoding, .gamma = 1.0f};
     GError *error = NULL;
-    picture *pic = picture_read(s, p, "filename", &options, &error);
+    picture *pic = picture_read(&s->build, p, "filename", &options, &error);
     g_assert_no_error(error);
     return pic;
 }

@@ -2,7 +2,7 @@
  * scene: building, what commit finds and refuses, the film directive, and the lights
  * asked as one.
  */
-#include "scene/light_kinds.h"
+#include "light/light_kinds.h"
 #include "scene/scene.h"
 #include "scene_text.h"
 #include "shape_subjects.h"

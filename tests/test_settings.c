@@ -2,7 +2,7 @@
  * settings: every row reads back what it writes, keeps its range, and answers to the
  * names that the literature gave it; files of settings name the place of an error.
  */
-#include "scene/settings.h"
+#include "settings/settings.h"
 
 #include <glib/gstdio.h>
 #include <math.h>

@@ -5,8 +5,8 @@
 #include "image/image.h"
 #include "math/sampler.h"
 #include "math/warp.h"
-#include "scene/mapping.h"
-#include "scene/texture.h"
+#include "texture/mapping.h"
+#include "texture/texture.h"
 
 #include <glib/gstdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "api/describe.h"
 
 #include "base/memory.h"
-#include "scene/light_lines.h"
+#include "light/light_lines.h"
 
 #include <math.h>
 #include <string.h>
@@ -58,13 +58,15 @@ static int compare_kinds(const void *a, const void *b)
     return strcmp(((const tally *)a)->kind, ((const tally *)b)->kind);
 }
 
-static void count_textures(GHashTable *table, summary *all)
+static void count_textures(const scene *s, summary *all)
 {
-    GHashTableIter iter;
-    gpointer one;
-    g_hash_table_iter_init(&iter, table);
-    while (g_hash_table_iter_next(&iter, NULL, &one))
+    for (guint i = 0; i < s->textures->len; i++) {
+        const texture *one = s->textures->pdata[i];
+        size_t *n =
+            texture_is_spectrum(one) ? &all->n_spectrum_textures : &all->n_float_textures;
+        (*n)++;
         tally_of(all->textures, texture_kind_name(one))->n++;
+    }
     g_array_sort(all->textures, compare_kinds);
 }
 
@@ -125,10 +127,7 @@ static void summary_init(summary *all, const scene *s)
     count_materials(s, all);
     count_media(s, all);
     measure_view(s, all);
-    all->n_float_textures = g_hash_table_size(s->float_textures);
-    all->n_spectrum_textures = g_hash_table_size(s->spectrum_textures);
-    count_textures(s->float_textures, all);
-    count_textures(s->spectrum_textures, all);
+    count_textures(s, all);
     all->warnings = describe_warnings(s);
     all->process_bytes = memory_peak();
     all->render_bytes = estimate_memory(s, all);

@@ -96,7 +96,7 @@ static void put_media(json *j, const summary *all)
 static void put_files(json *j, const scene *s)
 {
     json_array_begin(j, "files");
-    for (const char *const *path = scene_sources_paths(s->sources); *path; path++)
+    for (const char *const *path = scene_sources_paths(s->build.sources); *path; path++)
         json_string(j, NULL, *path);
     json_array_end(j);
 }

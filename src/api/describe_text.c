@@ -140,7 +140,7 @@ static void put_memory(GString *out, const summary *all)
 
 static void put_files(GString *out, const scene *s)
 {
-    const char *const *paths = scene_sources_paths(s->sources);
+    const char *const *paths = scene_sources_paths(s->build.sources);
     guint n = g_strv_length((char **)paths);
     g_string_append_printf(out, "read from        %u file%s\n", n, n == 1 ? "" : "s");
     for (guint i = 0; i < MIN(n, MOST_NAMES); i++)

@@ -6,8 +6,8 @@
  */
 #include "api/describe.h"
 
-#include "scene/mesh_closed.h"
 #include "scene/scene_media.h"
+#include "shape/mesh_closed.h"
 
 #include <math.h>
 

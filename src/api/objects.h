@@ -6,7 +6,7 @@
 #include "image/image.h"
 #include "nephroid/nephroid.h"
 #include "scene/scene.h"
-#include "scene/settings.h"
+#include "settings/settings.h"
 
 struct NephSettings {
     settings values;

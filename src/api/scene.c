@@ -109,7 +109,7 @@ bool neph_scene_resize(NephScene *s, int width, int height, GError **error)
 
 const char *const *neph_scene_files(const NephScene *s)
 {
-    return scene_sources_paths(s->scene->sources);
+    return scene_sources_paths(s->scene->build.sources);
 }
 
 const char *neph_scene_output(const NephScene *s)

@@ -12,7 +12,7 @@
 #include "format/defaults.h"
 #include "format/obj_materials.h"
 #include "format/reader.h"
-#include "scene/mesh_closed.h"
+#include "shape/mesh_closed.h"
 
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
@@ -39,7 +39,7 @@ void assimp_note(assimp_reader *r, const char *format, ...)
     char *text = g_strdup_vprintf(format, args);
     va_end(args);
     if (!g_hash_table_contains(r->notes, text))
-        log_message(&r->scene->log, LOG_WARNING, "%s: %s", r->path, text);
+        log_message(&r->scene->build.log, LOG_WARNING, "%s: %s", r->path, text);
     g_hash_table_add(r->notes, text);
 }
 
@@ -114,7 +114,8 @@ static bool add_shape(assimp_reader *r, mesh *m, const assimp_material *material
         .to_world = *to_world, .material = index, .area_light = material_is->area_light};
     const source_place place = {intern(r->path), 0, 0};
     if (material_is->alpha) {
-        if (!float_input_init(&alpha, r->scene, material_is->alpha, "alpha", 1.0f, error))
+        if (!float_input_init(&alpha, &r->scene->build, material_is->alpha, "alpha", 1.0f,
+                              error))
             return false;
         if (!alpha.texture && !(alpha.constant > 0.0f))
             return true;
@@ -267,7 +268,7 @@ static bool read_file(assimp_reader *r, GError **error)
         error_at(error, place, "a file this short cannot hold what it claims to");
         return false;
     }
-    r->source = assimp_import(r->scene->sources, r->path, STEPS);
+    r->source = assimp_import(r->scene->build.sources, r->path, STEPS);
     if (!r->source) {
         error_at(error, place, "%s", aiGetErrorString());
         return false;

@@ -17,7 +17,7 @@
 #include "base/intern.h"
 #include "format/given.h"
 #include "format/height_map.h"
-#include "scene/picture.h"
+#include "texture/picture.h"
 
 #include <assimp/cimport.h>
 #include <assimp/material.h>
@@ -100,7 +100,7 @@ static char *embedded_path(assimp_reader *r, const char *name)
         g_strdup_printf("%s.%s.%s", absolute, name[0] == '*' ? name + 1 : "image",
                         image_is->achFormatHint);
     g_autoptr(GBytes) bytes = g_bytes_new(image_is->pcData, image_is->mWidth);
-    scene_add_file(r->scene, path, bytes);
+    build_context_add_file(&r->scene->build, path, bytes);
     return path;
 }
 
@@ -119,7 +119,7 @@ static char *texture_path(assimp_reader *r, const struct aiMaterial *m,
         return inside;
     g_autofree char *mended = g_strdelimit(g_strdup(name.data), "\\", '/');
     char *path = g_canonicalize_filename(mended, r->directory);
-    scene_sources_add(r->scene->sources, path);
+    scene_sources_add(r->scene->build.sources, path);
     if (g_file_test(path, G_FILE_TEST_IS_REGULAR))
         return path;
     g_free(path);
@@ -138,7 +138,7 @@ static bool is_readable(assimp_reader *r, const char *path, image_encoding encod
 {
     const image_read_options options = {.encoding = encoding};
     g_autoptr(GError) error = NULL;
-    picture *pic = picture_read_file(r->scene, path, &options, &error);
+    picture *pic = picture_read_file(&r->scene->build, path, &options, &error);
     if (!pic)
         assimp_note(r, "a texture is left out: %s", error->message);
     bool readable = pic != NULL;
@@ -155,7 +155,7 @@ static char *add_texture(assimp_reader *r, const struct aiMaterial *m,
         return NULL;
     char *name = g_strdup(path);
     GHashTable *known =
-        is_spectrum ? r->scene->spectrum_textures : r->scene->float_textures;
+        is_spectrum ? r->scene->build.spectrum_textures : r->scene->build.float_textures;
     if (g_hash_table_contains(known, name))
         return name;
     g_autoptr(params) p = assimp_params(r);
@@ -237,14 +237,15 @@ static void give_heights(assimp_reader *r, params *p, const struct aiMaterial *m
     double strength = 1.0;
     if (!path || !is_readable(r, path, linear.encoding))
         return;
-    g_autoptr(image) heights = scene_read_image(r->scene, path, &linear, NULL);
+    g_autoptr(image) heights =
+        build_context_read_image(&r->scene->build, path, &linear, NULL);
     get_number(m, KEY_BUMP_STRENGTH, &strength);
     if (!height_map_is_normals(heights)) {
         g_autoptr(GBytes) normals = height_map_as_normals(heights, strength);
         char *name = g_strdup_printf("%s.%g.normals.pfm", path, strength);
         g_free(path);
         path = name;
-        scene_add_file(r->scene, path, normals);
+        build_context_add_file(&r->scene->build, path, normals);
         assimp_note(r, "maps of height say nothing of how high: a step from black to "
                        "white across a texel is read as a slope of 45 degrees");
     }

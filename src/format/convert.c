@@ -241,7 +241,7 @@ static const char *texture_name(const converter *c, const texture *t)
 {
     GHashTableIter iter;
     gpointer name, value;
-    g_hash_table_iter_init(&iter, c->scene->float_textures);
+    g_hash_table_iter_init(&iter, c->scene->build.float_textures);
     while (g_hash_table_iter_next(&iter, &name, &value))
         if (value == t)
             return name;
@@ -468,10 +468,10 @@ bool format_convert(const char *in, const char *out, const load_options *options
                                      .object_end = on_object_end,
                                      .instance = on_instance};
     g_autoptr(scene) s = scene_new(options ? options->log : NULL);
-    s->lenient = options && options->lenient;
+    s->build.lenient = options && options->lenient;
     s->thin_glass = options && options->thin_glass;
-    s->sources = scene_sources_new(options ? options->source : NULL,
-                                   options ? options->source_data : NULL);
+    s->build.sources = scene_sources_new(options ? options->source : NULL,
+                                         options ? options->source_data : NULL);
     s->listener = &listener;
     c.scene = s;
     c.files.scene = s;
@@ -480,7 +480,7 @@ bool format_convert(const char *in, const char *out, const load_options *options
         g_propagate_error(error, g_steal_pointer(&c.files.error));
         done = false;
     }
-    done = done && output_spares(out, scene_sources_paths(s->sources), error) &&
+    done = done && output_spares(out, scene_sources_paths(s->build.sources), error) &&
            converted_files_commit(&c.files, error) && write_scene(&c, in, out, error);
     converter_clear(&c);
     return done;

@@ -58,7 +58,7 @@ void converted_files_close(converted_files *f, const char *name, output *out)
 
 bool converted_files_commit(converted_files *f, GError **error)
 {
-    const char *const *sources = scene_sources_paths(f->scene->sources);
+    const char *const *sources = scene_sources_paths(f->scene->build.sources);
     bool done = true;
     for (guint i = 0; i < f->paths->len && done; i++)
         done = output_spares(f->paths->pdata[i], sources, error);
@@ -88,7 +88,7 @@ static GBytes *bytes_of(converted_files *f, const char *path)
 {
     char *data;
     gsize size;
-    GBytes *inside = g_hash_table_lookup(f->scene->files, path);
+    GBytes *inside = g_hash_table_lookup(f->scene->build.files, path);
     if (inside)
         return g_bytes_ref(inside);
     return g_file_get_contents(path, &data, &size, NULL) ? g_bytes_new_take(data, size)

@@ -92,9 +92,9 @@ static bool add_sky(scene *s, const char *path, vec3 up, GError **error)
     g_autofree char *absolute = g_canonicalize_filename(name, NULL);
     g_autoptr(GBytes) picture = sky_picture(&to_world, up, standpoint(up, -0.8f, 1.1f));
     g_autoptr(params) p = list(path);
-    scene_add_file(s, absolute, picture);
+    build_context_add_file(&s->build, absolute, picture);
     give_text(p, PARAM_STRING, "filename", absolute);
-    log_message(&s->log, LOG_NOTE, "%s: no %s in it; a soft sky is added", path,
+    log_message(&s->build.log, LOG_NOTE, "%s: no %s in it; a soft sky is added", path,
                 s->lights->len > 0 ? "lamp, only what glows a little," : "light");
     return scene_add_light(s, "infinite", p, &to_world, error);
 }
@@ -155,8 +155,8 @@ static bool add_view(scene *s, const char *path, vec3 up, GError **error)
     look = transform_inverse(&look);
     g_autoptr(params) p = list(path);
     give_float(p, "fov", DEFAULT_FOV);
-    log_message(&s->log, LOG_NOTE, "%s: no camera in it; one that frames it is added",
-                path);
+    log_message(&s->build.log, LOG_NOTE,
+                "%s: no camera in it; one that frames it is added", path);
     return set_film(s, path, error) &&
            scene_set_camera(s, "perspective", p, &look, error);
 }

@@ -62,7 +62,7 @@ static void refuse(const char *path, GError **error)
 static void warn_of_darkness(const scene *s, const char *path)
 {
     if (!scene_is_lit(s))
-        log_message(&s->log, LOG_WARNING,
+        log_message(&s->build.log, LOG_WARNING,
                     "%s: the scene has no light%s: its picture is black", path,
                     s->lights->len ? " but what is black" : "");
 }
@@ -85,7 +85,7 @@ static bool commit(scene *s, const char *path, unsigned threads, GError **error)
 bool format_read(scene *s, const char *path, GError **error)
 {
     const format_reader *reader = find_reader(path);
-    scene_sources_add(s->sources, path);
+    scene_sources_add(s->build.sources, path);
     if (reader)
         return reader->read(s, path, error);
     refuse(path, error);
@@ -95,9 +95,9 @@ bool format_read(scene *s, const char *path, GError **error)
 scene *format_load_with(const char *path, const load_options *options, GError **error)
 {
     g_autoptr(scene) s = scene_new(options->log);
-    s->lenient = options->lenient;
+    s->build.lenient = options->lenient;
     s->thin_glass = options->thin_glass;
-    s->sources = scene_sources_new(options->source, options->source_data);
+    s->build.sources = scene_sources_new(options->source, options->source_data);
     if (!format_read(s, path, error) || !commit(s, path, options->threads, error))
         return NULL;
     return g_steal_pointer(&s);

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "scene/params.h"
+#include "params/params.h"
 
 static inline void give_float(params *p, const char *name, double value)
 {

@@ -63,7 +63,7 @@ GBytes *gltf_uri_bytes(gltf *g, const json_value *at, const char *uri)
     if (!path)
         return NULL;
     g_autoptr(GError) error = NULL;
-    scene_sources_add(g->scene->sources, path);
+    scene_sources_add(g->scene->build.sources, path);
     GMappedFile *map = g_mapped_file_new(path, FALSE, &error);
     if (!map) {
         json_fail(at, "%s", error->message);

@@ -9,7 +9,7 @@
 
 #include "base/intern.h"
 #include "base/memory.h"
-#include "scene/mesh_closed.h"
+#include "shape/mesh_closed.h"
 
 #include <string.h>
 
@@ -228,7 +228,8 @@ static void add_shape(gltf *g, const json_value *primitive, mesh *m,
     float_input alpha;
     const source_place place = {intern(g->path), 0, 0};
     if (info->alpha) {
-        if (!float_input_init(&alpha, g->scene, info->alpha, "alpha", 1.0f, &error)) {
+        if (!float_input_init(&alpha, &g->scene->build, info->alpha, "alpha", 1.0f,
+                              &error)) {
             gltf_take_error(g, primitive, error);
             return;
         }

@@ -31,7 +31,7 @@ static const char *embedded_path(gltf *g, GBytes *bytes, gint64 index)
     g_autofree char *path = g_canonicalize_filename(g->path, NULL);
     g_autofree char *name =
         g_strdup_printf("%s.image%d.%s", path, (int)index, is_png ? "png" : "jpg");
-    scene_add_file(g->scene, name, bytes);
+    build_context_add_file(&g->scene->build, name, bytes);
     return intern(name);
 }
 
@@ -144,7 +144,7 @@ static void give_texture(gltf *g, params *p, const char *name, const json_value 
 {
     g_autofree char *unique = texture_name(img);
     GHashTable *known =
-        is_number ? g->scene->float_textures : g->scene->spectrum_textures;
+        is_number ? g->scene->build.float_textures : g->scene->build.spectrum_textures;
     GError *error = NULL;
     if (!gltf_failed(g) && !g_hash_table_contains(known, unique) &&
         !scene_add_texture(g->scene, unique, "gltf", !is_number, img, &error))

@@ -82,7 +82,7 @@ static void read_library(obj_names *names, char *name)
         return;
     g_autofree char *path = g_canonicalize_filename(name, names->directory);
     g_autofree char *own = own_library(names);
-    scene_sources_add(names->scene->sources, path);
+    scene_sources_add(names->scene->build.sources, path);
     bool found = each_line(names, path, note_definition);
     bool has_own = !found && each_line(names, own, note_definition);
     names->has_library |= found || has_own;
@@ -90,7 +90,7 @@ static void read_library(obj_names *names, char *name)
         return;
     g_autofree char *instead =
         has_own ? g_path_get_basename(own) : g_strdup("grey materials");
-    log_message(&names->scene->log, LOG_WARNING,
+    log_message(&names->scene->build.log, LOG_WARNING,
                 "%s: its file of materials '%s' (mtllib) can not be read: %s instead",
                 names->path, name, instead);
 }
@@ -107,7 +107,7 @@ static void note_line(obj_names *names, const char *line, size_t length)
 
 static void tell_missing(const obj_names *names)
 {
-    const log_sink *log = &names->scene->log;
+    const log_sink *log = &names->scene->build.log;
     guint n_missing = 0;
     if (g_hash_table_size(names->files) == 0 && names->in_order->len > 0)
         log_message(log, LOG_WARNING,

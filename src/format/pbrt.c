@@ -192,7 +192,7 @@ void pbrt_include(pbrt_parser *parser, const char *name, source_place place)
     }
     input in;
     g_autoptr(GError) error = NULL;
-    scene_sources_add(parser->scene->sources, path);
+    scene_sources_add(parser->scene->build.sources, path);
     if (!input_open(&in, path, &error)) {
         pbrt_error(parser, place, "%s", error->message);
         return;
@@ -306,7 +306,7 @@ static void read_main(pbrt_parser *parser, const char *path, const input *in)
     g_autofree char *canonical = g_canonicalize_filename(path, NULL);
     parser->is_v3 = pbrt_v3_recognises(in->data, in->size);
     if (parser->is_v3)
-        log_message(&parser->scene->log, LOG_NOTE,
+        log_message(&parser->scene->build.log, LOG_NOTE,
                     "%s: pbrt-v3: its directives are translated to pbrt-v4's", path);
     lexer words = lexer_new(path, in->data, in->size);
     g_ptr_array_add(parser->open_files, canonical);

@@ -6,7 +6,7 @@
 #include "format/pbrt_parser.h"
 
 #include "base/intern.h"
-#include "scene/lenient.h"
+#include "format/lenient.h"
 
 #include <string.h>
 
@@ -40,8 +40,8 @@ static bool add_medium(pbrt_parser *parser, const char *name, const char *type, 
     GError *error = NULL;
     g_autofree char *kind = g_strdup(type);
     if (parser->is_v3)
-        pbrt_v3_translate(V3_MEDIUM, &kind, p, &parser->scene->log);
-    bool is_empty = lenient_medium(parser->scene, name, kind, p, &error);
+        pbrt_v3_translate(V3_MEDIUM, &kind, p, &parser->scene->build.log);
+    bool is_empty = lenient_medium(&parser->scene->build, name, kind, p, &error);
     int index = is_empty || error
                     ? NO_INDEX
                     : scene_add_medium(parser->scene, name, kind, p, &error);

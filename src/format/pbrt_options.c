@@ -2,6 +2,7 @@
  * What stands before WorldBegin. pbrt lets film, camera, sampler ... come in any order,
  * so they are kept and given to the scene together.
  */
+#include "format/lenient.h"
 #include "format/pbrt_parser.h"
 
 #include "base/intern.h"
@@ -20,7 +21,7 @@ static bool keep(pbrt_parser *parser, pending *d, pbrt_v3_target target,
         return false;
     }
     if (parser->is_v3)
-        pbrt_v3_translate(target, &kind, p, &parser->scene->log);
+        pbrt_v3_translate(target, &kind, p, &parser->scene->build.log);
     g_free(d->kind);
     params_free(d->p);
     *d = (pending){kind, p, at, parser->state.ctm, parser->state.ctm_end};
@@ -96,7 +97,7 @@ bool pbrt_accelerator(pbrt_parser *parser, source_place place)
     else if (!params_known(p, what, kind->idle, NULL, &error))
         pbrt_report(parser, error);
     else
-        log_message(&parser->scene->log, LOG_NOTE,
+        log_message(&parser->scene->build.log, LOG_NOTE,
                     "%s:%d:%d: Accelerator '%s': rays are traced by Embree, which needs "
                     "no parameters",
                     at.file, at.line, at.column, name);
@@ -171,7 +172,7 @@ static void apply_option(pbrt_parser *parser, const params *p, const param *q)
     if (option && *option->parameters)
         apply_acting(parser, p, q);
     else if (option && *option->idle)
-        log_message(&parser->scene->log, LOG_NOTE,
+        log_message(&parser->scene->build.log, LOG_NOTE,
                     "%s:%d:%d: option '%s' does not change the image", q->place.file,
                     q->place.line, q->place.column, q->name);
     else if (!option || !option->note || !is_off)
@@ -260,7 +261,7 @@ static const params *given_or_default(pbrt_parser *parser, pending *d, const cha
         d->p = params_new(place, parser->base_directory, parser->state.space);
         d->place = place;
         if (parser->is_v3 && d == &parser->film)
-            pbrt_v3_translate(V3_FILM, &d->kind, d->p, &parser->scene->log);
+            pbrt_v3_translate(V3_FILM, &d->kind, d->p, &parser->scene->build.log);
     }
     return d->p;
 }
@@ -269,8 +270,11 @@ static void finish_film(pbrt_parser *parser, source_place place)
 {
     GError *error = NULL;
     const params *p = given_or_default(parser, &parser->film, "rgb", place);
-    if (scene_set_film(parser->scene, parser->film.kind, p, &error))
-        pbrt_check_used(parser, p, "Film", parser->film.kind);
+    const char *kind = parser->film.kind;
+    g_autoptr(params) replaced = lenient_film(&parser->scene->build, &kind, p, &error);
+    const params *given = replaced ? replaced : p;
+    if (!error && scene_set_film(parser->scene, kind, given, &error))
+        pbrt_check_used(parser, given, "Film", kind);
     else
         pbrt_report(parser, error);
 }

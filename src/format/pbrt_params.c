@@ -192,7 +192,7 @@ static bool add_spectrum(pbrt_parser *parser, params *p, const declaration *d,
         return params_add_strings(p, place, PARAM_SPECTRUM_NAME, d->name, names,
                                   strings->len, error);
     g_autofree char *path = g_canonicalize_filename(names[0], parser->base_directory);
-    scene_sources_add(parser->scene->sources, path);
+    scene_sources_add(parser->scene->build.sources, path);
     if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
         error_at(error, place,
                  "parameter '%s': expected a spectrum's name or file, found \"%s\"",
@@ -215,7 +215,7 @@ static bool replace_older(pbrt_parser *parser, params *p, const declaration *d)
         return true;
     bool stays =
         parser->is_v3 && older->type == PARAM_TEXTURE && d->type->type != PARAM_TEXTURE;
-    log_message(&parser->scene->log, LOG_NOTE,
+    log_message(&parser->scene->build.log, LOG_NOTE,
                 "%s:%d:%d: parameter '%s' is given again: %s", at.file, at.line,
                 at.column, d->name, stays ? "the texture counts" : "the last counts");
     if (!stays)
@@ -270,7 +270,7 @@ params *pbrt_read_params(pbrt_parser *parser, source_place place)
 {
     g_autoptr(params) p = params_new(place, parser->base_directory, parser->state.space);
     p->to_world = parser->state.ctm;
-    p->unknown_to = parser->is_v3 ? &parser->scene->log : NULL;
+    p->unknown_to = parser->is_v3 ? &parser->scene->build.log : NULL;
     while (lexer_peek(parser->words).kind == TOKEN_STRING)
         if (!read_param(parser, p))
             return NULL;

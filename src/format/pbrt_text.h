@@ -4,7 +4,7 @@
 #pragma once
 
 #include "math/transform.h"
-#include "scene/params.h"
+#include "params/params.h"
 
 /** @brief Appends "Transform [ ... ]" and a line end. */
 void pbrt_text_transform(GString *out, const double m[4][4]);

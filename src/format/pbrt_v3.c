@@ -9,7 +9,7 @@
 #include "format/pbrt_v3_words.h"
 
 #include "base/intern.h"
-#include "scene/medium_presets.h"
+#include "medium/medium_presets.h"
 
 #include <math.h>
 #include <string.h>

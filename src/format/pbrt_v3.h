@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/log.h"
-#include "scene/params.h"
+#include "params/params.h"
 
 #include <stdbool.h>
 #include <stddef.h>

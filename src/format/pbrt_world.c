@@ -4,8 +4,8 @@
  */
 #include "format/pbrt_parser.h"
 
+#include "format/lenient.h"
 #include "format/ply.h"
-#include "scene/lenient.h"
 
 #include <string.h>
 
@@ -32,7 +32,7 @@ static bool read_arguments(pbrt_parser *parser, source_place place,
 static void translate(const pbrt_parser *parser, pbrt_v3_target target, arguments *a)
 {
     if (parser->is_v3)
-        pbrt_v3_translate(target, &a->kind, a->p, &parser->scene->log);
+        pbrt_v3_translate(target, &a->kind, a->p, &parser->scene->build.log);
 }
 
 static void clear_arguments(arguments *a)
@@ -52,14 +52,15 @@ static int add_material(pbrt_parser *parser, const char *name, const char *kind,
 {
     GError *error = NULL;
     int index = NO_INDEX;
-    if (!is_interface(kind)) {
-        index = scene_add_material(parser->scene, name, kind, p, &error);
-        if (index == NO_INDEX) {
-            pbrt_report(parser, error);
-            return NO_INDEX;
-        }
-    }
-    pbrt_check_used(parser, p, "material", kind);
+    g_autoptr(params) replaced =
+        lenient_material(&parser->scene->build, &kind, p, &error);
+    const params *given = replaced ? replaced : p;
+    if (!error && !is_interface(kind))
+        index = scene_add_material(parser->scene, name, kind, given, &error);
+    if (error)
+        pbrt_report(parser, error);
+    else
+        pbrt_check_used(parser, given, "material", kind);
     return index;
 }
 
@@ -134,11 +135,18 @@ static void add_texture(pbrt_parser *parser, const char *name, const char *type,
 {
     GError *error = NULL;
     bool is_spectrum = strcmp(type, "spectrum") == 0;
-    if (!is_spectrum && strcmp(type, "float") != 0)
+    if (!is_spectrum && strcmp(type, "float") != 0) {
         pbrt_error(parser, type_at, "expected \"float\" or \"spectrum\", found \"%s\"",
                    type);
-    else if (scene_add_texture(parser->scene, name, a->kind, is_spectrum, a->p, &error))
-        pbrt_check_used(parser, a->p, "texture", a->kind);
+        return;
+    }
+    const char *kind = a->kind;
+    g_autoptr(params) replaced =
+        lenient_texture(&parser->scene->build, &kind, is_spectrum, a->p, &error);
+    const params *given = replaced ? replaced : a->p;
+    if (!error &&
+        scene_add_texture(parser->scene, name, kind, is_spectrum, given, &error))
+        pbrt_check_used(parser, given, "texture", kind);
     else
         pbrt_report(parser, error);
 }
@@ -168,7 +176,7 @@ bool pbrt_light_source(pbrt_parser *parser, source_place place)
     pbrt_use_media(parser, &parser->state.inside, &parser->state.outside);
     GError *error = NULL;
     bool moves = pbrt_is_moving(parser) &&
-                 !scene_is_lenient(parser->scene, place,
+                 !build_is_lenient(&parser->scene->build, place,
                                    "a light that moves stands still where it starts");
     if (moves)
         pbrt_error(parser, place, "a light can not move, found a transform that does");
@@ -224,7 +232,7 @@ static bool add_ply(pbrt_parser *parser, const params *p, const shape_place *at,
     source_place named = params_find(p, "filename")->place;
     g_autoptr(GError) inner = NULL;
     mesh m = {0};
-    scene_sources_add(parser->scene->sources, path);
+    scene_sources_add(parser->scene->build.sources, path);
     if (ply_read(path, &m, &inner))
         return scene_add_mesh(parser->scene, &m, at, named, error);
     if (g_error_matches(inner, NEPH_ERROR, ERROR_FAILED))
@@ -268,7 +276,7 @@ static void add_shape(pbrt_parser *parser, const arguments *a)
     bool seen = true;
     float_input alpha;
     if (!params_bool(a->p, "camera_visible", &seen, &error) ||
-        !float_input_init(&alpha, parser->scene, a->p, "alpha", 1.0f, &error)) {
+        !float_input_init(&alpha, &parser->scene->build, a->p, "alpha", 1.0f, &error)) {
         pbrt_report(parser, error);
         return;
     }

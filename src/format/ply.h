@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "scene/shape.h"
+#include "shape/shape.h"
 
 /**
  * @brief Reads the mesh in the file's own space.

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "format/ply_header.h"
-#include "scene/shape.h"
+#include "shape/shape.h"
 
 /** @brief Where the reading of a file stands. */
 typedef struct ply_reader {

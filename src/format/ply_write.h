@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/output.h"
-#include "scene/shape.h"
+#include "shape/shape.h"
 
 /** @brief Writes positions, normals and uv (whichever there are) and triangles; what
  * fails shows at the output's end. */

@@ -18,9 +18,9 @@
  */
 #pragma once
 
+#include "photon/disc_set.h"
 #include "photon/flat_curve.h"
 #include "photon/map.h"
-#include "scene/disc_set.h"
 
 /** @brief How to estimate. */
 typedef struct estimate_options {

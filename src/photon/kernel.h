@@ -15,7 +15,7 @@
 #pragma once
 
 #include "photon/lanes.h"
-#include "scene/settings.h"
+#include "settings/settings.h"
 
 /** @brief A kernel with its parameter. */
 typedef struct kernel {

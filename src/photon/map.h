@@ -17,7 +17,7 @@
 
 #include "base/parallel.h"
 #include "photon/photon.h"
-#include "scene/settings.h"
+#include "settings/settings.h"
 
 typedef struct photon_map photon_map;
 

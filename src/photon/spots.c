@@ -1,9 +1,9 @@
 #include "photon/spots.h"
 
+#include "light/light_tree.h"
 #include "math/frame.h"
 #include "math/median.h"
 #include "math/warp.h"
-#include "scene/light_tree.h"
 
 #include <string.h>
 

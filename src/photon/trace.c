@@ -1,8 +1,8 @@
 #include "photon/trace.h"
 
 #include "base/memory.h"
+#include "medium/medium_sample.h"
 #include "photon/trace_chunk.h"
-#include "scene/medium_sample.h"
 
 /* Photons emitted per parallel piece of work. */
 enum { CHUNK = 4096 };

@@ -15,10 +15,10 @@
  */
 #pragma once
 
+#include "medium/medium.h"
+#include "photon/disc_set.h"
 #include "photon/kernel.h"
 #include "photon/photon.h"
-#include "scene/disc_set.h"
-#include "scene/medium.h"
 
 typedef struct volume_map volume_map;
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "math/motion.h"
-#include "scene/params.h"
+#include "params/params.h"
 
 struct mesh;
 struct scene;

@@ -6,11 +6,10 @@
  */
 #include "scene/scene.h"
 
-#include "scene/lenient.h"
-#include "scene/picture.h"
 #include "scene/scene_commit.h"
 #include "scene/scene_film.h"
 #include "scene/scene_geometry.h"
+#include "texture/picture.h"
 
 #include <string.h>
 
@@ -39,19 +38,9 @@ static void free_light(void *data)
     light_free(data);
 }
 
-static void unref_bytes(void *data)
-{
-    g_bytes_unref(data);
-}
-
 static void unref_picture(void *data)
 {
     picture_unref(data);
-}
-
-static GHashTable *texture_table(void)
-{
-    return g_hash_table_new_full(g_str_hash, g_str_equal, g_free, free_texture);
 }
 
 scene *scene_new(const log_sink *log)
@@ -61,17 +50,13 @@ scene *scene_new(const log_sink *log)
     s->materials = g_ptr_array_new_with_free_func(free_material);
     s->lights = g_ptr_array_new_with_free_func(free_light);
     scene_open_objects(s);
-    s->float_textures = texture_table();
-    s->spectrum_textures = texture_table();
+    s->textures = g_ptr_array_new_with_free_func(free_texture);
     s->material_names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     s->media = g_ptr_array_new_with_free_func(free_medium);
     s->medium_names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
-    s->files = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, unref_bytes);
-    s->pictures = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, unref_picture);
+    build_context_init(&s->build, log, unref_picture);
     s->film = film_default();
     s->settings = settings_default();
-    if (log)
-        s->log = *log;
     return s;
 }
 
@@ -92,11 +77,9 @@ void scene_free(scene *s)
     g_ptr_array_unref(s->media);
     g_hash_table_unref(s->medium_names);
     g_hash_table_unref(s->material_names);
-    g_hash_table_unref(s->files);
-    g_hash_table_unref(s->pictures);
-    scene_sources_free(s->sources);
-    g_hash_table_unref(s->float_textures);
-    g_hash_table_unref(s->spectrum_textures);
+    g_ptr_array_unref(s->textures);
+    scene_sources_free(s->build.sources);
+    build_context_clear(&s->build);
     filter_clear(&s->filter);
     g_free(s->film.filename);
     g_free(s);
@@ -104,44 +87,24 @@ void scene_free(scene *s)
 
 /* ---- Adding ---- */
 
-void scene_add_file(scene *s, const char *path, GBytes *bytes)
-{
-    g_hash_table_insert(s->files, g_strdup(path), g_bytes_ref(bytes));
-}
-
-image *scene_read_image(const scene *s, const char *path,
-                        const image_read_options *options, GError **error)
-{
-    GBytes *bytes = s && s->files ? g_hash_table_lookup(s->files, path) : NULL;
-    if (bytes)
-        return image_read_bytes(path, bytes, options, error);
-    if (s)
-        scene_sources_add(s->sources, path);
-    return image_read(path, options, error);
-}
-
 bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spectrum,
                        const params *p, GError **error)
 {
-    GHashTable *table = is_spectrum ? s->spectrum_textures : s->float_textures;
+    GHashTable *table =
+        is_spectrum ? s->build.spectrum_textures : s->build.float_textures;
     if (!scene_may_change(s, error))
         return false;
     if (g_hash_table_contains(table, name)) {
         error_at(error, p->place, "texture \"%s\" is there already", name);
         return false;
     }
-    GError *inner = NULL;
-    g_autoptr(params) replaced = lenient_texture(s, &kind, is_spectrum, p, &inner);
-    if (inner) {
-        g_propagate_error(error, inner);
+    LISTENER_TELL(s, texture, name, kind, is_spectrum, p);
+    texture *t = texture_new(&s->build, kind, is_spectrum, p, error);
+    if (!t)
         return false;
-    }
-    const params *given = replaced ? replaced : p;
-    LISTENER_TELL(s, texture, name, kind, is_spectrum, given);
-    texture *t = texture_new(s, kind, is_spectrum, given, error);
-    if (t)
-        g_hash_table_insert(table, g_strdup(name), t);
-    return t != NULL;
+    g_ptr_array_add(s->textures, t);
+    g_hash_table_insert(table, g_strdup(name), t);
+    return true;
 }
 
 int scene_add_material(scene *s, const char *name, const char *kind, const params *p,
@@ -153,15 +116,8 @@ int scene_add_material(scene *s, const char *name, const char *kind, const param
         error_at(error, p->place, "material \"%s\" is there already", name);
         return NO_INDEX;
     }
-    GError *inner = NULL;
-    g_autoptr(params) replaced = lenient_material(s, &kind, p, &inner);
-    if (inner) {
-        g_propagate_error(error, inner);
-        return NO_INDEX;
-    }
-    const params *given = replaced ? replaced : p;
-    LISTENER_TELL(s, material, (int)s->materials->len, name, kind, given);
-    material *m = material_new(s, kind, given, error);
+    LISTENER_TELL(s, material, (int)s->materials->len, name, kind, p);
+    material *m = material_new(&s->build, kind, p, error);
     if (!m)
         return NO_INDEX;
     int index = (int)s->materials->len;
@@ -171,6 +127,7 @@ int scene_add_material(scene *s, const char *name, const char *kind, const param
         m->name = g_strdup(name);
         g_hash_table_insert(s->material_names, g_strdup(name),
                             GINT_TO_POINTER(index + 1));
+        g_hash_table_insert(s->build.materials, g_strdup(name), m);
     }
     return index;
 }
@@ -187,7 +144,7 @@ bool scene_add_light(scene *s, const char *kind, const params *p,
     if (!scene_may_change(s, error))
         return false;
     LISTENER_TELL(s, light, kind, p, to_world);
-    light *l = light_new(s, kind, p, to_world, NULL, error);
+    light *l = light_new(&s->build, kind, p, to_world, NULL, error);
     if (!l)
         return false;
     if (!l->kind->is_environment && !l->kind->is_parallel) /* they are beyond all media */
@@ -212,7 +169,7 @@ static bool take_shape(scene *s, shape *made, const shape_place *at, GError **er
     made->parts_media = s->around.inside != s->around.outside;
     bool shines = at->area_light;
     if (shines && s->open_object != NO_INDEX) {
-        shines = !scene_is_lenient(s, at->area_light->place,
+        shines = !build_is_lenient(&s->build, at->area_light->place,
                                    "a shape that moves or is part of an object does not "
                                    "shine");
     }
@@ -223,7 +180,8 @@ static bool take_shape(scene *s, shape *made, const shape_place *at, GError **er
         return false;
     }
     if (shines) {
-        light *l = light_new(s, "diffuse", at->area_light, &at->to_world, made, error);
+        light *l =
+            light_new(&s->build, "diffuse", at->area_light, &at->to_world, made, error);
         if (!l) {
             shape_free(made);
             return false;
@@ -261,18 +219,11 @@ bool scene_add_mesh(scene *s, mesh *m, const shape_place *at, source_place place
 bool scene_set_film(scene *s, const char *kind, const params *p, GError **error)
 {
     film_settings film;
-    GError *inner = NULL;
-    g_autoptr(params) replaced = lenient_film(s, &kind, p, &inner);
-    if (inner) {
-        g_propagate_error(error, inner);
-        return false;
-    }
-    const params *given = replaced ? replaced : p;
-    if (!scene_may_change(s, error) || !film_init(&film, kind, given, error))
+    if (!scene_may_change(s, error) || !film_init(&film, kind, p, error))
         return false;
     g_free(s->film.filename);
     s->film = film;
-    LISTENER_TELL(s, film, kind, given);
+    LISTENER_TELL(s, film, kind, p);
     return true;
 }
 

@@ -10,19 +10,17 @@
  */
 #pragma once
 
-#include "base/log.h"
-#include "image/image.h"
-#include "scene/accel.h"
-#include "scene/camera.h"
-#include "scene/filter.h"
-#include "scene/instance.h"
-#include "scene/light.h"
+#include "accel/accel.h"
+#include "shape/instance.h"
+#include "camera/camera.h"
+#include "camera/filter.h"
+#include "light/light.h"
+#include "material/material.h"
+#include "medium/medium.h"
+#include "params/sources.h"
 #include "scene/listener.h"
-#include "scene/material.h"
-#include "scene/medium.h"
-#include "scene/settings.h"
-#include "scene/sources.h"
-#include "scene/texture.h"
+#include "settings/settings.h"
+#include "texture/texture.h"
 
 #include "math/distribution.h"
 
@@ -61,32 +59,26 @@ typedef struct scene_switches {
 } scene_switches;
 
 typedef struct scene {
-    GPtrArray *shapes;                              /**< shape* */
-    GPtrArray *materials;                           /**< material* */
-    GPtrArray *lights;                              /**< light* */
-    GHashTable *float_textures, *spectrum_textures; /**< name -> texture* */
-    GHashTable *material_names;                     /**< name -> index + 1 */
-    GPtrArray *media;                               /**< medium*, participating */
-    GHashTable *medium_names;                       /**< name -> index + 1 */
-    medium_interface around;                        /**< what is added from here on */
-    GHashTable *files; /**< path -> GBytes*: images that came within another file */
-    GHashTable
-        *pictures; /**< how and what was read -> picture*, while the scene is built */
-    scene_sources *sources; /**< owned; NULL: nobody asks for them */
-    GArray *objects;        /**< scene_object */
-    GArray *instances;      /**< instance */
-    int open_object;        /**< that shapes are added to now, or NO_INDEX: the world */
+    GPtrArray *shapes;          /**< shape* */
+    GPtrArray *materials;       /**< material* */
+    GPtrArray *lights;          /**< light* */
+    GPtrArray *textures;        /**< texture* */
+    build_context build;        /**< while the scene is built */
+    GHashTable *material_names; /**< name -> index + 1 */
+    GPtrArray *media;           /**< medium*, participating */
+    GHashTable *medium_names;   /**< name -> index + 1 */
+    medium_interface around;    /**< what is added from here on */
+    GArray *objects;            /**< scene_object */
+    GArray *instances;          /**< instance */
+    int open_object; /**< that shapes are added to now, or NO_INDEX: the world */
     camera camera;
     bool has_camera;
     film_settings film;
     pixel_filter filter;
     scene_switches switches;
     settings settings; /**< defaults, then what the file asks for */
-    log_sink log;
-    bool lenient;    /**< what can not be rendered is replaced (lenient.h); set by the
-                        reader's caller before anything is added */
     bool thin_glass; /**< closed meshes of glass without a volume are no solid glass: for
-                        readers, set like lenient */
+                        readers, set before anything is added */
     const scene_listener *listener; /**< borrowed; NULL: nobody */
 
     /* From here on valid once committed. */
@@ -132,12 +124,6 @@ scene *scene_new(const log_sink *log);
 void scene_free(scene *s);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(scene, scene_free)
 
-/** @brief Makes bytes known as a file: an image that came within the scene's file. A
- * parameter that names the path finds them, as long as the scene is being built. */
-void scene_add_file(scene *s, const char *path, GBytes *bytes);
-/** @brief image_read of a file on the disk or one that was added (s may be NULL). */
-image *scene_read_image(const scene *s, const char *path,
-                        const image_read_options *options, GError **error);
 bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spectrum,
                        const params *p, GError **error);
 /** @brief name may be NULL. @return index, or NO_INDEX. */

@@ -8,8 +8,8 @@
 #include "scene/scene_commit.h"
 
 #include "base/memory.h"
+#include "light/light_lines.h"
 #include "math/warp.h"
-#include "scene/light_lines.h"
 #include "scene/scene_geometry.h"
 #include "scene/scene_media.h"
 #include "scene/scene_solids.h"
@@ -178,8 +178,8 @@ bool scene_commit(scene *s, unsigned threads, GError **error)
         scene_find_solids(s);
         scene_find_eye_medium(s);
         scene_find_outer_medium(s);
-        g_hash_table_remove_all(s->files);
-        g_hash_table_remove_all(s->pictures);
+        g_hash_table_remove_all(s->build.files);
+        g_hash_table_remove_all(s->build.pictures);
     } else {
         scene_forget_commit(s);
     }

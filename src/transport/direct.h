@@ -6,8 +6,8 @@
 #pragma once
 
 #include "math/sampler.h"
+#include "medium/medium_sample.h"
 #include "photon/share.h"
-#include "scene/medium_sample.h"
 #include "scene/scene.h"
 
 /** @brief What to evaluate at a surface, and how its lobes find light otherwise. */

@@ -1,6 +1,6 @@
 /* Photometric files: any text becomes a profile or an error. */
 #include "fuzz_file.h"
-#include "scene/ies.h"
+#include "light/ies.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

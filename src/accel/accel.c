@@ -1,0 +1,241 @@
+/*
+ * Building Embree's scenes, and asking them.
+ *
+ *   the world ── its own shapes, numbered as in world.shapes
+ *             └─ instances, numbered from world.n on ── an object ── its shapes
+ */
+#include "accel/accel_embree.h"
+
+#include <string.h>
+
+/* Shapes with one acceleration structure. */
+typedef struct accel_group {
+    RTCScene scene;
+    unsigned
+        *shapes; /* indices in accel.shapes; their places here are Embree's numbers */
+    unsigned n;
+    box3 bounds;
+} accel_group;
+
+struct accel {
+    RTCDevice device;
+    shape **shapes; /* a copy of the array; the shapes are borrowed */
+    accel_group world, *objects;
+    size_t n_objects, n_instances;
+    placed *instances;
+    double shutter[2]; /* s: when rays of time 0 and 1 are */
+    char message[256]; /* the last thing the device complained of, while building */
+    enum RTCError code;
+};
+
+/* ---- Building ---- */
+
+static void note_error(void *data, enum RTCError code, const char *message)
+{
+    accel *a = data;
+    a->code = code;
+    g_strlcpy(a->message, message ? message : "no reason given", sizeof a->message);
+}
+
+static void attach(accel_group *to, RTCGeometry g, unsigned number)
+{
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(to->scene, g, number);
+    rtcReleaseGeometry(g);
+}
+
+static void group_open(accel *a, accel_group *group)
+{
+    group->scene = rtcNewScene(a->device);
+    group->bounds = box3_empty();
+    rtcSetSceneFlags(group->scene, RTC_SCENE_FLAG_ROBUST);
+}
+
+static accel_group *group_of(accel *a, const shape *s)
+{
+    return s->object == NO_INDEX ? &a->world : &a->objects[s->object];
+}
+
+static void make_room(accel_group *group)
+{
+    group->shapes = g_new(unsigned, MAX(group->n, 1));
+    group->n = 0;
+}
+
+/* Into the world and the objects. */
+static void sort_shapes(accel *a, const accel_input *in)
+{
+    for (size_t i = 0; i < in->n_shapes; i++)
+        group_of(a, in->shapes[i])->n++;
+    make_room(&a->world);
+    for (size_t i = 0; i < a->n_objects; i++)
+        make_room(&a->objects[i]);
+    for (size_t i = 0; i < in->n_shapes; i++) {
+        accel_group *group = group_of(a, in->shapes[i]);
+        group->shapes[group->n++] = (unsigned)i;
+    }
+}
+
+static void attach_shapes(accel *a, accel_group *group)
+{
+    group_open(a, group);
+    for (unsigned i = 0; i < group->n; i++) {
+        shape *s = a->shapes[group->shapes[i]];
+        if (s->is_invisible)
+            continue;
+        attach(group, shape_geometry(a->device, s), i);
+        group->bounds = box3_union(group->bounds, s->kind->bounds(s->self));
+    }
+}
+
+static void place_instance(accel *a, placed *p, const instance *is)
+{
+    const accel_group *object = &a->objects[is->object];
+    *p = (placed){.is = is,
+                  .shutter = a->shutter,
+                  .object = object->scene,
+                  .bounds = object->bounds};
+    transform open = motion_at(&is->to_world, a->shutter[0]);
+    transform close = motion_at(&is->to_world, a->shutter[1]);
+    transform middle = motion_at(&is->to_world, 0.5 * (a->shutter[0] + a->shutter[1]));
+    p->still = open;
+    p->moves = !transform_equal(&open, &close) || !transform_equal(&open, &middle);
+}
+
+static void build(accel *a, const accel_input *in)
+{
+    sort_shapes(a, in);
+    for (size_t i = 0; i < a->n_objects; i++) {
+        attach_shapes(a, &a->objects[i]);
+        rtcCommitScene(a->objects[i].scene);
+    }
+    attach_shapes(a, &a->world);
+    for (size_t i = 0; i < in->n_instances; i++) {
+        placed *p = &a->instances[i];
+        place_instance(a, p, &in->instances[i]);
+        if (a->objects[p->is->object].n > 0)
+            attach(&a->world, placed_geometry(a->device, p), a->world.n + (unsigned)i);
+    }
+    rtcCommitScene(a->world.scene);
+}
+
+accel *accel_build(const accel_input *in, unsigned threads, GError **error)
+{
+    g_autofree char *config = g_strdup_printf("threads=%u,set_affinity=0", threads);
+    accel *a = g_new0(accel, 1);
+    a->shapes = g_memdup2(in->shapes, in->n_shapes * sizeof(shape *));
+    a->n_objects = in->n_objects;
+    a->objects = g_new0(accel_group, MAX(in->n_objects, 1));
+    a->n_instances = in->n_instances;
+    a->instances = g_new0(placed, MAX(in->n_instances, 1));
+    memcpy(a->shutter, in->shutter, sizeof a->shutter);
+    a->device = rtcNewDevice(config);
+    if (!a->device) {
+        error_set(error, ERROR_FAILED, "Embree does not start (error %d)",
+                  (int)rtcGetDeviceError(NULL));
+        accel_free(a);
+        return NULL;
+    }
+    rtcSetDeviceErrorFunction(a->device, note_error, a);
+    build(a, in);
+    if (a->code != RTC_ERROR_NONE) {
+        error_set(error, ERROR_FAILED, "Embree can not build the scene: %s%s",
+                  a->code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory: " : "",
+                  a->message);
+        accel_free(a);
+        return NULL;
+    }
+    return a;
+}
+
+static void group_close(accel_group *group)
+{
+    if (group->scene)
+        rtcReleaseScene(group->scene);
+    g_free(group->shapes);
+}
+
+void accel_free(accel *a)
+{
+    if (!a)
+        return;
+    group_close(&a->world);
+    for (size_t i = 0; i < a->n_objects; i++)
+        group_close(&a->objects[i]);
+    if (a->device)
+        rtcReleaseDevice(a->device);
+    g_free(a->objects);
+    g_free(a->instances);
+    g_free(a->shapes);
+    g_free(a);
+}
+
+/* ---- Queries ---- */
+
+/* Of an instance: filled in the object's space, then placed. */
+static void fill_instance(const accel *a, const struct RTCRayHit *query, const ray *r,
+                          surface_hit *hit)
+{
+    hit->instance = (int)(query->hit.instID[0] - a->world.n);
+    const placed *p = &a->instances[hit->instance];
+    hit->shape = (int)a->objects[p->is->object].shapes[query->hit.geomID];
+    const shape *s = a->shapes[hit->shape];
+    transform to_world = placed_at(p, r->time);
+    ray local = instance_ray(&to_world, r);
+    s->kind->fill_hit(s->self, &local, query->hit.u, query->hit.v, hit);
+    instance_place_hit(&to_world, hit);
+}
+
+static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit *hit)
+{
+    struct RTCRayHit query = {.ray = embree_ray(r)};
+    query.ray.flags = flags;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    embree_nearest(a->world.scene, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        return false;
+    hit->t = query.ray.tfar;
+    hit->time = r->time;
+    hit->primitive = query.hit.primID;
+    hit->dpdv = (vec3){0};
+    hit->footprint = 0.0f;
+    hit->mesh = NULL;
+    hit->turns = false;
+    if (query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
+        fill_instance(a, &query, r, hit);
+        return true;
+    }
+    hit->instance = NO_INDEX;
+    hit->shape = (int)a->world.shapes[query.hit.geomID];
+    const shape *s = a->shapes[hit->shape];
+    s->kind->fill_hit(s->self, r, query.hit.u, query.hit.v, hit);
+    return true;
+}
+
+bool accel_intersect(const accel *a, const ray *r, surface_hit *hit)
+{
+    return intersect(a, r, 0, hit);
+}
+
+bool accel_intersect_solid(const accel *a, const ray *r, surface_hit *hit)
+{
+    return intersect(a, r, RAY_SOLID, hit);
+}
+
+bool accel_occluded(const accel *a, const ray *r)
+{
+    struct RTCRay query = embree_ray(r);
+    embree_any(a->world.scene, &query);
+    return query.tfar < 0.0f;
+}
+
+transform accel_instance_at(const accel *a, int i, float time)
+{
+    return placed_at(&a->instances[i], time);
+}
+
+bool accel_instance_moves(const accel *a, int i)
+{
+    return a->instances[i].moves;
+}

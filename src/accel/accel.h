@@ -1,0 +1,37 @@
+/*
+ * Ray queries, by Embree (3 or 4), of which nobody else knows: see accel_embree.h.
+ */
+#pragma once
+
+#include "shape/instance.h"
+#include "medium/hit.h"
+#include "shape/shape.h"
+
+typedef struct accel accel;
+
+/** @brief What rays may meet. Everything is borrowed and must outlive the result. */
+typedef struct accel_input {
+    shape *const *shapes; /**< of the world and of all objects */
+    size_t n_shapes;
+    const instance *instances;
+    size_t n_instances, n_objects;
+    double shutter[2]; /**< s: when rays of time 0 and 1 are */
+} accel_input;
+
+/** @brief Builds what the queries below ask. threads: 0 = all. ERROR_FAILED if Embree
+ * does not start or runs out of memory. */
+accel *accel_build(const accel_input *in, unsigned threads, GError **error);
+void accel_free(accel *a);
+/** @brief Nearest hit in (0, r->t_max): geometry only, hit->shape and hit->instance tell
+ * the rest. Cut-outs (alpha) are passed by a choice that the ray alone decides.
+ * Thread-safe. */
+bool accel_intersect(const accel *a, const ray *r, surface_hit *hit);
+/** @brief The same with all cut-outs solid. */
+bool accel_intersect_solid(const accel *a, const ray *r, surface_hit *hit);
+/** @brief True if anything but interfaces (shapes without a material) lies in (0,
+ * r->t_max). Thread-safe. */
+bool accel_occluded(const accel *a, const ray *r);
+/** @brief Where an instance is at a time of the shutter, 0..1. */
+transform accel_instance_at(const accel *a, int i, float time);
+/** @brief True if it moves while the shutter is open. */
+bool accel_instance_moves(const accel *a, int i);

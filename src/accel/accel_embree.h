@@ -1,0 +1,98 @@
+/*
+ * What stands between Embree (3 or 4) and the rest: accel.c builds and asks, and
+ * accel_geometry.c is what Embree calls back; disc_set.c has a scene of its own. No other
+ * file includes Embree.
+ *
+ * Embree 3 passes a context with every query, Embree 4 optional arguments: the two
+ * functions embree_nearest and embree_any hold the whole difference.
+ */
+#pragma once
+
+#include "accel/accel.h"
+
+#include <float.h>
+#include <string.h>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+enum { RAY_SOLID = 1 }; /**< RTCRay.flags: cut-outs do not count */
+
+/** @brief An object as an instance places it. All is borrowed. */
+typedef struct placed {
+    const instance *is;
+    const double *shutter; /**< s: [2], when rays of time 0 and 1 are */
+    RTCScene object;       /**< committed */
+    box3 bounds;           /**< of the object, in its own space */
+    bool moves;
+    transform still; /**< where it is if it does not move */
+} placed;
+
+/** @brief Embree reads origin and tnear, direction and time, as vectors: written as
+ * vectors they reach it without waiting for the cache. */
+static inline struct RTCRay embree_ray(const ray *r)
+{
+    const vec3_bits xyz = {-1, -1, -1, 0};
+    const vec3 origin = choose3(xyz, r->origin, (vec3){0.0f, 0.0f, 0.0f, FLT_MIN});
+    const vec3 direction = choose3(xyz, r->direction, (vec3){0.0f, 0.0f, 0.0f, r->time});
+    struct RTCRay to = {.tfar = r->t_max, .mask = ~0u};
+    memcpy(&to.org_x, &origin, sizeof origin);
+    memcpy(&to.dir_x, &direction, sizeof direction);
+    return to;
+}
+
+/** @brief Where it is at a time of the shutter, 0..1. */
+transform placed_at(const placed *p, float time);
+
+/** @brief A shape, which must outlive it; to be committed and attached. */
+RTCGeometry shape_geometry(RTCDevice device, shape *s);
+/** @brief A placed object, which must outlive it. */
+RTCGeometry placed_geometry(RTCDevice device, placed *p);
+
+static inline void embree_nearest(RTCScene scene, struct RTCRayHit *query)
+{
+#if RTC_VERSION_MAJOR >= 4
+    rtcIntersect1(scene, query, NULL);
+#else
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene, &context, query);
+#endif
+}
+
+/** What Embree hands on from a query to the functions that intersect. */
+#if RTC_VERSION_MAJOR >= 4
+typedef struct RTCRayQueryContext embree_context;
+#else
+typedef struct RTCIntersectContext embree_context;
+#endif
+
+/** @brief embree_any with a context that the caller has put before data of its own. */
+static inline void embree_any_within(RTCScene scene, embree_context *context,
+                                     struct RTCRay *query)
+{
+#if RTC_VERSION_MAJOR >= 4
+    struct RTCOccludedArguments args;
+    rtcInitRayQueryContext(context);
+    rtcInitOccludedArguments(&args);
+    args.context = context;
+    rtcOccluded1(scene, query, &args);
+#else
+    rtcInitIntersectContext(context);
+    rtcOccluded1(scene, context, query);
+#endif
+}
+
+static inline void embree_any(RTCScene scene, struct RTCRay *query)
+{
+#if RTC_VERSION_MAJOR >= 4
+    rtcOccluded1(scene, query, NULL);
+#else
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene, &context, query);
+#endif
+}

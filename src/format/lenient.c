@@ -1,0 +1,182 @@
+#include "format/lenient.h"
+
+#include "params/build_context.h"
+
+#include <string.h>
+
+/* A material that can not be rendered, what is taken for it, and the parameters that
+ * stay. */
+typedef struct substitute {
+    const char *kind, *becomes;
+    const char *stays[8];
+} substitute;
+
+static const substitute substitutes[] = {
+    {"hair", "diffuse", {"reflectance"}},
+    {"subsurface",
+     "coateddiffuse",
+     {"reflectance", "eta", "roughness", "uroughness", "vroughness", "remaproughness"}},
+    {"measured", "diffuse", {NULL}},
+    {"fourier", "diffuse", {NULL}},
+    {"disney", "diffuse", {NULL}},
+    {"kdsubsurface", "coateddiffuse", {"eta", "roughness", "remaproughness"}},
+};
+
+static const substitute *find_substitute(const char *kind)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(substitutes); i++) {
+        if (strcmp(substitutes[i].kind, kind) == 0)
+            return &substitutes[i];
+    }
+    return NULL;
+}
+
+static bool stays(const substitute *sub, const param *q)
+{
+    static const char *const of_all[] = {"displacement", "normalmap", NULL};
+    for (size_t i = 0; i < G_N_ELEMENTS(sub->stays) && sub->stays[i]; i++) {
+        if (strcmp(sub->stays[i], q->name) == 0)
+            return true;
+    }
+    return g_strv_contains(of_all, q->name);
+}
+
+static bool copy_param(params *to, const param *q, GError **error)
+{
+    if (q->strings)
+        return params_add_strings(to, q->place, q->type, q->name,
+                                  (const char *const *)q->strings, q->n, error);
+    if (q->integers)
+        return params_add_integers(to, q->place, q->type, q->name, q->integers, q->n,
+                                   error);
+    return params_add_numbers(to, q->place, q->type, q->name, q->numbers, q->n, error);
+}
+
+/* The parameters that stay; the names of the others are put into `dropped`. */
+static params *keep_params(const substitute *sub, const params *p, GString *dropped,
+                           GError **error)
+{
+    g_autoptr(params) kept = params_new_like(p);
+    for (guint i = 0; i < p->list->len; i++) {
+        param *q = p->list->pdata[i];
+        bool is_type = strcmp(q->name, "type") == 0; /* of MakeNamedMaterial */
+        q->used = true;
+        if (stays(sub, q) && !copy_param(kept, q, error))
+            return NULL;
+        if (!stays(sub, q) && !is_type)
+            g_string_append_printf(dropped, "%s '%s'", dropped->len ? "," : ", without",
+                                   q->name);
+    }
+    return g_steal_pointer(&kept);
+}
+
+params *lenient_material(const build_context *context, const char **kind, const params *p,
+                         GError **error)
+{
+    const substitute *sub = find_substitute(*kind);
+    if (!sub)
+        return NULL;
+    if (!context->lenient) {
+        error_at(error, p->place,
+                 "material \"%s\" is not supported; --lenient takes \"%s\" for it", *kind,
+                 sub->becomes);
+        return NULL;
+    }
+    g_autoptr(GString) dropped = g_string_new(NULL);
+    params *kept = keep_params(sub, p, dropped, error);
+    build_is_lenient(context, p->place, "material \"%s\" becomes \"%s\"%s", *kind,
+                     sub->becomes, dropped->str);
+    *kind = sub->becomes;
+    return kept;
+}
+
+/* ---- Media ---- */
+
+bool lenient_medium(const build_context *context, const char *name, const char *kind,
+                    const params *p, GError **error)
+{
+    static const char *const kinds[] = {"cloud",       "nanovdb",       "rgbgrid",
+                                        "uniformgrid", "heterogeneous", NULL};
+    if (!g_strv_contains(kinds, kind))
+        return false;
+    if (!context->lenient)
+        error_at(error, p->place,
+                 "medium \"%s\" is not supported, \"homogeneous\" is; --lenient takes "
+                 "empty space for it",
+                 kind);
+    return build_is_lenient(context, p->place, "medium \"%s\" (%s) becomes empty space",
+                            name, kind);
+}
+
+/* ---- Films ---- */
+
+/* A sensor of a camera, whose sensitivities are not here. */
+static const param *strange_sensor(const params *p)
+{
+    const param *q = params_find(p, "sensor");
+    bool known = !q || q->type != PARAM_STRING || q->n != 1 ||
+                 strcmp(q->strings[0], "cie1931") == 0;
+    return known ? NULL : q;
+}
+
+static bool is_of_spectra(const char *name)
+{
+    static const char *const names[] = {"nbuckets", "lambdamin", "lambdamax", NULL};
+    return g_strv_contains(names, name);
+}
+
+params *lenient_film(const build_context *context, const char **kind, const params *p,
+                     GError **error)
+{
+    const param *sensor = strange_sensor(p);
+    bool is_spectral = strcmp(*kind, "spectral") == 0;
+    if (!context->lenient && is_spectral)
+        error_at(error, p->place,
+                 "film \"spectral\" is not supported; --lenient takes \"rgb\" for it");
+    else if (!context->lenient && sensor)
+        error_at(error, sensor->place,
+                 "sensor \"%s\" is not supported, \"cie1931\" is; --lenient takes that "
+                 "for it",
+                 sensor->strings[0]);
+    if (!context->lenient || !(is_spectral || sensor))
+        return NULL;
+    g_autoptr(params) kept = params_new_like(p);
+    for (guint i = 0; i < p->list->len; i++) {
+        param *q = p->list->pdata[i];
+        bool leaves = q == sensor || (is_spectral && is_of_spectra(q->name));
+        q->used = true;
+        if (!leaves && !copy_param(kept, q, error))
+            return NULL;
+    }
+    if (sensor)
+        build_is_lenient(context, sensor->place, "sensor \"%s\" becomes \"cie1931\"",
+                         sensor->strings[0]);
+    if (is_spectral)
+        build_is_lenient(context, p->place, "film \"spectral\" becomes \"rgb\"");
+    *kind = is_spectral ? "rgb" : *kind;
+    return g_steal_pointer(&kept);
+}
+
+/* ---- Textures ---- */
+
+params *lenient_texture(const build_context *context, const char **kind, bool is_spectrum,
+                        const params *p, GError **error)
+{
+    if (strcmp(*kind, "ptex") != 0)
+        return NULL;
+    if (!context->lenient) {
+        error_at(error, p->place,
+                 "texture \"ptex\" is not supported; --lenient takes a constant of 0.5 "
+                 "for it");
+        return NULL;
+    }
+    const float half[] = {0.5f, 0.5f, 0.5f};
+    params *kept = params_new_like(p);
+    for (guint i = 0; i < p->list->len; i++)
+        ((param *)p->list->pdata[i])->used = true;
+    build_is_lenient(context, p->place, "texture \"ptex\" becomes a constant of 0.5");
+    params_add_numbers(kept, p->place, is_spectrum ? PARAM_RGB : PARAM_FLOAT, "value",
+                       half, is_spectrum ? 3 : 1, NULL);
+    *kind = "constant";
+    return kept;
+}

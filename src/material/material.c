@@ -1,0 +1,95 @@
+/* Making materials by kind, and their bsdfs at a hit. */
+#include "material/material_kinds.h"
+
+#include <string.h>
+
+static const material_kind *const kinds[] = {
+    &material_diffuse,
+    &material_conductor,
+    &material_dielectric,
+    &material_thin_dielectric,
+    &material_coated_diffuse,
+    &material_phong,
+    &material_gltf,
+    &material_diffuse_transmission,
+    &material_mix,
+    &material_coated_conductor,
+};
+
+const material_kind *material_kind_at(size_t i)
+{
+    return i < G_N_ELEMENTS(kinds) ? kinds[i] : NULL;
+}
+
+static const material_kind *find_kind(const char *name, const params *p, GError **error)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
+        if (strcmp(kinds[i]->name, name) == 0)
+            return kinds[i];
+    g_autoptr(GString) known = g_string_new(NULL);
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
+        g_string_append_printf(known, "%s%s", i ? ", " : "", kinds[i]->name);
+    error_at(error, p->place, "expected a material of kind %s, found '%s'", known->str,
+             name);
+    return NULL;
+}
+
+material *material_new(const build_context *context, const char *kind, const params *p,
+                       GError **error)
+{
+    const material_kind *k = find_kind(kind, p, error);
+    g_autofree char *what = g_strdup_printf("material '%s'", kind);
+    if (!k || !params_known(p, what, k->parameters, MATERIAL_PARAMETERS, error))
+        return NULL;
+    void *self = k->create(context, p, error);
+    if (!self)
+        return NULL;
+    material *m = g_new0(material, 1);
+    *m = (material){.kind = k, .self = self};
+    if (!bump_new(&m->bump, context, p, error) || !params_all_used(p, what, error)) {
+        material_free(m);
+        return NULL;
+    }
+    return m;
+}
+
+void material_free(material *m)
+{
+    if (!m)
+        return;
+    m->kind->free(m->self);
+    bump_free(m->bump);
+    g_free(m->name);
+    g_free(m);
+}
+
+void material_bsdf(const material *m, const surface_hit *hit, const wavelengths *w,
+                   int lane, const bsdf_options *options, bsdf *out)
+{
+    out->shading =
+        m->bump ? bump_frame(m->bump, hit) : frame_from_tangent(hit->n, hit->dpdu);
+    out->n_geom = hit->n_geom;
+    out->lane = lane;
+    out->is_phase = false;
+    m->kind->make_bsdf(m->self, hit, w, options, out);
+}
+
+bool material_casts_caustics(const material *m)
+{
+    return m->kind->possible_lobes(m->self) & (LOBE_SPECULAR | LOBE_GLOSSY);
+}
+
+const struct medium *material_interior(const material *m)
+{
+    return m->kind->interior ? m->kind->interior(m->self) : NULL;
+}
+
+bool material_encloses(const material *m)
+{
+    return m->kind->encloses && m->kind->encloses(m->self);
+}
+
+unsigned material_possible_lobes(const material *m)
+{
+    return m->kind->possible_lobes(m->self);
+}

@@ -1,0 +1,65 @@
+/*
+ * Materials: what makes a bsdf at a hit. One file and one row of the kinds table each.
+ */
+#pragma once
+
+#include "bsdf/bsdf.h"
+#include "material/material_bump.h"
+#include "params/params.h"
+#include "texture/texture.h"
+
+/** @brief How bsdfs are to be made, by setting. */
+typedef struct bsdf_options {
+    bool deterministic; /**< multiple_samples off: rough is smooth, glass only refracts
+                           (or reflects totally), coats are dropped */
+    int least_walks;    /**< averaged where light walks at random between layers */
+} bsdf_options;
+
+typedef struct material_kind {
+    const char *name;       /**< pbrt's, e.g. "coateddiffuse" */
+    const char *parameters; /**< those it reads, with spaces between */
+    void *(*create)(const build_context *context, const params *p, GError **error);
+    void (*free)(void *self);
+    /** Fills ops, lobes, lambertian, rho, data; the frame, n_geom and lane are filled
+     * already. */
+    void (*make_bsdf)(const void *self, const surface_hit *hit, const wavelengths *w,
+                      const bsdf_options *options, bsdf *out);
+    /** Lobe classes and sides that may occur anywhere on it: SPECULAR or GLOSSY ones cast
+     *  caustics. */
+    unsigned (*possible_lobes)(const void *self);
+    /** What fills a solid made of it; NULL: none. May be NULL. */
+    const struct medium *(*interior)(const void *self);
+    /** True if its surfaces bound a body that refracts. May be NULL: they do not. */
+    bool (*encloses)(const void *self);
+} material_kind;
+
+typedef struct material {
+    const material_kind *kind;
+    void *self;
+    bump *bump; /**< what bends its normals; NULL: nothing */
+    char *name; /**< from MakeNamedMaterial; NULL if none */
+} material;
+
+/** @brief The parameters that every material has. */
+#define MATERIAL_PARAMETERS "normalmap normalscale displacement"
+
+/** @brief Kind number i of the table; NULL behind the last. */
+const material_kind *material_kind_at(size_t i);
+material *material_new(const build_context *context, const char *kind, const params *p,
+                       GError **error);
+void material_free(material *m);
+
+/** @brief The bsdf of a material at a hit.
+ *  @param lane ALL_LANES, or the lane a dispersed path has kept */
+void material_bsdf(const material *m, const surface_hit *hit, const wavelengths *w,
+                   int lane, const bsdf_options *options, bsdf *out);
+
+/** @brief True if its surfaces bound a body that refracts. */
+bool material_encloses(const material *m);
+/** @brief Lobe classes and sides that may occur anywhere on it. */
+unsigned material_possible_lobes(const material *m);
+/** @brief What fills a solid made of it; NULL: none. */
+const struct medium *material_interior(const material *m);
+
+/** @brief True if light may leave a surface of it by a specular or glossy lobe. */
+bool material_casts_caustics(const material *m);

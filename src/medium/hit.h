@@ -1,0 +1,148 @@
+/*
+ * Rays and what they hit.
+ */
+#pragma once
+
+#include "math/frame.h"
+#include "math/mesh.h"
+#include "math/vec.h"
+#include "medium/solids.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/** @brief A half line; points are origin + t * direction, 0 < t < t_max. */
+typedef struct ray {
+    vec3 origin;
+    vec3 direction; /**< unit */
+    float t_max;
+    float time;                  /**< of the shutter: 0 when it opens, 1 when it closes */
+    solids solids;               /**< the solids that it travels in */
+    const struct medium *medium; /**< the participating medium that it travels in; NULL:
+                                    none */
+} ray;
+
+/** @brief Where a surface parts two participating media (pbrt's MediumInterface). */
+typedef struct medium_interface {
+    const struct medium *inside;  /**< against n_geom; NULL: none */
+    const struct medium *outside; /**< toward n_geom */
+} medium_interface;
+
+enum { NO_INDEX = -1 };
+
+/** @brief A point on a surface. n_geom and n are unit and in one hemisphere; they are the
+ *  surface's own and are not turned towards the ray. */
+typedef struct surface_hit {
+    vec3 p;      /**< accurate to a few ulps of the largest coordinate */
+    vec3 n_geom; /**< true normal of the surface */
+    vec3 n;      /**< shading normal */
+    vec3 dpdu;   /**< tangent of the parametrisation, not unit */
+    vec3 dpdv;   /**< the other one; zero where a shape does not tell */
+    vec2 uv;
+    float t;     /**< distance along the ray */
+    float error; /**< m: how far off the surface rounding may see a ray that starts at p
+                    (large triangles near the origin); 0: the coordinates of p tell */
+    float time;
+    float footprint; /**< m: how wide the eye sees at once there; 0 for photons and
+                        where it is not known */
+    bool turns;      /**< the surface faces every ray, as far as it can by turning about
+                        dpdu (a flat curve): normals and dpdv are those for this ray */
+    int shape;       /**< index in scene->shapes */
+    int instance;    /**< index in scene->instances, or NO_INDEX */
+    uint32_t primitive; /**< triangle of a mesh, else 0 */
+    int material;  /**< index in scene->materials, or NO_INDEX: an invisible interface */
+    int light;     /**< index in scene->lights of the area light here, or NO_INDEX */
+    solids solids; /**< the solids that the ray came through */
+    const mesh *mesh;         /**< that the triangle is of (mesh_attributes.h); NULL: on
+                                 another shape */
+    vec2 corners;             /**< weights of the triangle's second and third corner */
+    const interior *interior; /**< behind the surface, against n_geom; NULL: it bounds no
+                                 solid */
+    bool from_inside;         /**< the ray came from behind; only where interior is set */
+    const struct medium *medium;      /**< the participating medium that the ray came
+                                         through */
+    const medium_interface *boundary; /**< what the surface parts; NULL: on both sides is
+                                         what the ray came through */
+} surface_hit;
+
+/** @brief The area that a surface shows to direction w, unit, over its own: the cosine to
+ * n_geom. What turns to face every ray shows all but what its axis is foreshortened by.
+ */
+static inline float hit_cosine(const surface_hit *hit, vec3 w)
+{
+    return hit->turns ? length3(cross3(w, normalize3(hit->dpdu)))
+                      : fabsf(dot3(w, hit->n_geom));
+}
+
+/** @brief Where a ray that leaves p in the given direction must start so as not to meet
+ * the same surface: moved along n_geom by a distance that scales with the coordinates.
+ * @param t,error as in surface_hit; 0 where nothing is known */
+static inline vec3 offset_point(vec3 p, vec3 n_geom, float t, float error, vec3 direction)
+{
+    float scale = maxf(max_component3(abs3(p)), 1e-3f * t) * 4e-6f;
+    scale = maxf(scale, error);
+    return p + n_geom * (dot3(direction, n_geom) < 0.0f ? -scale : scale);
+}
+
+/** @brief offset_point of a hit. */
+static inline vec3 hit_offset(const surface_hit *hit, vec3 direction)
+{
+    return offset_point(hit->p, hit->n_geom, hit->t, hit->error, direction);
+}
+
+/** @brief The solids that a ray which leaves the hit in a direction travels in. */
+static inline solids hit_solids(const surface_hit *hit, vec3 direction)
+{
+    bool inside = dot3(direction, hit->n_geom) < 0.0f;
+    if (!hit->interior || inside == hit->from_inside)
+        return hit->solids;
+    return inside ? solids_enter(hit->solids, hit->interior)
+                  : solids_leave(hit->solids, hit->interior);
+}
+
+/** @brief The participating medium that it travels in. */
+static inline const struct medium *hit_medium(const surface_hit *hit, vec3 direction)
+{
+    if (!hit->boundary)
+        return hit->medium;
+    return dot3(direction, hit->n_geom) < 0.0f ? hit->boundary->inside
+                                               : hit->boundary->outside;
+}
+
+/** @brief A point on a ray within the medium that it travels in, as a hit on nothing: it
+ * has no normal. */
+static inline surface_hit hit_in_medium(const ray *r, float t)
+{
+    return (surface_hit){.p = r->origin + t * r->direction,
+                         .t = t,
+                         .time = r->time,
+                         .shape = NO_INDEX,
+                         .instance = NO_INDEX,
+                         .material = NO_INDEX,
+                         .light = NO_INDEX,
+                         .solids = r->solids,
+                         .medium = r->medium};
+}
+
+/** @brief The ray that leaves a hit. */
+static inline ray hit_ray(const surface_hit *hit, vec3 direction)
+{
+    return (ray){hit_offset(hit, direction),
+                 direction,
+                 INFINITY,
+                 hit->time,
+                 hit_solids(hit, direction),
+                 hit_medium(hit, direction)};
+}
+
+/** @brief The ray from a hit to a point at distance in direction. It ends short of the
+ * point by so much that rounding, which grows with coordinates, does not let it meet the
+ * surface there.
+ *  @param distance m; INFINITY: never */
+static inline ray hit_ray_to(const surface_hit *hit, vec3 direction, float distance)
+{
+    ray r = hit_ray(hit, direction);
+    float margin = 2.0f * length3(r.origin - hit->p);
+    r.t_max = maxf(distance * (1.0f - 1e-4f) - margin, 0.0f);
+    return r;
+}

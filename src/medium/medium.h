@@ -1,0 +1,111 @@
+/*
+ * Media: what light meets on its way between surfaces.
+ *
+ * Two kinds of things are filled with one. A solid of coloured glass absorbs light and
+ * scatters none (Beer-Lambert's law); a ray knows the solids it travels in (solids.h). It
+ * enters and leaves one where it crosses a surface whose material bounds a solid; all
+ * other surfaces leave it where it is. Participating media, as fog or milk, scatter too,
+ * and fill what surfaces with a medium_interface (hit.h) bound.
+ *
+ *   σa absorption, σs scattering, σt = σa + σs extinction, m⁻¹ (Jensen 2001, chapter 10)
+ */
+#pragma once
+
+/** @brief The parameters that medium_read reads. */
+#define MEDIUM_PARAMETERS "attenuationcolor attenuationdistance absorption"
+
+#include "color/curve.h"
+#include "medium/hit.h"
+#include "params/params.h"
+
+#include <float.h>
+
+/** @brief Transmittance over t metres: color^(t / distance) exp(-σt t). */
+typedef struct medium {
+    char *name;        /**< of a participating one, owned */
+    int index;         /**< of a participating one, in scene->media */
+    curve *color;      /**< in 0..1, owned; NULL: 1 */
+    float distance;    /**< m, > 0: over which light takes on the colour */
+    curve *absorption; /**< σa over scale, owned; NULL: 0 */
+    curve *scattering; /**< σs over scale, owned; NULL: 0 */
+    float scale;
+    float g; /**< mean cosine of the angle by which light is scattered, -1 < g < 1 */
+} medium;
+
+/** @brief Reads what fills a solid: "attenuationcolor", "attenuationdistance" and
+ * "absorption". *out is NULL if there is none of them, else owned by the caller.
+ * ERROR_INPUT for a colour without a distance, or numbers out of range. */
+bool medium_read(const params *p, medium **out, GError **error);
+/** @brief A participating medium of pbrt's kinds: "homogeneous". NULL with ERROR_INPUT.
+ */
+medium *medium_new(const char *name, const char *kind, const params *p, GError **error);
+/** @brief Name of kind number i; NULL behind the last. */
+const char *medium_kind_name(size_t i);
+/** @brief What it may be given, blank-separated; NULL as above. */
+const char *medium_kind_parameters(size_t i);
+void medium_free(medium *m);
+
+/** @brief What photons in a medium have as their home. */
+static inline uint32_t medium_home(const medium *m)
+{
+    return (uint32_t)m->index + 1;
+}
+
+/** @brief The index of the medium that has this home. */
+static inline size_t medium_of_home(uint32_t home)
+{
+    return home - 1;
+}
+
+/** @brief σs by wavelength. */
+spectrum medium_scattering(const medium *m, const wavelengths *w);
+/** @brief σt by wavelength. */
+spectrum medium_extinction(const medium *m, const wavelengths *w);
+
+/** @brief e^(-σt t). Over an endless way what is extinguished at all is gone: t is taken
+ * as FLT_MAX, of which none is 0. */
+static inline spectrum left_after(spectrum sigma_t, float t)
+{
+    return spectrum_exp(sigma_t * -minf(t, FLT_MAX));
+}
+
+/** @brief Henyey and Greenstein's phase function ("Diffuse radiation in the Galaxy",
+ * 1941), sr⁻¹. @param cosine between the ways back and on, both away from the point: -1
+ * where light goes straight on */
+static inline float phase_henyey_greenstein(float g, float cosine)
+{
+    float d = 1.0f + g * g + 2.0f * g * cosine;
+    return (1.0f - g * g) / (4.0f * (float)G_PI * d * sqrtf(d));
+}
+
+/** @brief Share of light left after t metres; INFINITY is allowed. */
+spectrum medium_transmittance(const medium *m, float t, const wavelengths *w);
+
+/** @brief True if it scatters. */
+static inline bool medium_scatters(const medium *m)
+{
+    return m->scattering != NULL;
+}
+
+/** @brief Share of light left after t metres in these solids. */
+static inline spectrum solids_transmittance(const solids *in, float t,
+                                            const wavelengths *w)
+{
+    const interior *first = in->of[0];
+    return first && first->medium ? medium_transmittance(first->medium, t, w)
+                                  : spectrum_fill(1.0f);
+}
+
+/** @brief Share of light left by solids on the way from the ray's origin to the hit. */
+static inline spectrum hit_transmittance(const surface_hit *hit, const wavelengths *w)
+{
+    return solids_transmittance(&hit->solids, hit->t, w);
+}
+
+/** @brief The same on the straight way from a hit to a point that nothing hides. */
+static inline spectrum hit_transmittance_to(const surface_hit *hit, vec3 direction,
+                                            float distance, const wavelengths *w)
+{
+    const solids in = hit_solids(hit, direction);
+    return solids_transmittance(&in, distance, w);
+}

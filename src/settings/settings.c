@@ -1,0 +1,291 @@
+/*
+ * Values of settings, and the one way in and out of them: text.
+ *
+ * Numbers are read and written independently of the locale, and what settings_get writes
+ * settings_set reads back to the same value.
+ */
+#include "settings/settings.h"
+
+#include "base/intern.h"
+#include "base/json.h"
+#include "settings/settings_table.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { USUAL_PASSES = 16, USUAL_PHOTONS = 400000 };
+
+static void store(settings *s, const setting_row *row, double value)
+{
+    void *field = (char *)s + row->offset;
+    switch (row->type) {
+    case SETTING_BOOL:
+        *(bool *)field = value > 0.5;
+        break;
+    case SETTING_COUNT:
+        *(int64_t *)field = (int64_t)value;
+        break;
+    case SETTING_REAL:
+        *(double *)field = value;
+        break;
+    case SETTING_CHOICE:
+        *(int *)field = (int)value;
+        break;
+    }
+}
+
+settings settings_default(void)
+{
+    settings s;
+    size_t n;
+    const setting_row *table = settings_table(&n);
+    memset(&s, 0, sizeof s);
+    for (size_t i = 0; i < n; i++)
+        store(&s, &table[i], table[i].initial);
+    return s;
+}
+
+int64_t settings_most_passes(const settings *s)
+{
+    bool other_rule = s->time > 0.0 || s->noise > 0.0;
+    return s->passes > 0 ? s->passes : other_rule ? MOST_PASSES : USUAL_PASSES;
+}
+
+int64_t settings_planned_passes(const settings *s)
+{
+    return s->passes > 0 ? s->passes : USUAL_PASSES;
+}
+
+int64_t settings_photons(const settings *s)
+{
+    return s->photons > 0 ? s->photons : USUAL_PHOTONS;
+}
+
+/** pbrt's name, which sets two settings at once. */
+static bool is_depth(const char *name)
+{
+    return g_ascii_strcasecmp(name, "maxdepth") == 0;
+}
+
+/** What the row accepts, in words; owned by the caller. */
+static char *expected(const setting_row *row, const char *name)
+{
+    if (row->type == SETTING_BOOL)
+        return g_strdup("true or false");
+    if (row->type == SETTING_CHOICE) {
+        g_autofree char *words = g_strjoinv(", ", (char **)row->words);
+        return g_strdup_printf("one of %s", words);
+    }
+    double low = is_depth(name) ? 0.0 : row->low;
+    g_autofree char *none =
+        row->initial < low ? g_strdup_printf("%.16g or ", row->initial) : g_strdup("");
+    return g_strdup_printf("%s%s from %.16g to %.16g%s%s", none,
+                           row->type == SETTING_COUNT ? "a whole number" : "a number",
+                           low, row->high, *row->unit ? " " : "", row->unit);
+}
+
+static bool read_bool(const char *text, double *out)
+{
+    static const char *const words[] = {"false", "true", "off", "on",
+                                        "no",    "yes",  "0",   "1"};
+    for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
+        if (g_ascii_strcasecmp(words[i], text) == 0) {
+            *out = i % 2 ? 1.0 : 0.0;
+            return true;
+        }
+    return false;
+}
+
+static bool read_choice(const char *const *words, const char *text, double *out)
+{
+    for (int i = 0; words[i]; i++)
+        if (strcmp(words[i], text) == 0) {
+            *out = i;
+            return true;
+        }
+    return false;
+}
+
+/** Decimal numbers only: no hexadecimal, infinity or nan. */
+static bool read_number(const char *text, double *out)
+{
+    if (!*text || strspn(text, "+-.0123456789eE") != strlen(text))
+        return false;
+    char *end = NULL;
+    *out = g_ascii_strtod(text, &end);
+    return end != text && !*end && isfinite(*out);
+}
+
+static bool is_in_range(const setting_row *row, double x)
+{
+    bool is_none = row->initial < row->low && fabs(x - row->initial) <= 0.0;
+    return (x >= row->low && x <= row->high) || is_none;
+}
+
+static bool read_value(const setting_row *row, const char *text, double *out)
+{
+    switch (row->type) {
+    case SETTING_BOOL:
+        return read_bool(text, out);
+    case SETTING_CHOICE:
+        return read_choice(row->words, text, out);
+    case SETTING_COUNT:
+        return read_number(text, out) && is_in_range(row, *out) &&
+               fabs(*out - rint(*out)) <= 0.0;
+    case SETTING_REAL:
+        return read_number(text, out) && is_in_range(row, *out);
+    }
+    return false;
+}
+
+/** The class whose cone kernel an alias sets, or -1. */
+static int class_of_cone_alias(const setting_row *row, const char *name)
+{
+    for (int c = 0; c < N_CLASSES; c++)
+        if (row->offset == offsetof(settings, class_cone_k) + (size_t)c * sizeof(double))
+            return strcmp(row->name, name) == 0 ? -1 : c;
+    return -1;
+}
+
+/** pbrt's maxdepth d: a path of d bounces, so d seen specularly, and d - 1 of a photon
+ * before the one the camera sees. */
+static bool set_depth(settings *s, const char *text)
+{
+    const setting_row *row = settings_find("max_backward_bounces");
+    double depth;
+    if (!read_value(row, text, &depth) || depth < 0.0)
+        return false;
+    s->max_backward_bounces = (int64_t)depth;
+    s->max_forward_bounces = MAX(s->max_backward_bounces - 1, 0);
+    return true;
+}
+
+/** Stochastic progressive photon mapping (Hachisuka & Jensen 2009) is photon mapping with
+ * certain settings. */
+static void set_sppm(settings *s)
+{
+    s->integrator = INTEGRATOR_PHOTONMAP;
+    s->spp = 1;
+    s->final_gather = false;
+    s->alpha = 2.0 / 3.0;
+    for (int c = 0; c < N_CLASSES; c++)
+        s->class_nearest[c] = 0;
+}
+
+static bool set_row(settings *s, const setting_row *row, const char *name,
+                    const char *text)
+{
+    double number;
+    if (row->offset == offsetof(settings, integrator) && strcmp(text, "sppm") == 0) {
+        set_sppm(s);
+        return true;
+    }
+    if (is_depth(name))
+        return set_depth(s, text);
+    int cone = class_of_cone_alias(row, name);
+    if (cone >= 0 && read_number(text, &number) && number < 1.0) {
+        s->class_kernel[cone] = KERNEL_CONSTANT;
+        return true;
+    }
+    if (!read_value(row, text, &number))
+        return false;
+    store(s, row, number);
+    if (cone >= 0)
+        s->class_kernel[cone] = KERNEL_CONE;
+    return true;
+}
+
+static void refuse_name(const char *name, GError **error)
+{
+    const char *nearest = settings_nearest_name(name);
+    if (nearest)
+        error_set(error, ERROR_USAGE,
+                  "expected a setting's name, found '%s'; did you mean '%s'?", name,
+                  nearest);
+    else
+        error_set(error, ERROR_USAGE, "expected a setting's name, found '%s'", name);
+}
+
+bool settings_set(settings *s, const char *name, const char *value, GError **error)
+{
+    const setting_row *row = settings_find(name);
+    if (!row) {
+        refuse_name(name, error);
+        return false;
+    }
+    g_autofree char *text = g_strstrip(g_strdup(value));
+    if (set_row(s, row, name, text))
+        return true;
+    g_autofree char *words = expected(row, name);
+    error_set(error, ERROR_USAGE, "setting '%s': expected %s, found '%s'", name, words,
+              text);
+    return false;
+}
+
+char *settings_get(const settings *s, const setting_row *row)
+{
+    const void *field = (const char *)s + row->offset;
+    switch (row->type) {
+    case SETTING_BOOL:
+        return g_strdup(*(const bool *)field ? "true" : "false");
+    case SETTING_COUNT:
+        return g_strdup_printf("%" G_GINT64_FORMAT, *(const int64_t *)field);
+    case SETTING_CHOICE:
+        return g_strdup(row->words[*(const int *)field]);
+    case SETTING_REAL:
+        break;
+    }
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    return g_strdup(number_text(*(const double *)field, text));
+}
+
+/** One line of a settings file, without its newline; blank ones are fine. */
+static bool load_line(settings *s, char *line, source_place place, GError **error)
+{
+    line[strcspn(line, "#\r")] = '\0';
+    size_t begin = strspn(line, " \t");
+    if (!line[begin])
+        return true;
+    place.column = (int)begin + 1;
+    size_t equals = strcspn(line, "=");
+    if (!line[equals]) {
+        error_at(error, place, "expected name = value, found '%s'", g_strstrip(line));
+        return false;
+    }
+    line[equals] = '\0';
+    char *name = g_strstrip(line + begin);
+    if (settings_find(name)) {
+        const char *value = line + equals + 1;
+        place.column = (int)(equals + 1 + strspn(value, " \t")) + 1;
+    }
+    g_autoptr(GError) inner = NULL;
+    if (settings_set(s, name, line + equals + 1, &inner))
+        return true;
+    error_at(error, place, "%s", inner->message);
+    return false;
+}
+
+bool settings_load(settings *s, const char *path, GError **error)
+{
+    g_autofree char *text = NULL;
+    g_autoptr(GError) inner = NULL;
+    source_place place = {intern(path), 0, 0};
+    size_t length = 0;
+    if (!g_file_get_contents(path, &text, &length, &inner)) {
+        error_at(error, place, "cannot read settings: %s", inner->message);
+        return false;
+    }
+    settings loaded = *s;
+    char *line = text;
+    while (line) {
+        char *next = strchr(line, '\n');
+        if (next)
+            *next++ = '\0';
+        place.line++;
+        if (!load_line(&loaded, line, place, error))
+            return false;
+        line = next;
+    }
+    *s = loaded;
+    return true;
+}

@@ -1,0 +1,202 @@
+/*
+ * The table of settings: each knob's name, type, unit, range, default and sentence, once.
+ */
+#include "settings/settings_table.h"
+
+#include "base/words.h"
+
+#include <string.h>
+
+static const char *const integrator_words[] = {"photonmap", "path", "auto",
+                                               "vcm",       "sppm", NULL};
+static const char *const kernel_words[] = {"constant", "cone", "gaussian", "epanechnikov",
+                                           NULL};
+static const char *const map_words[] = {"list", "kdtree", "grid", "auto", NULL};
+static const char *const roulette_words[] = {"mean", "max", NULL};
+static const char *const emission_words[] = {"uniform", "specular-area", "guided", NULL};
+static const char *const vcm_words[] = {"all", "bpt", "bpm", "ppm", "light", NULL};
+
+#define AT(field) offsetof(settings, field)
+
+static const setting_row table[] = {
+    {"integrator", SETTING_CHOICE, AT(integrator), "", 0, 3, INTEGRATOR_AUTO,
+     integrator_words, "", "all",
+     "The algorithm that carries light from the lamps to the eye. sppm is photonmap with "
+     "spp = 1, all nearest = 0, final_gather off and alpha = 2/3: set it first."},
+    {"passes", SETTING_COUNT, AT(passes), "", 0, MOST_PASSES, 0, NULL,
+     "iterations numiterations", "all",
+     "Independent passes whose mean is the image; 1 is classic photon mapping. 0: as "
+     "many as time and noise ask for, or 16 if neither is given."},
+    {"time", SETTING_REAL, AT(time), "s", 0, 1e9, 0, NULL, "", "all",
+     "No pass is begun that would end much later; 0: no limit. One pass is always "
+     "rendered."},
+    {"noise", SETTING_REAL, AT(noise), "", 0, 1, 0, NULL, "", "all",
+     "Stops when the relative error of the image, estimated from the scatter of its "
+     "passes, is below this; 0: never."},
+    {"spp", SETTING_COUNT, AT(spp), "samples/pixel", 1, 65536, 4, NULL,
+     "pixelsamples samples_per_pixel", "all", "Camera rays a pixel in each pass."},
+    {"max_backward_bounces", SETTING_COUNT, AT(max_backward_bounces), "", -1, 1e6, 32,
+     NULL, "maxBackwardBounces maxdepth", "all",
+     "Specular scattering events followed back from the eye; -1 is unlimited. The alias "
+     "maxdepth d bounds photons too, by d - 1."},
+    {"max_forward_bounces", SETTING_COUNT, AT(max_forward_bounces), "", -1, 1e6, -1, NULL,
+     "maxForwardBounces MAX_PHOTON_BOUNCES", "photonmap auto",
+     "Scattering events of a photon; 0 stores it at its first hit only, -1 is unlimited "
+     "(roulette ends it)."},
+    {"final_gather", SETTING_BOOL, AT(final_gather), "", 0, 1, 0, NULL, "finalgather",
+     "photonmap",
+     "Gathers indirect light by rays to the surroundings instead of straight from the "
+     "map."},
+    {"gather_rays", SETTING_COUNT, AT(gather_rays), "", 1, 65536, 64, NULL,
+     "finalgathersamples", "photonmap", "Rays of one final gather."},
+    {"precompute_radiance", SETTING_BOOL, AT(precompute_radiance), "", 0, 1, 1, NULL, "",
+     "photonmap",
+     "Estimates radiance once at photon positions, so that a gather ray is one look-up "
+     "(Christensen 1999)."},
+    {"direct_illumination", SETTING_BOOL, AT(direct_illumination), "", 0, 1, 1, NULL, "",
+     "photonmap auto path",
+     "Samples the lights at each hit; off: direct light comes from the direct map, and "
+     "paths find only lamps that they meet."},
+    {"shadow_rays", SETTING_BOOL, AT(shadow_rays), "", 0, 1, 1, NULL, "",
+     "photonmap auto path",
+     "Tests whether sampled lights are hidden; off: direct light casts no shadows."},
+    {"photons", SETTING_COUNT, AT(photons), "photons/pass", 0, 1e12, 0, NULL,
+     "numEmitted photonsperiteration photons_per_pass", "photonmap auto vcm",
+     "Photons emitted a pass, shared among the classes that have no number of their own; "
+     "0: 400000, but no more than camera paths where vcm connects them."},
+    {"direct_photons", SETTING_COUNT, AT(class_photons[0]), "photons/pass", 0, 1e12, 0,
+     NULL, "DIRECT_PHOTONS_PER_LIGHT directphotons", "photonmap",
+     "Photons emitted a pass for the direct map, over all lights; 0: a share of "
+     "photons."},
+    {"indirect_photons", SETTING_COUNT, AT(class_photons[1]), "photons/pass", 0, 1e12, 0,
+     NULL, "INDIRECT_PHOTONS_PER_LIGHT indirectphotons", "photonmap",
+     "Photons emitted a pass for the indirect map, over all lights; 0: a share of "
+     "photons."},
+    {"caustic_photons", SETTING_COUNT, AT(class_photons[2]), "photons/pass", 0, 1e12, 0,
+     NULL, "CAUSTIC_PHOTONS_PER_LIGHT causticphotons", "photonmap auto",
+     "Photons emitted a pass for the caustic map, over all lights; 0: a share of "
+     "photons."},
+    {"direct_nearest", SETTING_COUNT, AT(class_nearest[0]), "photons", 2, 1e7, 0, NULL,
+     "DIRECT_NEARBY_PHOTONS", "photonmap",
+     "Nearest direct photons in an estimate, the last of which only tells how far it "
+     "reaches; 0: all within the radius."},
+    {"indirect_nearest", SETTING_COUNT, AT(class_nearest[1]), "photons", 2, 1e7, 0, NULL,
+     "INDIRECT_NEARBY_PHOTONS", "photonmap",
+     "Nearest indirect photons in an estimate, the last of which only tells how far it "
+     "reaches; 0: all within the radius."},
+    {"caustic_nearest", SETTING_COUNT, AT(class_nearest[2]), "photons", 2, 1e7, 0, NULL,
+     "CAUSTIC_NEARBY_PHOTONS", "photonmap auto",
+     "Nearest caustic photons in an estimate, the last of which only tells how far it "
+     "reaches; 0: all within the radius."},
+    {"radius", SETTING_REAL, AT(radius), "m", 0, 1e12, 0, NULL,
+     "photonRadius gather_radius", "photonmap auto vcm",
+     "Radius of the estimate in the first pass, or its bound for nearest photons; 0: "
+     "chosen from the photons and the pixels."},
+    {"direct_kernel", SETTING_CHOICE, AT(class_kernel[0]), "", 0, 3, KERNEL_EPANECHNIKOV,
+     kernel_words, "", "photonmap", "How a direct photon's weight falls with distance."},
+    {"indirect_kernel", SETTING_CHOICE, AT(class_kernel[1]), "", 0, 3,
+     KERNEL_EPANECHNIKOV, kernel_words, "", "photonmap vcm",
+     "How an indirect photon's weight falls with distance."},
+    {"caustic_kernel", SETTING_CHOICE, AT(class_kernel[2]), "", 0, 3, KERNEL_EPANECHNIKOV,
+     kernel_words, "", "photonmap auto",
+     "How a caustic photon's weight falls with distance."},
+    {"direct_cone_k", SETTING_REAL, AT(class_cone_k[0]), "", 1, 1e6, 1, NULL,
+     "DIRECT_CONE_FILTER_PARAM", "photonmap",
+     "Slope of the direct cone kernel 1 - d/(k r). The alias also chooses the kernel: "
+     "below 1 constant, else cone."},
+    {"indirect_cone_k", SETTING_REAL, AT(class_cone_k[1]), "", 1, 1e6, 1, NULL,
+     "INDIRECT_CONE_FILTER_PARAM", "photonmap vcm",
+     "Slope of the indirect cone kernel 1 - d/(k r). The alias also chooses the kernel: "
+     "below 1 constant, else cone."},
+    {"caustic_cone_k", SETTING_REAL, AT(class_cone_k[2]), "", 1, 1e6, 1, NULL,
+     "CAUSTICS_CONE_FILTER_PARAM CAUSTIC_CONE_FILTER_PARAM", "photonmap auto",
+     "Slope of the caustic cone kernel 1 - d/(k r). The alias also chooses the kernel: "
+     "below 1 constant, else cone."},
+    {"photon_map", SETTING_CHOICE, AT(photon_map), "", 0, 3, MAP_AUTO, map_words, "",
+     "photonmap auto vcm",
+     "The structure photons are looked up in; all give the same answers. auto is the "
+     "tree where the automatic radius differs from place to place, else the grid."},
+    {"flatten", SETTING_REAL, AT(flatten), "", 0.001, 1, 1, NULL, "",
+     "photonmap auto vcm",
+     "Height of the neighbourhood along the normal over its radius; below 1 it leaks "
+     "less light through corners."},
+    {"edges", SETTING_BOOL, AT(edges), "", 0, 1, 1, NULL, "", "photonmap auto vcm",
+     "Probes the surroundings of an estimate, so that edges and corners are not dark and "
+     "no light leaks through thin walls."},
+    {"bright_spots", SETTING_BOOL, AT(bright_spots), "", 0, 1, 1, NULL, "", "auto",
+     "Camera paths look aside at brightly lit places, such as what the sun throws "
+     "through a window, as they do at lamps, where that pays."},
+    {"time_slices", SETTING_COUNT, AT(time_slices), "", 1, MOST_TIME_SLICES, 8, NULL, "",
+     "photonmap auto vcm",
+     "In so many parts the time of the shutter is cut where something moves: what is "
+     "seen in one is lit by the photons of that one."},
+    {"roulette", SETTING_CHOICE, AT(roulette), "", 0, 1, ROULETTE_MEAN, roulette_words,
+     "", "photonmap auto",
+     "What of a photon's flux decides its survival: the mean or the largest over "
+     "wavelengths."},
+    {"caustic_emission", SETTING_CHOICE, AT(caustic_emission), "", 0, 2, EMISSION_GUIDED,
+     emission_words, "", "photonmap auto",
+     "Where photons for caustics are sent: as the light shines, toward what focuses "
+     "light, or where trial photons were seen to cast caustics."},
+    {"multiple_samples", SETTING_BOOL, AT(multiple_samples), "", 0, 1, 1, NULL,
+     "MULTIPLE_SAMPLES", "photonmap auto path",
+     "Samples roughness and Fresnel's split; off: one deterministic path, without "
+     "either."},
+    {"vcm_strategies", SETTING_CHOICE, AT(vcm_strategies), "", 0, 4, VCM_ALL, vcm_words,
+     "", "vcm",
+     "How vcm finds light: by all strategies, connections only (bpt), merging at every "
+     "vertex (bpm) or at the first (ppm), or light paths that reach the eye (light)."},
+    {"alpha", SETTING_REAL, AT(alpha), "", 0.01, 1, 2.0 / 3.0, NULL, "",
+     "photonmap auto vcm",
+     "How slowly the radius shrinks from pass to pass; 1: not at all (Knaus & Zwicker "
+     "2011)."},
+    {"seed", SETTING_COUNT, AT(seed), "", 0, 9007199254740992.0, 0, NULL, "", "all",
+     "Chooses the random numbers; the same seed gives the same image, bit for bit."},
+    {"threads", SETTING_COUNT, AT(threads), "", 0, 4096, 0, NULL, "nthreads", "all",
+     "Threads to work with; 0: one per processor."},
+};
+
+enum { N_ROWS = sizeof table / sizeof *table };
+
+const setting_row *settings_table(size_t *n)
+{
+    *n = N_ROWS;
+    return table;
+}
+
+static bool is_alias(const char *aliases, const char *name)
+{
+    size_t length = strlen(name);
+    while (*aliases) {
+        size_t word = strcspn(aliases, " ");
+        if (word == length && g_ascii_strncasecmp(aliases, name, word) == 0)
+            return true;
+        aliases += word + strspn(aliases + word, " ");
+    }
+    return false;
+}
+
+const setting_row *settings_find(const char *name)
+{
+    for (size_t i = 0; i < N_ROWS; i++)
+        if (strcmp(table[i].name, name) == 0)
+            return &table[i];
+    for (size_t i = 0; i < N_ROWS; i++)
+        if (*name && is_alias(table[i].aliases, name))
+            return &table[i];
+    return NULL;
+}
+
+const char *settings_nearest_name(const char *name)
+{
+    const char *nearest = NULL;
+    size_t least = 1 + strlen(name) / 2;
+    for (size_t i = 0; i < N_ROWS; i++) {
+        size_t distance = edit_distance(name, table[i].name);
+        if (distance < least) {
+            least = distance;
+            nearest = table[i].name;
+        }
+    }
+    return nearest;
+}
