@@ -30,6 +30,8 @@ static const char style[] =
     ".title-2 { font-weight: 800; font-size: 15pt; }\n"
     ".pill { border-radius: 9999px; padding: 8px 28px; }\n"
     ".source { font-family: monospace; padding: 8px; }\n"
+    ".strip { background-color: alpha(@warning_color, 0.25); padding: 6px 12px; }\n"
+    ".summary { padding: 0 6px; min-height: 20px; }\n"
     ".toast { background-color: #303030; color: #ffffff; border-radius: 9999px;"
     " padding: 8px 20px; margin: 24px; }\n";
 
@@ -88,6 +90,7 @@ static void add_keys(GtkApplication *app)
         {"win.page::inspect", "<Alt>i", NULL},
         {"win.page::photons", "<Alt>p", NULL},
         {"win.page::numbers", "<Alt>n", NULL},
+        {"win.page::messages", "<Alt>m", NULL},
         {"win.zoom-fit", "<Control>0", NULL},
         {"win.zoom-one", "<Control>1", NULL},
         {"win.zoom-in", "<Control>plus", "<Control>equal"},

@@ -110,7 +110,7 @@ static void add_place(error_page *p, const error_place *place)
         gtk_box_append(GTK_BOX(box), label);
     }
     GtkWidget *message = label_make(place->message, NULL);
-    gtk_label_set_wrap(GTK_LABEL(message), TRUE);
+    label_break_anywhere(message);
     gtk_label_set_selectable(GTK_LABEL(message), TRUE);
     gtk_widget_set_can_focus(message, FALSE);
     gtk_box_append(GTK_BOX(box), message);
@@ -169,7 +169,7 @@ error_page *error_page_new(void)
     gtk_widget_add_css_class(icon, "dim-label");
     p->title = gtk_label_new(NULL);
     gtk_widget_add_css_class(p->title, "title-2");
-    gtk_label_set_wrap(GTK_LABEL(p->title), TRUE);
+    label_break_anywhere(p->title);
     p->list = gtk_list_box_new();
     gtk_list_box_set_selection_mode(GTK_LIST_BOX(p->list), GTK_SELECTION_NONE);
     gtk_list_box_set_show_separators(GTK_LIST_BOX(p->list), TRUE);

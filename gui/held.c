@@ -16,11 +16,12 @@ static bool let_go(void *object)
     return object && atomic_fetch_sub((atomic_int *)object, 1) == 1;
 }
 
-held_scene *held_scene_new(NephScene *scene)
+held_scene *held_scene_new(NephScene *scene, scene_log *log)
 {
     held_scene *held = g_new0(held_scene, 1);
     atomic_init(&held->holders, 1);
     held->scene = scene;
+    held->log = log;
     neph_scene_camera(scene, &held->camera);
     neph_scene_size(scene, &held->width, &held->height);
     return held;
@@ -67,6 +68,7 @@ void held_scene_unref(held_scene *scene)
     if (!let_go(scene))
         return;
     neph_scene_free(scene->scene);
+    scene_log_free(scene->log);
     g_free(scene);
 }
 

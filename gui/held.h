@@ -7,6 +7,8 @@
  */
 #pragma once
 
+#include "messages.h"
+
 #include <nephroid/nephroid.h>
 #include <stdatomic.h>
 
@@ -15,6 +17,7 @@ typedef struct held_scene {
     NephScene *scene;
     NephCamera camera; /**< as the file says */
     int width, height; /**< as the file says */
+    scene_log *log;    /**< its own; freed after it */
 } held_scene;
 
 /** @brief One state of the picture. */
@@ -33,7 +36,7 @@ typedef struct held_photons {
 } held_photons;
 
 /** @brief Each takes what it is given, and is held once. */
-held_scene *held_scene_new(NephScene *scene);
+held_scene *held_scene_new(NephScene *scene, scene_log *log);
 held_picture *held_picture_new(NephImage *image, int width, int height, bool coarse);
 held_photons *held_photons_new(NephPhotons *photons, NephScene *seen, held_scene *scene);
 

@@ -31,7 +31,7 @@ static const hint hints[] = {
     {"Picture", "Brighter, darker", "<Control>Up <Control>Down"},
     {"Window", "Picture, photons, materials", "<Alt>1 <Alt>2 <Alt>3"},
     {"Window", "Settings, camera, inspect", "<Alt>s <Alt>c <Alt>i"},
-    {"Window", "Photons, numbers", "<Alt>p <Alt>n"},
+    {"Window", "Photons, numbers, messages", "<Alt>p <Alt>n <Alt>m"},
     {"Window", "Search settings", "<Control>f"},
     {"Window", "Panels", "F9"},
     {"Window", "Full screen", "F11"},

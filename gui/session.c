@@ -71,6 +71,7 @@ static void clear_news(session_news *news)
     g_clear_pointer(&news->files, g_strfreev);
     g_clear_pointer(&news->loaded, held_scene_unref);
     g_clear_pointer(&news->picture, held_picture_unref);
+    g_clear_pointer(&news->messages, g_ptr_array_unref);
 }
 
 static void session_unref(session *s);
@@ -87,6 +88,7 @@ static gboolean tell_news(void *data)
     GError *error = g_steal_pointer(&s->news_error);
     s->news.loaded = NULL;
     s->news.picture = NULL;
+    s->news.messages = NULL;
     s->news_pending = false;
     pthread_mutex_unlock(&s->lock);
     news.error = error;
@@ -158,6 +160,16 @@ static void tell_error(session *s, GError *error, bool of_load)
     g_clear_error(&s->news_error);
     s->news_error = error;
     s->news.error_of_load = of_load;
+    send_news(s);
+    pthread_mutex_unlock(&s->lock);
+}
+
+/* Takes the list. */
+static void tell_messages(session *s, GPtrArray *messages)
+{
+    pthread_mutex_lock(&s->lock);
+    g_clear_pointer(&s->news.messages, g_ptr_array_unref);
+    s->news.messages = messages;
     send_news(s);
     pthread_mutex_unlock(&s->lock);
 }
@@ -343,10 +355,14 @@ static void take_over(session *s)
 static void load(session *s, const char *path)
 {
     g_autoptr(GError) error = NULL;
-    const NephLoadOptions options = {.file = tell_file, .file_data = s};
+    scene_log *log = scene_log_new();
+    const NephLoadOptions options = {
+        .file = tell_file, .file_data = s, .log = scene_log_write, .log_data = log};
     tell_state(s, SESSION_LOADING);
     NephScene *scene = neph_scene_load_with(path, &options, &error);
+    tell_messages(s, scene_log_close(log));
     if (!scene) {
+        scene_log_free(log);
         tell_state(s, s->scene ? SESSION_STOPPED : SESSION_EMPTY);
         tell_error(s, g_steal_pointer(&error), true);
         return;
@@ -354,7 +370,7 @@ static void load(session *s, const char *path)
     g_clear_pointer(&s->render, neph_render_free);
     g_clear_pointer(&s->seen, neph_scene_free);
     held_scene_unref(s->scene);
-    s->scene = held_scene_new(scene);
+    s->scene = held_scene_new(scene, log);
     s->seen = neph_scene_share(scene);
     s->complete = s->failed = false;
     s->pace = (preview_pace){0};

@@ -5,7 +5,7 @@
 #include <math.h>
 
 struct status {
-    GtkWidget *root, *bar, *name, *text, *pointer;
+    GtkWidget *root, *bar, *name, *text, *messages, *pointer;
 };
 
 char *status_duration(double seconds)
@@ -68,11 +68,18 @@ status *status_new(void)
     s->text = label_make("", "numeric");
     gtk_label_set_ellipsize(GTK_LABEL(s->text), PANGO_ELLIPSIZE_END);
     gtk_widget_set_hexpand(s->text, TRUE);
+    s->messages = text_button_make("", "The page of messages (Alt+M)", NULL);
+    gtk_actionable_set_detailed_action_name(GTK_ACTIONABLE(s->messages),
+                                            "win.page::messages");
+    gtk_widget_add_css_class(s->messages, "flat");
+    gtk_widget_add_css_class(s->messages, "summary");
+    gtk_widget_set_visible(s->messages, FALSE);
     s->pointer = gtk_label_new("");
     gtk_widget_add_css_class(s->pointer, "numeric");
     gtk_widget_add_css_class(s->pointer, "dim-label");
     gtk_label_set_ellipsize(GTK_LABEL(s->pointer), PANGO_ELLIPSIZE_START);
     gtk_box_append(GTK_BOX(line), s->text);
+    gtk_box_append(GTK_BOX(line), s->messages);
     gtk_box_append(GTK_BOX(line), s->pointer);
     gtk_box_append(GTK_BOX(s->root), s->bar);
     gtk_box_append(GTK_BOX(s->root), line);
@@ -98,6 +105,12 @@ void status_show(status *s, const session_news *news)
     else
         gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(s->bar),
                                       CLAMP(news->fraction, 0.0, 1.0));
+}
+
+void status_show_messages(status *s, const char *summary)
+{
+    gtk_button_set_label(GTK_BUTTON(s->messages), summary ? summary : "");
+    gtk_widget_set_visible(s->messages, summary != NULL);
 }
 
 void status_show_name(status *s, const char *name, const char *path)

@@ -13,6 +13,8 @@ status *status_new(void);
 void status_free(status *s);
 GtkWidget *status_widget(status *s);
 void status_show(status *s, const session_news *news);
+/** @brief How many messages there are; NULL: none. */
+void status_show_messages(status *s, const char *summary);
 /** @brief What is being rendered, and where it lies. */
 void status_show_name(status *s, const char *name, const char *path);
 /** @brief What the pointer is over; NULL: nothing. */

@@ -21,11 +21,20 @@ GtkWidget *label_make(const char *text, const char *css_class)
     return label;
 }
 
+/* Names and lists are broken anywhere rather than cut, and as they are written. */
+void label_break_anywhere(GtkWidget *label)
+{
+    g_autoptr(PangoAttrList) attributes = pango_attr_list_new();
+    pango_attr_list_insert(attributes, pango_attr_insert_hyphens_new(FALSE));
+    gtk_label_set_attributes(GTK_LABEL(label), attributes);
+    gtk_label_set_wrap(GTK_LABEL(label), TRUE);
+    gtk_label_set_wrap_mode(GTK_LABEL(label), PANGO_WRAP_WORD_CHAR);
+}
+
 GtkWidget *text_make(const char *text, const char *css_class)
 {
     GtkWidget *label = label_make(text, css_class);
-    gtk_label_set_wrap(GTK_LABEL(label), TRUE);
-    gtk_label_set_wrap_mode(GTK_LABEL(label), PANGO_WRAP_WORD_CHAR);
+    label_break_anywhere(label);
     gtk_label_set_max_width_chars(GTK_LABEL(label), 40);
     return label;
 }

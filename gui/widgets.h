@@ -9,7 +9,9 @@
 void widget_name(GtkWidget *widget, const char *name);
 /** @brief A label, left-aligned, with a CSS class (NULL: none). */
 GtkWidget *label_make(const char *text, const char *css_class);
-/** @brief The same, of several lines. */
+/** @brief Lets a label have several lines, broken within a word where they must be. */
+void label_break_anywhere(GtkWidget *label);
+/** @brief The same as label_make, of several lines. */
 GtkWidget *text_make(const char *text, const char *css_class);
 /** @brief A button with an icon, named by its tooltip; action as in "win.play", or NULL.
  */

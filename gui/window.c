@@ -238,6 +238,9 @@ static GtkWidget *sidebar_make(window *w)
     for (size_t i = 0; i < G_N_ELEMENTS(pages); i++)
         gtk_stack_add_titled(GTK_STACK(w->pages), pages[i].widget, pages[i].name,
                              pages[i].title);
+    GtkStackPage *messages = gtk_stack_add_titled(
+        GTK_STACK(w->pages), messages_panel_widget(w->messages), "messages", "Messages");
+    gtk_stack_page_set_icon_name(messages, "dialog-information-symbolic");
     gtk_box_append(GTK_BOX(box), switcher);
     gtk_box_append(GTK_BOX(box), w->pages);
     gtk_widget_set_size_request(box, SIDEBAR_LEAST, -1);
@@ -307,6 +310,7 @@ static GtkWidget *main_make(window *w)
     w->camera_panel = camera_panel_new(window_camera_changed, w);
     w->inspector = inspector_new(w->canvas, window_ask_reference, w);
     w->numbers = numbers_panel_new();
+    w->messages = messages_panel_new();
     w->status = status_new();
     GtkPaned *paned = GTK_PANED(w->paned);
     gtk_paned_set_start_child(paned, views);
@@ -320,6 +324,7 @@ static GtkWidget *main_make(window *w)
     gtk_widget_set_has_tooltip(w->paned, FALSE);
     gtk_widget_add_tick_callback(w->paned, place_divider, w, NULL);
     gtk_widget_set_visible(w->sidebar, w->remembered.sidebar);
+    gtk_box_append(GTK_BOX(box), messages_panel_strip(w->messages));
     gtk_box_append(GTK_BOX(box), w->paned);
     gtk_box_append(GTK_BOX(box), status_widget(w->status));
     return box;
@@ -377,6 +382,7 @@ static void destroyed(window *w)
     camera_panel_free(w->camera_panel);
     inspector_free(w->inspector);
     numbers_panel_free(w->numbers);
+    messages_panel_free(w->messages);
     lobe_view_free(w->lobes);
     canvas_free(w->canvas);
     settings_panel_free(w->settings);

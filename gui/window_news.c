@@ -102,8 +102,22 @@ static void scene_loaded(window *w, held_scene *scene)
     w->reloading = false;
 }
 
+static void show_message_count(window *w)
+{
+    g_autofree char *summary = messages_summary(messages_panel_list(w->messages));
+    status_show_messages(w->status, summary);
+}
+
+static void show_messages(window *w, const GPtrArray *messages)
+{
+    messages_panel_show(w->messages, document_path(w->document), messages);
+    show_message_count(w);
+}
+
 static void failed(window *w, const session_news *news)
 {
+    messages_panel_add(w->messages, MESSAGE_ERROR, news->error->message);
+    show_message_count(w);
     if (news->error_of_load) {
         error_page_show(w->errors, document_path(w->document), news->error->message,
                         w->scene != NULL);
@@ -130,6 +144,8 @@ void window_on_news(const session_news *news, void *data)
         document_watch(w->document, (const char *const *)news->files);
     if (news->loaded)
         scene_loaded(w, news->loaded);
+    if (news->messages)
+        show_messages(w, news->messages);
     if (news->error)
         failed(w, news);
     if (news->picture)

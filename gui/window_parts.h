@@ -16,6 +16,7 @@
 #include "error_page.h"
 #include "inspector.h"
 #include "lobe_view.h"
+#include "messages_panel.h"
 #include "navigation.h"
 #include "numbers_panel.h"
 #include "photon_panel.h"
@@ -51,6 +52,7 @@ struct window {
     inspector *inspector;
     numbers_panel *numbers;
     lobe_view *lobes;
+    messages_panel *messages;
     photon_view *photon_view;
     photon_panel *photon_panel;
     navigation *photon_navigation;

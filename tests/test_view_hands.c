@@ -479,7 +479,7 @@ static void assert_whole(GtkWidget *widget, int *n)
 static void test_nothing_cut(void)
 {
     static const char *const pages[] = {"settings", "camera", "inspect", "photons",
-                                        "numbers"};
+                                        "numbers", "messages"};
     static const char *const views[] = {"picture", "photons", "materials"};
     window *w = open_scene("whole.pbrt");
     int least[2], n = 0;
