@@ -187,7 +187,7 @@ static void test_mesh_against_twin(void)
         mesh m = random_soup(5);
         shape *s = shape_new_mesh(&m, &at, here, NULL);
         accel *a = accel_of(&s, 1);
-        const mesh *moved = mesh_kind.triangles(s->self);
+        const mesh *moved = shape_mesh.triangles(s->self);
         unsigned hits = 0;
         for (uint32_t n = 0; n < 3000; n++) {
             sampler random = sampler_make(21, n);

@@ -99,7 +99,7 @@ static void test_mesh_samples_are_uniform(void)
     shape_place at = place_at(4);
     mesh m = random_soup(5);
     shape *s = shape_new_mesh(&m, &at, here, NULL);
-    const float *p = mesh_kind.triangles(s->self)->positions;
+    const float *p = shape_mesh.triangles(s->self)->positions;
     double total = 0, expected[SOUP];
     for (int i = 0; i < SOUP; i++) {
         vec3 c[3];

@@ -18,13 +18,13 @@
 #include <math.h>
 #include <string.h>
 
-typedef struct curve_kind {
+typedef struct shape_curve {
     float (*at)(const curve *c, float nm);
     spectrum (*eval)(const curve *c, const wavelengths *w);
-} curve_kind;
+} shape_curve;
 
 struct curve {
-    const curve_kind *kind;
+    const shape_curve *kind;
     gatomicrefcount references;
     bool is_constant;        /**< over LAMBDA_MIN..LAMBDA_MAX */
     float factor;            /**< constant, smooth */
@@ -34,7 +34,7 @@ struct curve {
     float data[];            /**< grid: values; tabulated: n wavelengths, n values */
 };
 
-static curve *curve_new(const curve_kind *kind, size_t n_data)
+static curve *curve_new(const shape_curve *kind, size_t n_data)
 {
     curve *c = g_malloc0(sizeof *c + n_data * sizeof(float));
     c->kind = kind;
@@ -85,7 +85,7 @@ static spectrum constant_eval(const curve *c, const wavelengths *w)
     return spectrum_fill(c->factor);
 }
 
-static const curve_kind constant_kind = {constant_at, constant_eval};
+static const shape_curve constant_kind = {constant_at, constant_eval};
 
 curve *curve_constant(float value)
 {
@@ -107,7 +107,7 @@ static spectrum eval_grid(const curve *c, const wavelengths *w)
     return grid_eval(c->data, w->lambda);
 }
 
-static const curve_kind grid_kind = {at_grid, eval_grid};
+static const shape_curve grid_kind = {at_grid, eval_grid};
 
 static bool same(float a, float b)
 {
@@ -166,7 +166,7 @@ static spectrum eval_table(const curve *c, const wavelengths *w)
     return s;
 }
 
-static const curve_kind table_kind = {at_table, eval_table};
+static const shape_curve table_kind = {at_table, eval_table};
 
 static bool check_table(const float *nm, const float *values, int n, GError **error)
 {
@@ -249,7 +249,7 @@ static spectrum eval_smooth(const curve *c, const wavelengths *w)
     return c->illuminant ? value * grid_eval(c->illuminant, w->lambda) : value;
 }
 
-static const curve_kind smooth_kind = {at_smooth, eval_smooth};
+static const shape_curve smooth_kind = {at_smooth, eval_smooth};
 
 static bool check_rgb(const float rgb[3], curve_role role, GError **error)
 {

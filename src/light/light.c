@@ -11,9 +11,9 @@
 #include <string.h>
 
 static const light_kind *const kinds[] = {
-    &point_light_kind,       &spot_light_kind,       &distant_light_kind,
-    &goniometric_light_kind, &projection_light_kind, &image_sky_kind,
-    &infinite_light_kind,    &area_light_kind,
+#define LIGHT(kind, file) &light_##kind,
+#include "light/light.def"
+#undef LIGHT
 };
 
 const light_kind *light_kind_at(size_t i)
@@ -24,7 +24,7 @@ const light_kind *light_kind_at(size_t i)
 static const light_kind *find_kind(const char *name, const params *p, bool on_shape)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {
-        bool is_area = kinds[i] == &area_light_kind;
+        bool is_area = kinds[i] == &light_area;
         if (is_area == on_shape && strcmp(kinds[i]->name, name) == 0 &&
             (!kinds[i]->is_meant || kinds[i]->is_meant(p)))
             return kinds[i];

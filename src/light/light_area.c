@@ -265,7 +265,7 @@ static spectrum radiance(const void *self, const surface_hit *hit, vec3 wo,
     return spectrum_fill(0.0f);
 }
 
-const light_kind area_light_kind = {
+const light_kind light_area = {
     .name = "diffuse",
     .parameters = "L filename scale power twosided",
     .create = create,

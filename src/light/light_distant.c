@@ -110,7 +110,7 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     return true;
 }
 
-const light_kind distant_light_kind = {
+const light_kind light_distant = {
     .name = "distant",
     .parameters = "L scale illuminance from to",
     .is_delta = true,

@@ -214,7 +214,7 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     return light_arrive_from_point(l->p, ref, intensity, out);
 }
 
-const light_kind goniometric_light_kind = {
+const light_kind light_goniometric = {
     .name = "goniometric",
     .parameters = "I scale power filename",
     .is_delta = true,

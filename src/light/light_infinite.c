@@ -117,7 +117,7 @@ static spectrum environment(const void *self, vec3 p, vec3 d, const wavelengths 
     return emitter_eval(&l->radiance, w);
 }
 
-const light_kind infinite_light_kind = {
+const light_kind light_infinite = {
     .name = "infinite",
     .parameters = "L scale illuminance",
     .is_environment = true,

@@ -333,7 +333,7 @@ static spectrum environment(const void *self, vec3 p, vec3 d, const wavelengths 
     return radiance_from(l, frame_to_local(&l->axes, d), w);
 }
 
-const light_kind image_sky_kind = {
+const light_kind light_image_sky = {
     .name = "infinite",
     .parameters = "L filename scale illuminance portal",
     .is_meant = has_filename,

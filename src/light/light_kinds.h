@@ -6,14 +6,9 @@
 
 #include "light/light.h"
 
-extern const light_kind point_light_kind;
-extern const light_kind spot_light_kind;
-extern const light_kind distant_light_kind;
-extern const light_kind infinite_light_kind;
-extern const light_kind image_sky_kind;
-extern const light_kind goniometric_light_kind;
-extern const light_kind projection_light_kind;
-extern const light_kind area_light_kind;
+#define LIGHT(kind, file) extern const light_kind light_##kind;
+#include "light/light.def"
+#undef LIGHT
 
 /**
  * @brief What a light sends out: radiance, intensity or irradiance, as a spectrum times a

@@ -87,7 +87,7 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     return light_arrive_from_point(l->p, ref, intensity, out);
 }
 
-const light_kind point_light_kind = {
+const light_kind light_point = {
     .name = "point",
     .parameters = "I scale power from",
     .is_delta = true,

@@ -240,7 +240,7 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     return light_arrive_from_point(l->p, ref, intensity, out);
 }
 
-const light_kind projection_light_kind = {
+const light_kind light_projection = {
     .name = "projection",
     .parameters = "filename fov scale power",
     .is_delta = true,

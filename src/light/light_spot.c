@@ -184,7 +184,7 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     return light_arrive_from_point(l->p, ref, intensity, out);
 }
 
-const light_kind spot_light_kind = {
+const light_kind light_spot = {
     .name = "spot",
     .parameters = "I scale power from to coneangle conedeltaangle",
     .is_delta = true,

@@ -4,16 +4,9 @@
 #include <string.h>
 
 static const material_kind *const kinds[] = {
-    &material_diffuse,
-    &material_conductor,
-    &material_dielectric,
-    &material_thin_dielectric,
-    &material_coated_diffuse,
-    &material_phong,
-    &material_gltf,
-    &material_diffuse_transmission,
-    &material_mix,
-    &material_coated_conductor,
+#define MATERIAL(kind, file) &material_##kind,
+#include "material/material.def"
+#undef MATERIAL
 };
 
 const material_kind *material_kind_at(size_t i)

@@ -59,10 +59,9 @@ static float epanechnikov_area(float k)
 }
 
 static const kernel_form forms[] = {
-    [KERNEL_CONSTANT] = {constant_eval, constant_area},
-    [KERNEL_CONE] = {cone_eval, cone_area},
-    [KERNEL_GAUSSIAN] = {gaussian_eval, gaussian_area},
-    [KERNEL_EPANECHNIKOV] = {epanechnikov_eval, epanechnikov_area},
+#define KERNEL(choice, word) [KERNEL_##choice] = {word##_eval, word##_area},
+#include "settings/kernel.def"
+#undef KERNEL
 };
 
 float kernel_eval(const kernel *k, float d2, float r2)

@@ -7,9 +7,9 @@
 #include "photon/map_kind.h"
 
 static const photon_map_kind *const kinds[] = {
-    [MAP_LIST] = &photon_map_list,
-    [MAP_KDTREE] = &photon_map_kdtree,
-    [MAP_GRID] = &photon_map_grid,
+#define MAP(choice, word) [MAP_##choice] = &photon_map_##word,
+#include "settings/map.def"
+#undef MAP
 };
 
 photon_map *photon_map_build(map_choice choice, photon_store *store, float radius,

@@ -79,7 +79,9 @@ struct photon_map {
     void *index; /**< the kind's own, big_alloc'ed */
 };
 
-extern const photon_map_kind photon_map_list, photon_map_kdtree, photon_map_grid;
+#define MAP(choice, word) extern const photon_map_kind photon_map_##word;
+#include "settings/map.def"
+#undef MAP
 
 /** @brief Room for capacity hits in all. */
 bool photon_hits_reserve(photon_hits *hits, size_t capacity);

@@ -14,12 +14,18 @@
 enum { N_CLASSES = 3 }; /**< direct, indirect, caustic: see photon/photon.h */
 
 typedef enum kernel_choice {
-    KERNEL_CONSTANT,
-    KERNEL_CONE,
-    KERNEL_GAUSSIAN,
-    KERNEL_EPANECHNIKOV
+#define KERNEL(choice, word) KERNEL_##choice,
+#include "settings/kernel.def"
+#undef KERNEL
+    N_KERNELS
 } kernel_choice;
-typedef enum map_choice { MAP_LIST, MAP_KDTREE, MAP_GRID, MAP_AUTO } map_choice;
+typedef enum map_choice {
+#define MAP(choice, word) MAP_##choice,
+#include "settings/map.def"
+#undef MAP
+    N_MAPS,
+    MAP_AUTO = N_MAPS /**< the one that serves the settings best */
+} map_choice;
 typedef enum roulette_choice { ROULETTE_MEAN, ROULETTE_MAX } roulette_choice;
 typedef enum emission_choice {
     EMISSION_UNIFORM,
@@ -27,10 +33,10 @@ typedef enum emission_choice {
     EMISSION_GUIDED
 } emission_choice;
 typedef enum integrator_choice {
-    INTEGRATOR_PHOTONMAP,
-    INTEGRATOR_PATH,
-    INTEGRATOR_AUTO,
-    INTEGRATOR_VCM
+#define INTEGRATOR(choice, word) INTEGRATOR_##choice,
+#include "settings/integrator.def"
+#undef INTEGRATOR
+    N_INTEGRATORS
 } integrator_choice;
 /** Which strategies vertex connection and merging uses: see transport/vcm.h. */
 typedef enum vcm_choice { VCM_ALL, VCM_BPT, VCM_BPM, VCM_PPM, VCM_LIGHT } vcm_choice;

@@ -7,11 +7,21 @@
 
 #include <string.h>
 
-static const char *const integrator_words[] = {"photonmap", "path", "auto",
-                                               "vcm",       "sppm", NULL};
-static const char *const kernel_words[] = {"constant", "cone", "gaussian", "epanechnikov",
-                                           NULL};
-static const char *const map_words[] = {"list", "kdtree", "grid", "auto", NULL};
+static const char *const integrator_words[] = {
+#define INTEGRATOR(choice, word) #word,
+#include "settings/integrator.def"
+#undef INTEGRATOR
+    "sppm", NULL};
+static const char *const kernel_words[] = {
+#define KERNEL(choice, word) #word,
+#include "settings/kernel.def"
+#undef KERNEL
+    NULL};
+static const char *const map_words[] = {
+#define MAP(choice, word) #word,
+#include "settings/map.def"
+#undef MAP
+    "auto", NULL};
 static const char *const roulette_words[] = {"mean", "max", NULL};
 static const char *const emission_words[] = {"uniform", "specular-area", "guided", NULL};
 static const char *const vcm_words[] = {"all", "bpt", "bpm", "ppm", "light", NULL};
@@ -19,8 +29,8 @@ static const char *const vcm_words[] = {"all", "bpt", "bpm", "ppm", "light", NUL
 #define AT(field) offsetof(settings, field)
 
 static const setting_row table[] = {
-    {"integrator", SETTING_CHOICE, AT(integrator), "", 0, 3, INTEGRATOR_AUTO,
-     integrator_words, "", "all",
+    {"integrator", SETTING_CHOICE, AT(integrator), "", 0, N_INTEGRATORS - 1,
+     INTEGRATOR_AUTO, integrator_words, "", "all",
      "The algorithm that carries light from the lamps to the eye. sppm is photonmap with "
      "spp = 1, all nearest = 0, final_gather off and alpha = 2/3: set it first."},
     {"passes", SETTING_COUNT, AT(passes), "", 0, MOST_PASSES, 0, NULL,
@@ -92,13 +102,14 @@ static const setting_row table[] = {
      "photonRadius gather_radius", "photonmap auto vcm",
      "Radius of the estimate in the first pass, or its bound for nearest photons; 0: "
      "chosen from the photons and the pixels."},
-    {"direct_kernel", SETTING_CHOICE, AT(class_kernel[0]), "", 0, 3, KERNEL_EPANECHNIKOV,
-     kernel_words, "", "photonmap", "How a direct photon's weight falls with distance."},
-    {"indirect_kernel", SETTING_CHOICE, AT(class_kernel[1]), "", 0, 3,
+    {"direct_kernel", SETTING_CHOICE, AT(class_kernel[0]), "", 0, N_KERNELS - 1,
+     KERNEL_EPANECHNIKOV, kernel_words, "", "photonmap",
+     "How a direct photon's weight falls with distance."},
+    {"indirect_kernel", SETTING_CHOICE, AT(class_kernel[1]), "", 0, N_KERNELS - 1,
      KERNEL_EPANECHNIKOV, kernel_words, "", "photonmap vcm",
      "How an indirect photon's weight falls with distance."},
-    {"caustic_kernel", SETTING_CHOICE, AT(class_kernel[2]), "", 0, 3, KERNEL_EPANECHNIKOV,
-     kernel_words, "", "photonmap auto",
+    {"caustic_kernel", SETTING_CHOICE, AT(class_kernel[2]), "", 0, N_KERNELS - 1,
+     KERNEL_EPANECHNIKOV, kernel_words, "", "photonmap auto",
      "How a caustic photon's weight falls with distance."},
     {"direct_cone_k", SETTING_REAL, AT(class_cone_k[0]), "", 1, 1e6, 1, NULL,
      "DIRECT_CONE_FILTER_PARAM", "photonmap",
@@ -112,8 +123,8 @@ static const setting_row table[] = {
      "CAUSTICS_CONE_FILTER_PARAM CAUSTIC_CONE_FILTER_PARAM", "photonmap auto",
      "Slope of the caustic cone kernel 1 - d/(k r). The alias also chooses the kernel: "
      "below 1 constant, else cone."},
-    {"photon_map", SETTING_CHOICE, AT(photon_map), "", 0, 3, MAP_AUTO, map_words, "",
-     "photonmap auto vcm",
+    {"photon_map", SETTING_CHOICE, AT(photon_map), "", 0, MAP_AUTO, MAP_AUTO, map_words,
+     "", "photonmap auto vcm",
      "The structure photons are looked up in; all give the same answers. auto is the "
      "tree where the automatic radius differs from place to place, else the grid."},
     {"flatten", SETTING_REAL, AT(flatten), "", 0.001, 1, 1, NULL, "",

@@ -10,8 +10,9 @@
 #include <string.h>
 
 static const shape_kind *const kinds[] = {
-    &mesh_kind,     &sphere_kind,      &disk_kind,  &cylinder_kind,
-    &bilinear_kind, &subdivision_kind, &curve_kind,
+#define SHAPE(kind, file) &shape_##kind,
+#include "shape/shape.def"
+#undef SHAPE
 };
 
 const char *shape_kind_name(size_t i)
@@ -83,7 +84,7 @@ shape *shape_new(const char *name, const params *p, const shape_place *at, GErro
 shape *shape_new_mesh(mesh *m, const shape_place *at, source_place place, GError **error)
 {
     void *self = mesh_shape_create(m, at, place, error);
-    return self ? shape_wrap(&mesh_kind, self, at, place) : NULL;
+    return self ? shape_wrap(&shape_mesh, self, at, place) : NULL;
 }
 
 void shape_free(shape *s)

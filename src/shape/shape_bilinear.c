@@ -271,7 +271,7 @@ static shape_sample sample_area(const void *self, float u_primitive, vec2 u)
                           .pdf = 1.0f / area(self)};
 }
 
-const shape_kind bilinear_kind = {
+const shape_kind shape_bilinear = {
     .name = "bilinearmesh",
     .parameters = "P N uv indices faceIndices emissionfilename",
     .create = create,

@@ -443,7 +443,7 @@ static void pieces_near(const void *self, vec3 p, float radius, shape_piece piec
         search_pieces(&s, (curve_span){&c->segments[i], 0.0, 1.0}, MOST_HALVINGS);
 }
 
-const shape_kind curve_kind = {
+const shape_kind shape_curve = {
     .name = "curve",
     .parameters = "P type basis degree width width0 width1 N splitdepth",
     .create = create,

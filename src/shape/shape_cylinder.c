@@ -95,7 +95,7 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     quadric_fill_hit(&c->q, &at, dpdu, dpdv, hit);
 }
 
-const shape_kind cylinder_kind = {
+const shape_kind shape_cylinder = {
     .name = "cylinder",
     .parameters = "radius zmin zmax phimax",
     .create = create,

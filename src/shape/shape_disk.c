@@ -102,7 +102,7 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     quadric_fill_hit(&d->q, &at, dpdu, dpdv, hit);
 }
 
-const shape_kind disk_kind = {
+const shape_kind shape_disk = {
     .name = "disk",
     .parameters = "height radius innerradius phimax",
     .create = create,

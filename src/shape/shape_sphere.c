@@ -202,7 +202,7 @@ static float pdf_toward(const void *self, vec3 ref, const surface_hit *hit)
     return isfinite(pdf) ? pdf : 0.0f;
 }
 
-const shape_kind sphere_kind = {
+const shape_kind shape_sphere = {
     .name = "sphere",
     .parameters = "radius zmin zmax phimax",
     .create = create,

@@ -379,9 +379,9 @@ static void *create(const params *p, const shape_place *at, GError **error)
     return NULL;
 }
 
-const shape_kind subdivision_kind = {
+const shape_kind shape_subdivision = {
     .name = "loopsubdiv",
     .parameters = "P indices faceIndices levels scheme",
-    .becomes = &mesh_kind,
+    .becomes = &shape_mesh,
     .create = create,
 };

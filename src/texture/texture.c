@@ -14,10 +14,9 @@ struct texture {
 };
 
 static const texture_kind *const kinds[] = {
-    &texture_bilerp,   &texture_checkerboard, &texture_constant, &texture_direction_mix,
-    &texture_dots,     &texture_fbm,          &texture_gltf,     &texture_imagemap,
-    &texture_marble,   &texture_mix,          &texture_scale,    &texture_windy,
-    &texture_wrinkled,
+#define TEXTURE(kind, file) &texture_##kind,
+#include "texture/texture.def"
+#undef TEXTURE
 };
 
 const texture_kind *texture_kind_at(size_t i)

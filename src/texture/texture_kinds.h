@@ -5,16 +5,6 @@
 
 #include "texture/texture.h"
 
-extern const texture_kind texture_bilerp;
-extern const texture_kind texture_checkerboard;
-extern const texture_kind texture_constant;
-extern const texture_kind texture_direction_mix;
-extern const texture_kind texture_dots;
-extern const texture_kind texture_fbm;
-extern const texture_kind texture_marble;
-extern const texture_kind texture_mix;
-extern const texture_kind texture_scale;
-extern const texture_kind texture_windy;
-extern const texture_kind texture_wrinkled;
-extern const texture_kind texture_imagemap;
-extern const texture_kind texture_gltf;
+#define TEXTURE(kind, file) extern const texture_kind texture_##kind;
+#include "texture/texture.def"
+#undef TEXTURE

@@ -14,4 +14,3 @@
 
 #include "transport/transport.h"
 
-extern const transport_kind transport_auto;

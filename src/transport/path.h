@@ -8,7 +8,6 @@
 #include "photon/spots.h"
 #include "transport/transport.h"
 
-extern const transport_kind transport_path;
 
 /** @brief A pass of path tracing; with a caustic map, what the map holds is left to it.
  */

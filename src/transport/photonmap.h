@@ -10,7 +10,6 @@
 #include "photon/volume_map.h"
 #include "transport/transport.h"
 
-extern const transport_kind transport_photonmap;
 
 /** @brief One pass: photons traced, maps built. Const while the camera looks. */
 typedef struct photonmap_pass {

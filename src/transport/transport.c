@@ -1,17 +1,11 @@
 #include "transport/transport.h"
 
 #include "base/memory.h"
-#include "transport/auto.h"
-#include "transport/path.h"
-#include "transport/photonmap.h"
-#include "transport/vcm.h"
 
-/* In the order of integrator_choice. */
 static const transport_kind *const kinds[] = {
-    [INTEGRATOR_PHOTONMAP] = &transport_photonmap,
-    [INTEGRATOR_PATH] = &transport_path,
-    [INTEGRATOR_AUTO] = &transport_auto,
-    [INTEGRATOR_VCM] = &transport_vcm,
+#define INTEGRATOR(choice, word) [INTEGRATOR_##choice] = &transport_##word,
+#include "settings/integrator.def"
+#undef INTEGRATOR
 };
 
 const transport_kind *transport_find(int integrator)

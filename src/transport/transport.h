@@ -137,5 +137,9 @@ typedef struct transport_kind {
     void (*end_pass)(void *pass);
 } transport_kind;
 
+#define INTEGRATOR(choice, word) extern const transport_kind transport_##word;
+#include "settings/integrator.def"
+#undef INTEGRATOR
+
 /** @brief The row for an integrator_choice. */
 const transport_kind *transport_find(int integrator);

@@ -44,7 +44,6 @@
 #include "transport/transport.h"
 #include "transport/vcm_weights.h"
 
-extern const transport_kind transport_vcm;
 
 /** @brief Which strategies run (setting vcm_strategies). */
 typedef struct vcm_strategies {

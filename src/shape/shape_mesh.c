@@ -409,7 +409,7 @@ static float pdf_toward(const void *self, vec3 ref, const surface_hit *hit)
                   hit->n_geom);
 }
 
-const shape_kind mesh_kind = {
+const shape_kind shape_mesh = {
     .name = "trianglemesh",
     .parameters = "P N S uv indices faceIndices",
     .create = create,
