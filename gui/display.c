@@ -236,6 +236,43 @@ cairo_surface_t *display_surface(const NephImage *image, const display_options *
     return surface;
 }
 
+static float decode_srgb(float x)
+{
+    return x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
+}
+
+NephImage *display_image(const NephImage *image, const display_options *options,
+                         GError **error)
+{
+    int width, height, n, channel[3];
+    float linear[256];
+    if (!display_channels(image, options->layer, channel)) {
+        g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_INPUT,
+                    "the picture has no layer '%s'", options->layer);
+        return NULL;
+    }
+    neph_image_size(image, &width, &height, &n);
+    size_t n_pixels = (size_t)width * (size_t)height;
+    g_autofree float *rgb = g_try_new(float, 3 * n_pixels);
+    if (!rgb) {
+        g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_FAILED,
+                    "there is no memory for the picture");
+        return NULL;
+    }
+    for (int i = 0; i < 256; i++)
+        linear[i] = decode_srgb((float)i / 255.0f);
+    converter c = {options, make_table(options), strcmp(options->layer, "normal") == 0};
+    const float *pixel = neph_image_pixels(image);
+    for (size_t i = 0; i < n_pixels; i++, pixel += n) {
+        const float v[3] = {pixel[channel[0]], pixel[channel[1]], pixel[channel[2]]};
+        uint32_t seen = convert(&c, v);
+        for (int k = 0; k < 3; k++)
+            rgb[3 * i + (size_t)k] = linear[seen >> (16 - 8 * k) & 0xff];
+    }
+    g_free(c.table);
+    return neph_image_new(width, height, rgb, error);
+}
+
 size_t display_histogram(const NephImage *image, const char *layer, float low, float high,
                          size_t n, size_t counts[3][256])
 {

@@ -45,6 +45,11 @@ char **display_layers(const NephImage *image);
  * missing. Any thread. */
 cairo_surface_t *display_surface(const NephImage *image, const display_options *options);
 
+/** @brief The picture as the window shows it, for a file of eight bits: an image that is
+ * written as those bytes. Owned by the caller; NULL with an error. Any thread. */
+NephImage *display_image(const NephImage *image, const display_options *options,
+                         GError **error);
+
 /** @brief A colour, 0..1 each, for x in 0..1: dark blue to white. */
 void display_false_colour(float x, float rgb[3]);
 

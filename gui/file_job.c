@@ -4,7 +4,7 @@ typedef struct job {
     char *path, *text, *scene;
     NephCamera camera;
     held_picture *picture;
-    float exposure;
+    display_options shown;
 } job;
 
 static void free_job(void *data)
@@ -61,10 +61,28 @@ static bool write_scene(const job *j, GError **error)
            neph_camera_save(&j->camera, j->path, error);
 }
 
+static bool has_eight_bits(const char *path)
+{
+    static const char *const endings[] = {".png", ".jpg", ".jpeg"};
+    g_autofree char *lower = g_ascii_strdown(path, -1);
+    bool has = false;
+    for (size_t i = 0; i < G_N_ELEMENTS(endings); i++)
+        has |= g_str_has_suffix(lower, endings[i]);
+    return has;
+}
+
+static bool write_picture(const job *j, GError **error)
+{
+    if (!has_eight_bits(j->path))
+        return neph_image_write(j->picture->image, j->path, 0.0f, error);
+    g_autoptr(NephImage) seen = display_image(j->picture->image, &j->shown, error);
+    return seen && neph_image_write(seen, j->path, 0.0f, error);
+}
+
 static bool write_any(const job *j, GError **error)
 {
     if (j->picture)
-        return neph_image_write(j->picture->image, j->path, j->exposure, error);
+        return write_picture(j, error);
     if (j->scene)
         return write_scene(j, error);
     return neph_file_write(j->path, j->text, error);
@@ -91,7 +109,7 @@ void file_job_write(const char *path, const file_content *content,
                .scene = g_strdup(content->scene),
                .camera = content->camera,
                .picture = held_picture_ref(content->picture),
-               .exposure = content->exposure};
+               .shown = content->shown};
     run(j, write_content, cancellable, done, data);
 }
 

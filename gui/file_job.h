@@ -7,6 +7,7 @@
  */
 #pragma once
 
+#include "display.h"
 #include "held.h"
 
 #include <gio/gio.h>
@@ -16,7 +17,8 @@
  * with a view. Copied or held. */
 typedef struct file_content {
     held_picture *picture;
-    float exposure; /**< stops, for formats of eight bits */
+    display_options shown; /**< how: for formats of eight bits, which hold what is seen;
+                              those of floats hold the light itself */
     const char *text;
     const char *scene; /**< path */
     NephCamera camera; /**< of the scene */

@@ -71,7 +71,7 @@ static void save_to(const char *path, void *data)
 {
     window *w = data;
     const file_content content = {.picture = canvas_picture(w->canvas),
-                                  .exposure = canvas_options(w->canvas)->exposure};
+                                  .shown = *canvas_options(w->canvas)};
     if (content.picture)
         save(w, path, &content);
 }

@@ -314,6 +314,59 @@ static void test_save(void)
     view_close(w);
 }
 
+/* A file of eight bits is what the window shows: its exposure, its curve, its layer, its
+   false colours; one of floats is the light itself. */
+static void test_save_as_shown(void)
+{
+    static const display_options ways[] = {
+        {.gamma = 2.2f, .mark_bad = true},
+        {.exposure = -1.5f, .curve = TONE_FILMIC},
+        {.exposure = 1.0f, .curve = TONE_REINHARD},
+        {.curve = TONE_GAMMA, .gamma = 1.4f},
+        {.curve = TONE_LINEAR},
+        {.false_colour = true},
+        {.layer = "normal"},
+        {.layer = "depth", .exposure = -2.0f},
+    };
+    g_autofree char *path = view_write("shown.pbrt", view_scene);
+    g_autofree char *png = g_build_filename(view_folder(), "shown.PNG", NULL);
+    g_autofree char *pfm = g_build_filename(view_folder(), "shown.pfm", NULL);
+    window *w = open_scene(path);
+    view_wait(view_is_done, w);
+    const NephImage *light = canvas_picture(w->canvas)->image;
+    for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
+        canvas_set_options(w->canvas, &ways[i]);
+        gtk_widget_activate_action(GTK_WIDGET(w->gtk), "win.save-picture-as", "s", png);
+        view_wait_for_word(w, "Saved");
+        cairo_surface_t *shown = display_surface(light, &ways[i]);
+        GdkPixbuf *saved = gdk_pixbuf_new_from_file(png, NULL);
+        g_assert_cmpint(gdk_pixbuf_get_width(saved), ==, 24);
+        for (int y = 0; y < 16; y++)
+            for (int x = 0; x < 24; x++) {
+                const guint8 *at = gdk_pixbuf_read_pixels(saved) +
+                                   y * gdk_pixbuf_get_rowstride(saved) +
+                                   x * gdk_pixbuf_get_n_channels(saved);
+                uint32_t seen;
+                memcpy(&seen,
+                       cairo_image_surface_get_data(shown) +
+                           y * cairo_image_surface_get_stride(shown) + 4 * x,
+                       sizeof seen);
+                g_assert_cmphex((uint32_t)at[0] << 16 | (uint32_t)at[1] << 8 | at[2], ==,
+                                seen & 0xffffff);
+            }
+        cairo_surface_destroy(shown);
+        g_object_unref(saved);
+    }
+    canvas_set_options(w->canvas, &ways[1]);
+    gtk_widget_activate_action(GTK_WIDGET(w->gtk), "win.save-picture-as", "s", pfm);
+    view_wait_for_word(w, "Saved");
+    g_autoptr(NephImage) raw = neph_image_read(pfm, NULL);
+    NephImageDifference d;
+    g_assert_true(neph_image_compare(raw, light, &d, NULL));
+    g_assert_cmpfloat(d.rmse, <, 1e-9);
+    view_close(w);
+}
+
 /* A window that closes while its picture is written leaves a whole file. */
 static void test_save_and_close(void)
 {
@@ -435,6 +488,7 @@ int main(int argc, char **argv)
     view_add_test("/view/search", test_search);
     view_add_test("/view/pause-and-stop", test_pause_and_stop);
     view_add_test("/view/save", test_save);
+    view_add_test("/view/save-as-shown", test_save_as_shown);
     view_add_test("/view/save-and-close", test_save_and_close);
     view_add_test("/view/close-while-rendering", test_close_while_rendering);
     view_add_test("/view/size", test_size);

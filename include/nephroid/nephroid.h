@@ -226,6 +226,10 @@ NEPH_API void neph_image_free(NephImage *image);
 /** @brief By the file's content: the formats written, TGA and BMP. Integer formats become
  * linear. NEPH_ERROR_INPUT; owned by caller. */
 NEPH_API NephImage *neph_image_read(const char *path, GError **error);
+/** @brief An image of R, G and B, three linear numbers a pixel, row 0 at the top; copied.
+ * NEPH_ERROR_INPUT if it has no size or one beyond all. Owned by caller. */
+NEPH_API NephImage *neph_image_new(int width, int height, const float *rgb,
+                                   GError **error);
 /** @brief By the name's extension: .exr (float, all layers), .png, .jpg, .hdr, .pfm.
  * Written to a temporary name and renamed. exposure: stops, for 8-bit formats. */
 NEPH_API bool neph_image_write(const NephImage *image, const char *path, float exposure,

@@ -4,6 +4,8 @@
 #include "image/arrange.h"
 #include "image/compare.h"
 
+#include <string.h>
+
 NephImage *neph_image_wrap(image *img)
 {
     if (!img)
@@ -24,6 +26,15 @@ void neph_image_free(NephImage *img)
 NephImage *neph_image_read(const char *path, GError **error)
 {
     return neph_image_wrap(image_read(path, NULL, error));
+}
+
+NephImage *neph_image_new(int width, int height, const float *rgb, GError **error)
+{
+    static const char *const names[] = {"R", "G", "B"};
+    image *made = image_new(width, height, 3, names, error);
+    if (made)
+        memcpy(made->pixels, rgb, 3 * sizeof *rgb * (size_t)width * (size_t)height);
+    return neph_image_wrap(made);
 }
 
 bool neph_image_write(const NephImage *img, const char *path, float exposure,
