@@ -305,6 +305,53 @@ static void test_sides_apart(void)
         }
 }
 
+/* Mean weight by class of draws of all lobes, once their class is settled. */
+static void mean_by_class(const drawing *d, int n, spectrum mean[2], float error[2])
+{
+    spectrum squares[2] = {{0}, {0}};
+    mean[0] = mean[1] = (spectrum){0};
+    for (int i = 0; i < n; i++) {
+        sampler s = sampler_make(12, (uint64_t)i);
+        bsdf_sample out;
+        float u_lobe = sampler_1d(&s);
+        vec2 u = sampler_2d(&s);
+        if (!bsdf_sample_direction(&d->b, d->wo, u_lobe, u, LOBE_ALL, d->mode, &out))
+            continue;
+        bsdf_settle_class(&d->b, d->wo, d->mode, sampler_1d(&s), &out);
+        if (out.lobe & LOBE_SPECULAR)
+            continue;
+        int class = (out.lobe & LOBE_DIFFUSE) ? 0 : 1;
+        mean[class] += out.weight / (float)n;
+        squares[class] += out.weight * out.weight / (float)n;
+    }
+    for (int k = 0; k < 2; k++)
+        error[k] = sqrtf(spectrum_max(squares[k] - mean[k] * mean[k]) / (float)n);
+}
+
+/* Of both classes, light that is said to go by one is what that one alone sends. */
+static void test_classes_apart(void)
+{
+    static const unsigned classes[2] = {LOBE_DIFFUSE, LOBE_GLOSSY};
+    for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++)
+        for (int k = 0; k < 4; k++) {
+            drawing d = {.b = make(&MODELS[m], k & 1 ? 0.3f : 0.0f, ALL_LANES),
+                         .mode = k & 2 ? TRANSPORT_IMPORTANCE : TRANSPORT_RADIANCE};
+            if (!bsdf_has_both(&d.b))
+                continue;
+            spectrum by_class[2];
+            float errors[2], error;
+            d.wo = world(&d.b, (float[]){20, 55, 60, 40}[k], 0.2f);
+            mean_by_class(&d, 20000, by_class, errors);
+            for (int c = 0; c < 2; c++) {
+                d.mask = classes[c] | LOBE_ANY_SIDE;
+                spectrum alone = mean_weight(&d, 20000, &error);
+                float slack = 5.5f * (errors[c] + error) + 1e-4f;
+                for (int i = 0; i < N_LANES; i++)
+                    g_assert_cmpfloat(fabsf(by_class[c][i] - alone[i]), <, slack);
+            }
+        }
+}
+
 /* The mean over dispersed samples of (weight, direction) is each lane's own truth. */
 static void test_dispersion(void)
 {
@@ -514,6 +561,7 @@ int main(int argc, char **argv)
     g_test_add_func("/bsdf/disagreeing-normals", test_disagreeing_normals);
     g_test_add_func("/bsdf/folded-energy", test_folded_energy);
     g_test_add_func("/bsdf/refractor", test_refractor);
+    g_test_add_func("/bsdf/classes-apart", test_classes_apart);
     g_test_add_func("/bsdf/phong-energy", test_phong_energy);
     zoo_open();
     int failed = g_test_run();

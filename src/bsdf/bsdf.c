@@ -149,6 +149,34 @@ bool bsdf_sample_direction(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigne
     return !spectrum_is_black(out->weight);
 }
 
+unsigned bsdf_choose_class(const bsdf *b, vec3 wo, vec3 wi, transport_mode mode, float u,
+                           spectrum *f)
+{
+    spectrum diffuse = bsdf_eval(b, wo, wi, LOBE_DIFFUSE | LOBE_ANY_SIDE, mode);
+    spectrum glossy = bsdf_eval(b, wo, wi, LOBE_GLOSSY | LOBE_ANY_SIDE, mode);
+    float d = spectrum_mean(diffuse), g = spectrum_mean(glossy);
+    *f = (spectrum){0};
+    if (!(d + g > 0.0f))
+        return 0;
+    bool first = u * (d + g) < d;
+    *f = first ? diffuse * ((d + g) / d) : glossy * ((d + g) / g);
+    return first ? LOBE_DIFFUSE : LOBE_GLOSSY;
+}
+
+void bsdf_settle_class(const bsdf *b, vec3 wo, transport_mode mode, float u,
+                       bsdf_sample *drawn)
+{
+    bool is_dispersed = drawn->lane != b->lane; /* the weight has one lane of f */
+    spectrum f;
+    if (!bsdf_has_both(b) || (drawn->lobe & LOBE_SPECULAR) || is_dispersed)
+        return;
+    unsigned class = bsdf_choose_class(b, wo, drawn->wi, mode, u, &f);
+    if (!class)
+        return;
+    drawn->weight = f * (bsdf_cosine(b, drawn->wi) / drawn->pdf);
+    drawn->lobe = class | (drawn->lobe & LOBE_ANY_SIDE);
+}
+
 spectrum bsdf_albedo(const bsdf *b, vec3 wo, unsigned lobes)
 {
     local_direction o;

@@ -90,6 +90,27 @@ float bsdf_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes, transport_mode m
 bool bsdf_sample_direction(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned lobes,
                            transport_mode mode, bsdf_sample *out);
 
+/** @brief True if light may go by a DIFFUSE and by a GLOSSY lobe from one direction to
+ * another. */
+static inline bool bsdf_has_both(const bsdf *b)
+{
+    return (b->lobes & LOBE_DIFFUSE) && (b->lobes & LOBE_GLOSSY);
+}
+
+/** @brief Chooses the class of lobes by which light goes from wi to wo, in proportion to
+ * what each sends on: the one that drew a direction says little of it, as another may
+ * send more there. Light of a class is then that of its lobes alone.
+ *  @param u uniform in [0,1)
+ *  @param f gets bsdf_eval of that class over the probability of choosing it
+ *  @return LOBE_DIFFUSE or LOBE_GLOSSY; 0 if neither sends any */
+unsigned bsdf_choose_class(const bsdf *b, vec3 wo, vec3 wi, transport_mode mode, float u,
+                           spectrum *f);
+
+/** @brief Does so for a direction that was drawn of all lobes and is not specular: its
+ * weight and lobe become those of the class. */
+void bsdf_settle_class(const bsdf *b, vec3 wo, transport_mode mode, float u,
+                       bsdf_sample *drawn);
+
 /** @brief |cos| between direction wi and the shading normal, by which light from there
  * counts. */
 static inline float bsdf_cosine(const bsdf *b, vec3 wi)

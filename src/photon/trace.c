@@ -262,6 +262,9 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
     bsdf_sample next;
     bool scattered = bsdf_sample_direction(b, -path->ray.direction, u.lobe, u.direction,
                                            lobes, TRANSPORT_IMPORTANCE, &next);
+    if (scattered && lobes == LOBE_ALL && bsdf_has_both(b))
+        bsdf_settle_class(b, -path->ray.direction, TRANSPORT_IMPORTANCE,
+                          sampler_1d(&path->random), &next);
     spectrum flux = scattered ? path->flux * next.weight : (spectrum){0};
     if (path->out && !spectrum_is_finite(flux))
         path->out->of.n_not_finite++;

@@ -250,6 +250,9 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     if (!bsdf_sample_direction(b, -path->ray.direction, u_lobe, u, LOBE_ALL,
                                TRANSPORT_RADIANCE, &next))
         return false;
+    if (bsdf_has_both(b))
+        bsdf_settle_class(b, -path->ray.direction, TRANSPORT_RADIANCE,
+                          sampler_1d(walk->random), &next);
     note_density(walk, path, hit, b, &next);
     path->looked = path_looks(walk, path, b);
     path->beta *= next.weight;
@@ -258,7 +261,7 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     path->pdf = (next.lobe & LOBE_SPECULAR) ? 0.0f : next.pdf;
     path->from = hit->p;
     path->every_light = samples_every_light(path);
-    path->by_either = path->looked > 0.0f && path_has_both(b);
+    path->by_either = path->looked > 0.0f && bsdf_has_both(b);
     path->ray = hit_ray(hit, next.wi);
     camera_path_count(path, next.lobe);
     if (path->bounces < ROULETTE_BOUNCES)

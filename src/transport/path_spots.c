@@ -80,7 +80,7 @@ static bool look_at_spot(path_walk *walk, const camera_path *path, const surface
         return false;
     out->pdf_scatter = bsdf_pdf(b, wo, out->wi, LOBE_ALL, TRANSPORT_RADIANCE);
     if (!(out->pdf_scatter > 0.0f) || !meet_surface(walk, path, hit, out) ||
-        !is_seen_alike(path_has_both(b), &out->bsdf) ||
+        !is_seen_alike(bsdf_has_both(b), &out->bsdf) ||
         !photon_spots_landed(spots, spot, hit->p, out->wi, out->hit.p))
         return false;
     out->pdf = photon_spots_pdf(spots, hit->p, out->wi, out->hit.p,
@@ -95,15 +95,13 @@ static camera_path path_to(const camera_path *path, const look *seen, const bsdf
 {
     const vec3 wo = -path->ray.direction;
     camera_path to = *path;
-    spectrum diffuse = bsdf_eval(b, wo, seen->wi, LOBE_GATHERED, TRANSPORT_RADIANCE);
-    spectrum glossy =
-        bsdf_eval(b, wo, seen->wi, LOBE_GLOSSY | LOBE_ANY_SIDE, TRANSPORT_RADIANCE);
-    float d = spectrum_mean(diffuse), g = spectrum_mean(glossy);
+    spectrum f;
+    unsigned lobe = bsdf_choose_class(b, wo, seen->wi, TRANSPORT_RADIANCE, u, &f);
     float cosine = fabsf(dot3(seen->wi, b->shading.n));
-    to.beta *= (diffuse + glossy) * seen->transmittance * (cosine / seen->pdf);
+    to.beta *= f * seen->transmittance * (cosine / seen->pdf);
     to.ray.direction = seen->wi;
-    to.by_either = path_has_both(b);
-    camera_path_count(&to, u * (d + g) < d ? LOBE_DIFFUSE : LOBE_GLOSSY);
+    to.by_either = bsdf_has_both(b);
+    camera_path_count(&to, lobe);
     return to;
 }
 

@@ -71,12 +71,6 @@ bool path_meets_medium(path_walk *walk, camera_path *path, float length, surface
  * has come. */
 float path_looks(const path_walk *walk, const camera_path *path, const bsdf *b);
 
-/** @brief True if paths may leave the surface by a diffuse and by a glossy lobe. */
-static inline bool path_has_both(const bsdf *b)
-{
-    return (b->lobes & LOBE_DIFFUSE) && (b->lobes & LOBE_GLOSSY);
-}
-
 /** @brief Adds what is seen of a bright spot that is in sight of the surface. */
 void path_look_at_spots(path_walk *walk, const camera_path *path, const surface_hit *hit,
                         const bsdf *b);

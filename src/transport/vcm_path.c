@@ -40,7 +40,7 @@ bool vcm_visible(const scene *s, const surface_hit *from, vec3 direction, float 
     return !scene_occluded(s, &r);
 }
 
-/* The bsdf that samples: v's own, or that of the lane which the path has kept. */
+/* By the bsdf that samples: v's own, or that of the lane which the path has kept. */
 static bool sample_direction(const vcm_pass *pass, const vcm_walk *walk,
                              const vcm_vertex *v, unsigned lobes, sampler *random,
                              bsdf_sample *out)
@@ -48,11 +48,16 @@ static bool sample_direction(const vcm_pass *pass, const vcm_walk *walk,
     static const bsdf_options options = {0};
     float u_lobe = sampler_1d(random);
     vec2 u = sampler_2d(random);
-    if (walk->lane == ALL_LANES)
-        return bsdf_sample_direction(&v->bsdf, v->wo, u_lobe, u, lobes, walk->mode, out);
     bsdf one_lane;
-    return scene_bsdf(pass->scene, v->hit, &pass->w, walk->lane, &options, &one_lane) &&
-           bsdf_sample_direction(&one_lane, v->wo, u_lobe, u, lobes, walk->mode, out);
+    const bsdf *b = walk->lane == ALL_LANES ? &v->bsdf : &one_lane;
+    if (b == &one_lane &&
+        !scene_bsdf(pass->scene, v->hit, &pass->w, walk->lane, &options, &one_lane))
+        return false;
+    if (!bsdf_sample_direction(b, v->wo, u_lobe, u, lobes, walk->mode, out))
+        return false;
+    if (lobes == LOBE_ALL && bsdf_has_both(b))
+        bsdf_settle_class(b, v->wo, walk->mode, sampler_1d(random), out);
+    return true;
 }
 
 bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsigned lobes,
