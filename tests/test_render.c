@@ -89,6 +89,23 @@ static void test_noise_is_reached(void)
     g_assert_cmpfloat(st.noise, >, 0.03);
 }
 
+/* Short renders, so that little evens out, that are nearly all gathering. */
+static void test_no_part_takes_longer_than_the_whole(void)
+{
+    g_autoptr(scene) s = scene_of(ROOM);
+    for (int i = 0; i < 30; i++) {
+        g_autoptr(render) r = render_of(
+            s, "photons=3000 radius=1 spp=1 passes=1 direct_illumination=off threads=1");
+        g_assert_true(render_run(r, NULL, NULL, NULL));
+        const render_statistics st = render_get_statistics(r);
+        double parts = st.time_prepare + st.time_trace + st.time_build + st.time_camera;
+        g_test_message("gather %g of camera %g", st.time_gather, st.time_camera);
+        g_assert_cmpfloat(st.time_gather, >, 0.0);
+        g_assert_cmpfloat(st.time_gather, <=, st.time_camera);
+        g_assert_cmpfloat(parts, <=, st.time_total + 1e-9);
+    }
+}
+
 /* ---- The same bits ---- */
 
 typedef struct interruption {
@@ -561,6 +578,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/render/stop/rules", test_rules);
     g_test_add_func("/render/stop/fraction", test_fraction);
+    g_test_add_func("/render/parts-of-time", test_no_part_takes_longer_than_the_whole);
     g_test_add_func("/render/stop/time", test_time_is_kept);
     g_test_add_func("/render/stop/noise", test_noise_is_reached);
     g_test_add_func("/render/bits/stopping", test_stopping_changes_nothing);

@@ -2,7 +2,10 @@
  * Whole renders against what must hold: furnaces, path tracing, symmetry of threads and
  * scale.
  */
+#include "photon/direction.h"
 #include "rooms.h"
+#include "bsdf/bsdf_models.h"
+#include "transport/photonmap.h"
 
 /* ---- Furnace ---- */
 
@@ -83,6 +86,49 @@ static void test_kept_irradiance(void)
                        100 * (sum[1] / sum[0] - 1));
         g_assert_cmpfloat(fabs(sum[1] / sum[0] - 1), <, 0.006);
     }
+}
+
+/* What a white wall at a kept place would send out by the maps, times π. */
+static spectrum asked_irradiance(const photonmap_pass *pass, vec3 p, vec3 n,
+                                 transport_scratch *scratch)
+{
+    const surface_hit hit = {.p = p, .n_geom = n, .n = n, .instance = NO_INDEX};
+    bsdf white = {.shading = frame_from_normal(n), .n_geom = n, .lane = ALL_LANES};
+    bsdf_make_diffuse(&white, spectrum_fill(1.0f));
+    const shading_point at = {.hit = &hit, .bsdf = &white, .wo = n};
+    spectrum sum = {0};
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        sum += PI_F * photonmap_gather(pass, (photon_class)c, &at, 0, scratch);
+    return sum;
+}
+
+/* Where radii differ from place to place, irradiance is kept with the radius of its own,
+   as it is asked for there. */
+static void test_kept_with_own_radius(void)
+{
+    g_autoptr(scene) s = scene_of(DARK_PLACES("0"));
+    const transport_kind *kind = transport_find(INTEGRATOR_PHOTONMAP);
+    transport_plan plan = {.scene = s};
+    plan.how = settings_with(s, "photons=20000 final_gather=on edges=off threads=2");
+    transport_counts counts = {0};
+    transport_scratch scratch = {0};
+    g_assert_true(kind->prepare(&plan, NULL, NULL));
+    photonmap_pass *pass = kind->begin_pass(&plan, 0, NULL, &counts, NULL);
+    const photon_store *kept = photon_map_store(pass->irradiance[0]);
+    double off = 0.0, all = 0.0;
+    for (size_t i = 0; i < kept->n; i++) {
+        vec3 p = vec3_make(kept->x[i], kept->y[i], kept->z[i]),
+             n = direction_unpack(kept->wi[i]);
+        double asked = (double)spectrum_mean(asked_irradiance(pass, p, n, &scratch));
+        off += fabs((double)spectrum_mean(kept->flux[i]) - asked);
+        all += asked;
+    }
+    g_test_message("%zu places, off by %g of all", kept->n, off / all);
+    g_assert_cmpuint(kept->n, >, 1000);
+    g_assert_cmpfloat(off / all, <, 1e-4);
+    transport_scratch_clear(&scratch);
+    kind->end_pass(pass);
+    transport_plan_clear(&plan);
 }
 
 static void test_furnace_by_path(void)
@@ -264,6 +310,7 @@ int main(int argc, char **argv)
     g_test_add_func("/transport/furnace/final-gather", test_furnace_by_final_gather);
     g_test_add_func("/transport/furnace/within-glass", test_furnace_gathers_within_glass);
     g_test_add_func("/transport/kept-irradiance", test_kept_irradiance);
+    g_test_add_func("/transport/kept-with-own-radius", test_kept_with_own_radius);
     g_test_add_func("/transport/furnace/path", test_furnace_by_path);
     for (size_t i = 0; i < G_N_ELEMENTS(furnishings); i++) {
         g_autofree char *name =

@@ -6,7 +6,10 @@
 
 #include <string.h>
 
-enum { SAMPLES_BETWEEN_BEATS = 64 };
+enum {
+    SAMPLES_BETWEEN_BEATS = 64,
+    TIMED_SHARE = 16, /* one camera sample in so many is timed: the clock is not free */
+};
 
 /* The caller hears of progress no more often than this, s. */
 #define BEAT_INTERVAL 0.1
@@ -115,6 +118,12 @@ static void beat(void *data)
 
 /* ---- One pass ---- */
 
+/* Which camera samples of a thread are timed. */
+typedef struct sample_clock {
+    uint64_t n_samples;
+    double time; /* s, of those that were timed */
+} sample_clock;
+
 /* The camera's half of a pass, shared by all threads. */
 typedef struct camera_loop {
     render *render;
@@ -125,6 +134,7 @@ typedef struct camera_loop {
     uint32_t index;
     int n_tiles_x;
     transport_scratch *scratch; /* one a thread */
+    sample_clock *clocks;       /* likewise */
     spectrum *groups; /* 2 n_groups a thread: of a sample, and their sums over a pixel */
 } camera_loop;
 
@@ -168,6 +178,20 @@ static pixel_look look_at(const scene *s, sampler *random)
     return look;
 }
 
+/* What a ray from the eye finds. Within a timed sample all gathers are: so their part of
+   it is never more than the whole. */
+static void find_radiance(camera_loop *loop, const ray *from_eye, sampler *random,
+                          unsigned thread, radiance_sample *sample)
+{
+    transport_scratch *scratch = &loop->scratch[thread];
+    sample_clock *clock = &loop->clocks[thread];
+    scratch->timed = clock->n_samples++ % TIMED_SHARE == 0;
+    double start = scratch->timed ? seconds() : 0.0;
+    loop->render->transport->radiance(loop->pass, from_eye, random, scratch, sample);
+    if (scratch->timed)
+        clock->time += seconds() - start;
+}
+
 /* One camera sample of a pixel, random already told which. */
 static void render_sample(camera_loop *loop, vec2 pixel, sampler *random, unsigned thread,
                           pixel_sums *sums, const group_sums *groups)
@@ -181,8 +205,7 @@ static void render_sample(camera_loop *loop, vec2 pixel, sampler *random, unsign
     radiance_sample sample = {.groups = groups->sample};
     for (size_t k = 0; k < groups->n; k++)
         groups->sample[k] = (spectrum){0};
-    r->transport->radiance(loop->pass, &from_eye, random, &loop->scratch[thread],
-                           &sample);
+    find_radiance(loop, &from_eye, random, thread, &sample);
     gbuffer_turn(s, from_eye.time, &sample);
     float dimmed = film_add(&sums->film, &loop->film_pass, &sample, weight);
     const gbuffer_view view = {raster, look.u_lens, from_eye, weight, dimmed};
@@ -235,17 +258,25 @@ static void render_tile(size_t begin, size_t end, unsigned thread, void *data)
         atomic_fetch_add(&r->tiles_done, 1);
 }
 
-static bool collect(render *r, transport_scratch *scratch, GError **error)
+/* @param time s, that the camera looked */
+static bool collect(camera_loop *loop, double time, GError **error)
 {
     bool failed = false;
+    render *r = loop->render;
     render_statistics *st = &r->statistics;
+    double timed = 0.0, gathering = 0.0;
     for (unsigned i = 0; i < r->n_threads; i++) {
-        st->camera_rays += scratch[i].camera_rays;
-        st->shadow_rays += scratch[i].shadow_rays;
-        st->n_not_finite += scratch[i].n_not_finite;
-        st->time_gather += scratch[i].time_gather / r->n_threads;
-        failed |= scratch[i].estimate.failed;
+        const transport_scratch *scratch = &loop->scratch[i];
+        st->camera_rays += scratch->camera_rays;
+        st->shadow_rays += scratch->shadow_rays;
+        st->n_not_finite += scratch->n_not_finite;
+        timed += loop->clocks[i].time;
+        gathering += scratch->time_gather;
+        failed |= scratch->estimate.failed;
     }
+    st->time_camera += time;
+    if (timed > 0.0)
+        st->time_gather += time * (gathering / timed);
     if (failed)
         error_set(error, ERROR_FAILED, "out of memory for radiance estimates");
     return !failed;
@@ -272,6 +303,7 @@ static bool open_loop(camera_loop *loop, GError **error)
     size_t n_groups = (size_t)r->film.n_groups;
     loop->scratch =
         big_alloc(r->n_threads, sizeof *loop->scratch, "thread scratch", error);
+    loop->clocks = g_new0(sample_clock, r->n_threads);
     bool ok = loop->scratch != NULL;
     for (unsigned i = 0; i < r->n_threads && ok; i++)
         ok = transport_scratch_init(&loop->scratch[i], n_groups, error);
@@ -289,6 +321,7 @@ static void close_loop(camera_loop *loop)
         transport_scratch_clear(&loop->scratch[i]);
     big_free(loop->scratch);
     big_free(loop->groups);
+    g_free(loop->clocks);
 }
 
 /* Nobody works on the film just now, and of the first pass there is a coarse picture. */
@@ -332,8 +365,7 @@ static bool look(render *r, const void *pass, GError **error)
         (size_t)loop.n_tiles_x * (size_t)((f->height + FILM_TILE - 1) / FILM_TILE);
     bool done = ready && render_tiles(&loop);
     r->n_tiles = 0;
-    r->statistics.time_camera += seconds() - start;
-    bool collected = ready && collect(r, loop.scratch, error);
+    bool collected = ready && collect(&loop, seconds() - start, error);
     close_loop(&loop);
     if (collected && !done)
         error_set(error, ERROR_CANCELLED, "cancelled");

@@ -46,7 +46,8 @@ static spectrum class_irradiance(const map_place *at, int c, estimate_scratch *s
 {
     const photonmap_pass *pass = at->pass;
     const photon_map *map = pass->maps[at->slice][c];
-    estimate_options options = pass->estimates[c];
+    estimate_options options =
+        photonmap_options_at(pass, (photon_class)c, at->p, &scratch->hits);
     options.scene = pass->how->edges ? pass->scene : NULL;
     options.time = photonmap_slice_time(pass, at->slice);
     if (map)
@@ -156,12 +157,14 @@ static map_place place_of(const photonmap_pass *pass, const shading_point *at)
     return place;
 }
 
-static float kept_reach(const photonmap_pass *pass)
+static float kept_reach(const map_place *at, photon_hits *hits)
 {
     float least = INFINITY;
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        if (c != PHOTON_CAUSTIC && pass->plan->n_photons[c] > 0)
-            least = minf(least, pass->estimates[c].radius);
+        if (c != PHOTON_CAUSTIC && at->pass->plan->n_photons[c] > 0)
+            least =
+                minf(least,
+                     photonmap_options_at(at->pass, (photon_class)c, at->p, hits).radius);
     }
     return KEPT_REACH * least;
 }
@@ -176,8 +179,8 @@ static bool kept_irradiance(const map_place *at, estimate_scratch *scratch,
     photon_hits *hits = &scratch->hits;
     const photon_map *kept = pass->irradiance[at->slice];
     const photon_store *store = photon_map_store(kept);
-    float best = INFINITY;
-    if (!photon_map_nearest(kept, at->p, NEAREST_KEPT, kept_reach(pass), &filter, hits))
+    float best = INFINITY, reach = kept_reach(at, hits);
+    if (!photon_map_nearest(kept, at->p, NEAREST_KEPT, reach, &filter, hits))
         scratch->failed = true;
     for (size_t i = 0; i < hits->n; i++) {
         size_t k = hits->index[i];

@@ -274,9 +274,6 @@ static const wavelengths *pass_wavelengths(const void *pass)
     return &((const photonmap_pass *)pass)->w;
 }
 
-/* One gather in so many is timed: the clock costs as much as a small gather. */
-enum { TIMED_SHARE = 16 };
-
 #define LARGEST_OVER_TYPICAL 6.0f
 
 /* A place further from its radius' own place than that radius reaches is emptier still.
@@ -294,6 +291,14 @@ static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
     float shrunk = typical / (float)pass->plan->radius[c];
     return minf(maxf(r, sqrtf(hits->distance2[0])) * shrunk,
                 LARGEST_OVER_TYPICAL * typical);
+}
+
+estimate_options photonmap_options_at(const photonmap_pass *pass, photon_class c, vec3 p,
+                                      photon_hits *hits)
+{
+    estimate_options options = pass->estimates[c];
+    options.radius = local_radius(pass, c, p, hits);
+    return options;
 }
 
 /* Turns a bsdf with the surface that it is of. */
@@ -349,16 +354,15 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
             scratch->estimate.groups[i] = (spectrum){0};
         return (spectrum){0};
     }
-    estimate_options options = pass->estimates[c];
-    options.radius = local_radius(pass, c, at->hit->p, &scratch->estimate.hits);
+    estimate_options options =
+        photonmap_options_at(pass, c, at->hit->p, &scratch->estimate.hits);
     options.scene = pass->how->edges && !at->blurred ? pass->scene : NULL;
     options.time = photonmap_slice_time(pass, slice);
     options.delta_lobes = delta_lobes ? delta_lobes | LOBE_ANY_SIDE : 0;
-    bool timed = scratch->n_gathers++ % TIMED_SHARE == 0;
-    double start = timed ? seconds() : 0.0;
+    double start = scratch->timed ? seconds() : 0.0;
     spectrum radiance = gather_at(pass, map, at, &options, scratch);
-    if (timed)
-        scratch->time_gather += TIMED_SHARE * (seconds() - start);
+    if (scratch->timed)
+        scratch->time_gather += seconds() - start;
     return radiance;
 }
 

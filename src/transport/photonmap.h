@@ -45,6 +45,10 @@ float caustic_discs(const transport_plan *plan, double radius);
 estimate_options photonmap_estimate_options(const settings *how, photon_class c,
                                             double radius);
 
+/** @brief The same in a pass at a place, whose radius is its own. @param hits scratch */
+estimate_options photonmap_options_at(const photonmap_pass *pass, photon_class c, vec3 p,
+                                      photon_hits *hits);
+
 /** @brief Radiance toward wo from the photons of one class around the hit. */
 spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
                           const shading_point *at, unsigned delta_lobes,

@@ -111,8 +111,9 @@ void transport_plan_clear(transport_plan *plan);
 /** @brief One thread's scratch, zero-initialised; counts are added up after the pass. */
 typedef struct transport_scratch {
     estimate_scratch estimate;
-    uint64_t camera_rays, shadow_rays, n_gathers, n_not_finite;
-    double time_gather; /**< s, estimated from a sample of the gathers */
+    uint64_t camera_rays, shadow_rays, n_not_finite;
+    bool timed;         /**< the camera sample under way is: its gathers are too */
+    double time_gather; /**< s, of gathers in samples that were timed */
     spectrum *gathered; /**< final_gather's result by light groups; owned */
 } transport_scratch;
 

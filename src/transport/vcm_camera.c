@@ -273,7 +273,6 @@ static void merge(camera_walk *c, const vcm_vertex *v)
     const kernel kappa = {(kernel_choice)how->class_kernel[PHOTON_INDIRECT],
                           (float)how->class_cone_k[PHOTON_INDIRECT]};
     float r2 = square(pass->radius);
-    c->scratch->n_gathers++;
     float area = vcm_find_vertices(pass, v, &kappa, c->walk.counts.n_diffuse == 0,
                                    &c->scratch->estimate);
     const photon_store *store = photon_map_store(pass->map);
