@@ -25,7 +25,7 @@ typedef struct feature_case {
         {"Film", kind, SMALL "|| 'float iso' 200"},                                      \
         {"Film", kind, SMALL "|| 'float whitebalance' 5000"},                            \
         {"Film", kind, SMALL "|| 'float maxcomponentvalue' 0.05"},                       \
-        {"Film", kind, SMALL "|| 'string sensor' 'cie1931'"},                            \
+        {"Film", kind, SMALL "|| 'string sensor' 'nikon_d850'"},                         \
         {"Film", kind, SMALL "|| 'float diagonal' 20"},                                  \
     {                                                                                    \
         "Film", kind, SMALL "|| 'bool savefp16' true"                                    \
@@ -158,6 +158,10 @@ static const feature_case feature_cases[] = {
     FILM("rgb", ".png"),
     FILM("gbuffer", ".exr"),
     {"Film", "gbuffer", SMALL "|| 'string coordinatesystem' 'world'"},
+    FILM("spectral", ".exr"),
+    {"Film", "spectral", SMALL "|| 'integer nbuckets' 9"},
+    {"Film", "spectral", SMALL "|| 'float lambdamin' 400"},
+    {"Film", "spectral", SMALL "|| 'float lambdamax' 700"},
     RADII("box"),
     RADII("gaussian"),
     {"PixelFilter", "gaussian", "'float sigma' 0.3"},

@@ -109,9 +109,6 @@ static void test_kinds_and_parameters(void)
            "%s:4:11: expected \"shape\", \"light\", \"material\", \"medium\" or "
            "\"texture\", "
            "found \"shapes\"");
-    refuse("ColorSpace \"cmyk\"\n" WORLD,
-           "%s:1:12: expected \"srgb\", \"rec2020\", \"dci-p3\" or \"aces2065-1\", found "
-           "\"cmyk\"");
 }
 
 static void test_what_is_not_supported(void)
@@ -123,8 +120,6 @@ static void test_what_is_not_supported(void)
            "%s:8:13: object \"leaf\" is there already");
     refuse(WORLD "ObjectBegin \"lamp\"\nAreaLightSource \"diffuse\"\nShape \"sphere\"\n"
                  "ObjectInstance \"lamp\"\n",
-           "%s:5:1: a shape that moves or is part of an object can not shine, in pbrt "
-           "too\n"
            "%s:7:1: expected ObjectEnd before ObjectInstance, found none\n"
            "%s:4:1: expected AttributeEnd for this AttributeBegin, found the end of the "
            "file\n"
@@ -132,7 +127,6 @@ static void test_what_is_not_supported(void)
     refuse("TransformTimes 1 1\n" WORLD "ActiveTransform EndTime Scale 2 2 2\n"
            "LightSource \"point\"\nActiveTransform Never\n",
            "%s:1:1: expected a start time before the end time, found TransformTimes 1 1\n"
-           "%s:6:1: a light can not move, found a transform that does\n"
            "%s:7:17: expected All, StartTime or EndTime, found 'Never'");
     refuse("Option \"bool disabletexturefiltering\" false \"bool forcediffuse\" "
            "true\n" WORLD,
@@ -141,19 +135,13 @@ static void test_what_is_not_supported(void)
 
 static void test_transforms(void)
 {
-    refuse(WORLD "Scale 1 0 1\n",
-           "%s:4:1: expected factors other than 0, found Scale 1 0 1");
-    refuse(WORLD "Rotate 30 0 0 0\n",
-           "%s:4:1: expected an axis with a direction, found 0 0 0");
+    refuse("Scale 1 0 1\n" WORLD,
+           "%s:2:1: expected a transform that can be inverted, found one that flattens");
     refuse(WORLD "LookAt 0 0 0  0 0 0  0 1 0\n",
            "%s:4:1: expected an eye apart from the target and an up direction across the "
            "view, found neither or one of them missing");
-    refuse(WORLD "Transform [1 0 0 0  2 0 0 0  0 0 1 0  0 0 0 1]\n",
-           "%s:4:1: expected a matrix that can be inverted, found a singular one");
-    refuse(WORLD "CoordSysTransform \"moon\"\n",
-           "%s:4:19: expected the name of a coordinate system, found \"moon\"");
     refuse(WORLD "Scale 1e-200 1 1 Scale 1e-200 1 1\n",
-           "%s:4:18: expected a transform that can be inverted, found one out of range");
+           "%s:4:18: expected a transform of finite numbers, found one out of range");
 }
 
 static void test_order(void)
@@ -164,8 +152,6 @@ static void test_order(void)
     refuse(WORLD CAMERA, "%s:4:1: expected Camera before WorldBegin, found it after");
     refuse("WorldBegin\n" LIGHT,
            "%s:1:1: expected a Camera before WorldBegin, found none");
-    refuse(WORLD "AttributeEnd\n",
-           "%s:4:1: expected AttributeBegin before AttributeEnd, found none");
     refuse(WORLD "AttributeBegin\n",
            "%s:4:1: expected AttributeEnd for this AttributeBegin, found the end of the "
            "file");
@@ -222,10 +208,11 @@ static void test_includes(void)
 static void test_errors_are_collected(void)
 {
     refuse(CAMERA "WorldBegin\nShape \"sphere\" \"float radius\" x\nTranslate a\n"
-                  "Material \"diffuse\"\n" LIGHT "Rotate 1 0 0 0\n",
+                  "Material \"diffuse\"\n" LIGHT "LookAt 0 0 0 0 0 0 0 1 0\n",
            "%s:3:31: parameter 'radius': expected a number, found 'x'\n"
            "%s:4:11: expected a number, found 'a'\n"
-           "%s:7:1: expected an axis with a direction, found 0 0 0");
+           "%s:7:1: expected an eye apart from the target and an up direction across the "
+           "view, found neither or one of them missing");
     g_autoptr(GString) text = g_string_new(WORLD), want = g_string_new(NULL);
     for (int i = 0; i < 30; i++)
         g_string_append(text, "Wurst Identity\n");
@@ -303,7 +290,7 @@ static void test_meshes(void)
     refuse_mesh(PLY_HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1",
                 "%s:13:6: expected a number, found the end of the file");
     refuse_mesh(PLY_HEAD "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n",
-                "%s:11:3: expected a number, found 'nan'");
+                "%s: expected finite numbers, found y = nan of vertex 1");
     refuse_mesh(PLY_HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n",
                 "%s:13:8: expected a vertex from 0 to 2, found 7");
 }

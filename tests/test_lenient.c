@@ -109,40 +109,6 @@ static void test_wrong_media(void)
     }
 }
 
-static void test_lights_of_objects(void)
-{
-    g_autoptr(scene) s = refused_or_replaced(
-        HEAD "ObjectBegin \"lamp\"\nAreaLightSource \"diffuse\"\nShape \"sphere\"\n"
-             "ObjectEnd\nObjectInstance \"lamp\"\n",
-        "scene.pbrt:6:1: a shape that moves or is part of an object can not shine",
-        "6:1: a shape that moves or is part of an object does not shine");
-    g_assert_cmpuint(s->lights->len, ==, 1);
-    g_autoptr(scene) moving = refused_or_replaced(
-        HEAD "ActiveTransform EndTime Translate 1 0 0\nLightSource \"point\"\n",
-        "scene.pbrt:6:1: a light can not move",
-        "6:1: a light that moves stands still where it starts");
-    g_assert_cmpuint(moving->lights->len, ==, s->lights->len + 1);
-}
-
-static void test_films(void)
-{
-    g_autoptr(scene) sensor = refused_or_replaced(
-        "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 5 \"string "
-        "sensor\" \"canon_eos_100d\"\nCamera \"perspective\"\nWorldBegin\n"
-        "LightSource \"point\"\nShape \"sphere\"\n",
-        "sensor \"canon_eos_100d\" is not supported, \"cie1931\" is; --lenient takes "
-        "that",
-        "1:60: sensor \"canon_eos_100d\" becomes \"cie1931\"");
-    g_assert_cmpint(sensor->film.height, ==, 5);
-    g_autoptr(scene) spectral = refused_or_replaced(
-        "Film \"spectral\" \"integer xresolution\" 4 \"integer yresolution\" 5 \"integer "
-        "nbuckets\" 16\nCamera \"perspective\"\nWorldBegin\n"
-        "LightSource \"point\"\nShape \"sphere\"\n",
-        "scene.pbrt:1:1: film \"spectral\" is not supported; --lenient takes \"rgb\"",
-        "1:1: film \"spectral\" becomes \"rgb\"");
-    g_assert_cmpint(spectral->film.height, ==, 5);
-}
-
 static void test_textures(void)
 {
     static const char *const types[] = {"spectrum", "float"};
@@ -163,10 +129,8 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/lenient/materials", test_materials);
-    g_test_add_func("/lenient/films", test_films);
     g_test_add_func("/lenient/textures", test_textures);
     g_test_add_func("/lenient/media", test_media);
     g_test_add_func("/lenient/wrong-media", test_wrong_media);
-    g_test_add_func("/lenient/lights", test_lights_of_objects);
     return g_test_run();
 }

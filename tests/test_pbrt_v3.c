@@ -196,7 +196,8 @@ static void test_unknown_parameters(void)
     static const char *const texts[][2] = {
         {"Material \"matte\" \"float shine\" 2 " BALL,
          "'shine' of material 'diffuse' is left out"},
-        {"Shape \"sphere\" \"float shine\" 2\n", "'shine' of shape \"sphere\" is left out"},
+        {"Shape \"sphere\" \"float shine\" 2\n",
+         "'shine' of shape \"sphere\" is left out"},
         {"LightSource \"point\" \"float shine\" 2\n",
          "'shine' of light \"point\" is left out"},
         {"Texture \"t\" \"float\" \"constant\" \"float shine\" 2\n",

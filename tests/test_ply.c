@@ -281,7 +281,7 @@ static void test_broken_text(void)
     refuse_text(HEAD "0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n",
                 ":11:5: expected a number, found 'x'");
     refuse_text(HEAD "0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n",
-                ":11:5: expected a number, found 'nan'");
+                ": expected finite numbers, found z = nan of vertex 1");
     refuse_text(HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
                 ":13:8: expected a vertex from 0 to 2, found 3");
     refuse_text(HEAD "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n",

@@ -381,8 +381,8 @@ static params *integers_of(const char *name, const int *values, size_t n)
 static void test_bad_film_is_named(void)
 {
     const int sizes[3] = {0, 70000, -5}, bounds[4] = {5, 5, 0, 10};
-    const float crop[4] = {0, 0.5f, 0.7f, 1.5f};
-    const char *const sensor[1] = {"canon_eos_100d"};
+    const float crop[4] = {0, 0.5f, 1.2f, 1.5f};
+    const char *const sensor[1] = {"box_camera"};
     expect_film_error(integers_of("xresolution", &sizes[0], 1), "rgb", "xresolution");
     expect_film_error(integers_of("yresolution", &sizes[1], 1), "rgb", "yresolution");
     expect_film_error(integers_of("yresolution", &sizes[2], 1), "rgb", "yresolution");
@@ -393,13 +393,12 @@ static void test_bad_film_is_named(void)
     expect_film_error(p, "rgb", "cropwindow");
     p = no_params();
     params_add_strings(p, here, PARAM_STRING, "sensor", sensor, 1, NULL);
-    expect_film_error(p, "rgb", "canon_eos_100d");
+    expect_film_error(p, "rgb", "box_camera");
     expect_film_error(one_number("iso", 0), "rgb", "iso");
     expect_film_error(one_number("whitebalance", 500), "rgb", "whitebalance");
     expect_film_error(one_number("maxcomponentvalue", 0), "rgb", "maxcomponentvalue");
     expect_film_error(one_number("exposuretime", 1), "rgb", "exposuretime");
-    expect_film_error(no_params(), "spectral", "spectral");
-    expect_film_error(no_params(), "spectral", "spectral");
+    expect_film_error(no_params(), "glass", "glass");
 }
 
 static void test_memory_refused(void)

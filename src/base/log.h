@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include <glib.h>
+#include "base/error.h"
 
 typedef enum log_level { LOG_NOTE, LOG_WARNING } log_level;
 
@@ -18,3 +18,6 @@ typedef struct log_sink {
  */
 void log_message(const log_sink *sink, log_level level, const char *format, ...)
     G_GNUC_PRINTF(3, 4);
+/** @brief The same of a place, which the line begins with as an error's does. */
+void log_at(const log_sink *sink, log_level level, source_place place, const char *format,
+            ...) G_GNUC_PRINTF(4, 5);

@@ -136,9 +136,10 @@ static const feature_note notes[] = {
     {"Camera", "orthographic", "approximated",
      "every place on the screen has a lens of its own, where pbrt's rays leave one lens",
      NULL, NULL},
-    {"Film", "rgb", "rendered", "of sensors `cie1931` only", NULL, NULL},
+    {"Film", "rgb", "rendered", "all sensors see as `cie1931`", NULL, NULL},
+    {"Film", "spectral", "approximated", "becomes `rgb`", NULL, NULL},
     {"Film", "gbuffer", "rendered",
-     "of sensors `cie1931` only; `dzdx` and `dzdy` are for whole pixels, where pbrt's "
+     "all sensors see as `cie1931`; `dzdx` and `dzdy` are for whole pixels, where pbrt's "
      "shrink with the number of "
      "samples; the variances are of the film's colours",
      NULL, NULL},

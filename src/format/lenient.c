@@ -108,55 +108,6 @@ bool lenient_medium(const build_context *context, const char *name, const char *
                             name, kind);
 }
 
-/* ---- Films ---- */
-
-/* A sensor of a camera, whose sensitivities are not here. */
-static const param *strange_sensor(const params *p)
-{
-    const param *q = params_find(p, "sensor");
-    bool known = !q || q->type != PARAM_STRING || q->n != 1 ||
-                 strcmp(q->strings[0], "cie1931") == 0;
-    return known ? NULL : q;
-}
-
-static bool is_of_spectra(const char *name)
-{
-    static const char *const names[] = {"nbuckets", "lambdamin", "lambdamax", NULL};
-    return g_strv_contains(names, name);
-}
-
-params *lenient_film(const build_context *context, const char **kind, const params *p,
-                     GError **error)
-{
-    const param *sensor = strange_sensor(p);
-    bool is_spectral = strcmp(*kind, "spectral") == 0;
-    if (!context->lenient && is_spectral)
-        error_at(error, p->place,
-                 "film \"spectral\" is not supported; --lenient takes \"rgb\" for it");
-    else if (!context->lenient && sensor)
-        error_at(error, sensor->place,
-                 "sensor \"%s\" is not supported, \"cie1931\" is; --lenient takes that "
-                 "for it",
-                 sensor->strings[0]);
-    if (!context->lenient || !(is_spectral || sensor))
-        return NULL;
-    g_autoptr(params) kept = params_new_like(p);
-    for (guint i = 0; i < p->list->len; i++) {
-        param *q = p->list->pdata[i];
-        bool leaves = q == sensor || (is_spectral && is_of_spectra(q->name));
-        q->used = true;
-        if (!leaves && !copy_param(kept, q, error))
-            return NULL;
-    }
-    if (sensor)
-        build_is_lenient(context, sensor->place, "sensor \"%s\" becomes \"cie1931\"",
-                         sensor->strings[0]);
-    if (is_spectral)
-        build_is_lenient(context, p->place, "film \"spectral\" becomes \"rgb\"");
-    *kind = is_spectral ? "rgb" : *kind;
-    return g_steal_pointer(&kept);
-}
-
 /* ---- Textures ---- */
 
 params *lenient_texture(const build_context *context, const char **kind, bool is_spectrum,

@@ -20,10 +20,6 @@ params *lenient_material(const build_context *context, const char **kind, const 
  * nothing is if the kind is another. */
 bool lenient_medium(const build_context *context, const char *name, const char *kind,
                     const params *p, GError **error);
-/** @brief The same as lenient_material for films: of spectra, or with the sensor of a
- * camera. */
-params *lenient_film(const build_context *context, const char **kind, const params *p,
-                     GError **error);
-/** @brief The same for textures: ptex. */
+/** @brief The same as lenient_material for textures: ptex. */
 params *lenient_texture(const build_context *context, const char **kind, bool is_spectrum,
                         const params *p, GError **error);

@@ -95,6 +95,15 @@ void pbrt_error(pbrt_parser *parser, source_place place, const char *format, ...
     pbrt_report(parser, error);
 }
 
+void pbrt_warning(const pbrt_parser *parser, source_place place, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    g_autofree char *text = g_strdup_vprintf(format, args);
+    va_end(args);
+    log_at(&parser->scene->build.log, LOG_WARNING, place, "%s", text);
+}
+
 bool pbrt_expected(pbrt_parser *parser, const char *what, const token *found)
 {
     g_autofree char *text = token_describe(found);

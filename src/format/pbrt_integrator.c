@@ -87,8 +87,7 @@ static void note(const pbrt_parser *parser, source_place place, const char *form
     va_start(args, format);
     g_autofree char *text = g_strdup_vprintf(format, args);
     va_end(args);
-    log_message(&parser->scene->build.log, LOG_NOTE, "%s:%d:%d: %s", place.file,
-                place.line, place.column, text);
+    log_at(&parser->scene->build.log, LOG_NOTE, place, "%s", text);
 }
 
 /** Sets a setting; a refusal is reported at the place. */

@@ -2,7 +2,6 @@
  * What stands before WorldBegin. pbrt lets film, camera, sampler ... come in any order,
  * so they are kept and given to the scene together.
  */
-#include "format/lenient.h"
 #include "format/pbrt_parser.h"
 
 #include "base/intern.h"
@@ -53,6 +52,9 @@ bool pbrt_camera(pbrt_parser *parser, source_place place)
 {
     if (!keep(parser, &parser->camera, V3_CAMERA, place))
         return false;
+    if (pbrt_is_flat(parser))
+        pbrt_error(parser, place,
+                   "expected a transform that can be inverted, found one that flattens");
     parser->camera.ctm = transform_inverse(&parser->state.ctm);
     parser->camera.ctm_end = transform_inverse(&parser->state.ctm_end);
     parser->around_camera = parser->state.outside;
@@ -97,10 +99,10 @@ bool pbrt_accelerator(pbrt_parser *parser, source_place place)
     else if (!params_known(p, what, kind->idle, NULL, &error))
         pbrt_report(parser, error);
     else
-        log_message(&parser->scene->build.log, LOG_NOTE,
-                    "%s:%d:%d: Accelerator '%s': rays are traced by Embree, which needs "
-                    "no parameters",
-                    at.file, at.line, at.column, name);
+        log_at(&parser->scene->build.log, LOG_NOTE, at,
+               "Accelerator '%s': rays are traced by Embree, which needs "
+               "no parameters",
+               name);
     return true;
 }
 
@@ -172,9 +174,8 @@ static void apply_option(pbrt_parser *parser, const params *p, const param *q)
     if (option && *option->parameters)
         apply_acting(parser, p, q);
     else if (option && *option->idle)
-        log_message(&parser->scene->build.log, LOG_NOTE,
-                    "%s:%d:%d: option '%s' does not change the image", q->place.file,
-                    q->place.line, q->place.column, q->name);
+        log_at(&parser->scene->build.log, LOG_NOTE, q->place,
+               "option '%s' does not change the image", q->name);
     else if (!option || !option->note || !is_off)
         pbrt_error(parser, q->place, "option '%s' is not supported", q->name);
 }
@@ -270,11 +271,8 @@ static void finish_film(pbrt_parser *parser, source_place place)
 {
     GError *error = NULL;
     const params *p = given_or_default(parser, &parser->film, "rgb", place);
-    const char *kind = parser->film.kind;
-    g_autoptr(params) replaced = lenient_film(&parser->scene->build, &kind, p, &error);
-    const params *given = replaced ? replaced : p;
-    if (!error && scene_set_film(parser->scene, kind, given, &error))
-        pbrt_check_used(parser, given, "Film", kind);
+    if (scene_set_film(parser->scene, parser->film.kind, p, &error))
+        pbrt_check_used(parser, p, "Film", parser->film.kind);
     else
         pbrt_report(parser, error);
 }

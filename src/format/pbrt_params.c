@@ -215,9 +215,8 @@ static bool replace_older(pbrt_parser *parser, params *p, const declaration *d)
         return true;
     bool stays =
         parser->is_v3 && older->type == PARAM_TEXTURE && d->type->type != PARAM_TEXTURE;
-    log_message(&parser->scene->build.log, LOG_NOTE,
-                "%s:%d:%d: parameter '%s' is given again: %s", at.file, at.line,
-                at.column, d->name, stays ? "the texture counts" : "the last counts");
+    log_at(&parser->scene->build.log, LOG_NOTE, at, "parameter '%s' is given again: %s",
+           d->name, stays ? "the texture counts" : "the last counts");
     if (!stays)
         params_remove(p, d->name);
     return !stays;
@@ -270,7 +269,8 @@ params *pbrt_read_params(pbrt_parser *parser, source_place place)
 {
     g_autoptr(params) p = params_new(place, parser->base_directory, parser->state.space);
     p->to_world = parser->state.ctm;
-    p->unknown_to = parser->is_v3 ? &parser->scene->build.log : NULL;
+    p->log = &parser->scene->build.log;
+    p->lets_unknown = parser->is_v3;
     while (lexer_peek(parser->words).kind == TOKEN_STRING)
         if (!read_param(parser, p))
             return NULL;

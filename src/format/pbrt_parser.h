@@ -130,6 +130,9 @@ bool pbrt_expected(pbrt_parser *parser, const char *what, const token *found);
 /** @brief An error of the reader's own at a place. */
 void pbrt_error(pbrt_parser *parser, source_place place, const char *format, ...)
     G_GNUC_PRINTF(3, 4);
+/** @brief A warning at a place: of what pbrt warns of too, and goes on. */
+void pbrt_warning(const pbrt_parser *parser, source_place place, const char *format, ...)
+    G_GNUC_PRINTF(3, 4);
 /** @brief True when reading on is of no use. */
 bool pbrt_should_stop(const pbrt_parser *parser);
 /** @brief A quoted string argument; owned by the caller, NULL if there is none. `what`
@@ -166,6 +169,8 @@ bool pbrt_active_transform(pbrt_parser *parser, source_place place);
 /** @brief Remembers transforms under a name. */
 void pbrt_name_transform(pbrt_parser *parser, const char *name, const transform *start,
                          const transform *end);
+/** @brief True if the current transform flattens what stands in it. */
+bool pbrt_is_flat(const pbrt_parser *parser);
 /** @brief True if the current transform moves. */
 bool pbrt_is_moving(const pbrt_parser *parser);
 /** @brief The current transforms as a motion. */

@@ -16,8 +16,8 @@ bool pbrt_attribute_begin(pbrt_parser *parser, source_place place)
 bool pbrt_attribute_end(pbrt_parser *parser, source_place place)
 {
     if (parser->saved->len == 0) {
-        pbrt_error(parser, place,
-                   "expected AttributeBegin before AttributeEnd, found none");
+        pbrt_warning(parser, place,
+                     "AttributeEnd without an AttributeBegin before it ends nothing");
         return true;
     }
     guint last = parser->saved->len - 1;
@@ -80,10 +80,10 @@ bool pbrt_color_space(pbrt_parser *parser, source_place place)
     if (space)
         parser->state.space = space;
     else
-        pbrt_error(parser, at,
-                   "expected \"srgb\", \"rec2020\", \"dci-p3\" or \"aces2065-1\", found "
-                   "\"%s\"",
-                   name);
+        pbrt_warning(parser, at,
+                     "there is no colour space \"%s\", but \"srgb\", \"rec2020\", "
+                     "\"dci-p3\" and \"aces2065-1\"; the one before stays",
+                     name);
     return true;
 }
 
@@ -134,6 +134,10 @@ bool pbrt_object_instance(pbrt_parser *parser, source_place place)
     }
     if (parser->object != NO_INDEX) {
         pbrt_error(parser, place, "expected ObjectEnd before ObjectInstance, found none");
+        return true;
+    }
+    if (pbrt_is_flat(parser)) {
+        pbrt_warning(parser, place, "an instance that is flattened is not seen");
         return true;
     }
     GError *error = NULL;

@@ -29,8 +29,8 @@ static bool read_bracket(pbrt_parser *parser, token_kind kind, const char *what)
     return true;
 }
 
-/** Sixteen numbers, column by column. *is_singular is told apart: it is no grammar. */
-static bool read_matrix(pbrt_parser *parser, transform *out, bool *is_singular)
+/** Sixteen numbers, column by column. They may flatten: meshes stand that. */
+static bool read_matrix(pbrt_parser *parser, transform *out)
 {
     double v[16], m[4][4];
     if (!read_bracket(parser, TOKEN_LEFT, "'['") || !read_numbers(parser, v, 16) ||
@@ -39,7 +39,7 @@ static bool read_matrix(pbrt_parser *parser, transform *out, bool *is_singular)
     for (int row = 0; row < 4; row++)
         for (int column = 0; column < 4; column++)
             m[row][column] = v[4 * column + row];
-    *is_singular = !transform_from_matrix((const double(*)[4])m, out);
+    transform_from_any_matrix((const double(*)[4])m, out);
     return true;
 }
 
@@ -60,8 +60,7 @@ static void set_ctm(pbrt_parser *parser, source_place place, const transform_pai
                 (!(state->active & ACTIVE_END) || is_finite(&t->end));
     if (!fine) {
         pbrt_error(parser, place,
-                   "expected a transform that can be inverted, found one "
-                   "out of range");
+                   "expected a transform of finite numbers, found one out of range");
         return;
     }
     if (state->active & ACTIVE_START)
@@ -75,6 +74,12 @@ static void multiply(pbrt_parser *parser, source_place place, const transform *t
     const transform_pair product = {transform_multiply(&parser->state.ctm, t),
                                     transform_multiply(&parser->state.ctm_end, t)};
     set_ctm(parser, place, &product);
+}
+
+bool pbrt_is_flat(const pbrt_parser *parser)
+{
+    return !transform_can_invert(&parser->state.ctm) ||
+           !transform_can_invert(&parser->state.ctm_end);
 }
 
 bool pbrt_is_moving(const pbrt_parser *parser)
@@ -110,12 +115,9 @@ bool pbrt_scale(pbrt_parser *parser, source_place place)
     double v[3];
     if (!read_numbers(parser, v, 3))
         return false;
-    if (!(fabs(v[0]) > 0.0 && fabs(v[1]) > 0.0 && fabs(v[2]) > 0.0)) {
-        pbrt_error(parser, place, "expected factors other than 0, found Scale %g %g %g",
-                   v[0], v[1], v[2]);
-        return true;
-    }
-    transform t = transform_scale(v[0], v[1], v[2]);
+    const double m[4][4] = {{v[0]}, {0.0, v[1]}, {0.0, 0.0, v[2]}, {0.0, 0.0, 0.0, 1.0}};
+    transform t;
+    transform_from_any_matrix(m, &t);
     multiply(parser, place, &t);
     return true;
 }
@@ -126,7 +128,7 @@ bool pbrt_rotate(pbrt_parser *parser, source_place place)
     if (!read_numbers(parser, v, 4))
         return false;
     if (!(hypot(hypot(v[1], v[2]), v[3]) > 0.0)) {
-        pbrt_error(parser, place, "expected an axis with a direction, found 0 0 0");
+        pbrt_warning(parser, place, "Rotate about an axis 0 0 0 turns nothing");
         return true;
     }
     transform t = transform_rotate(v[0], v[1], v[2], v[3]);
@@ -142,6 +144,9 @@ bool pbrt_look_at(pbrt_parser *parser, source_place place)
     transform t;
     if (transform_look_at(v, v + 3, v + 6, &t))
         multiply(parser, place, &t);
+    else if (parser->is_v3)
+        pbrt_warning(parser, place,
+                     "LookAt along its up direction or nowhere turns nothing");
     else
         pbrt_error(parser, place,
                    "expected an eye apart from the target and an up direction across "
@@ -152,30 +157,18 @@ bool pbrt_look_at(pbrt_parser *parser, source_place place)
 bool pbrt_transform(pbrt_parser *parser, source_place place)
 {
     transform t;
-    bool is_singular;
-    if (!read_matrix(parser, &t, &is_singular))
+    if (!read_matrix(parser, &t))
         return false;
-    if (is_singular)
-        pbrt_error(parser, place,
-                   "expected a matrix that can be inverted, found a "
-                   "singular one");
-    else
-        set_ctm(parser, place, &(const transform_pair){t, t});
+    set_ctm(parser, place, &(const transform_pair){t, t});
     return true;
 }
 
 bool pbrt_concat_transform(pbrt_parser *parser, source_place place)
 {
     transform t;
-    bool is_singular;
-    if (!read_matrix(parser, &t, &is_singular))
+    if (!read_matrix(parser, &t))
         return false;
-    if (is_singular)
-        pbrt_error(parser, place,
-                   "expected a matrix that can be inverted, found a "
-                   "singular one");
-    else
-        multiply(parser, place, &t);
+    multiply(parser, place, &t);
     return true;
 }
 
@@ -207,8 +200,8 @@ bool pbrt_coord_sys_transform(pbrt_parser *parser, source_place place)
     if (t)
         set_ctm(parser, place, t);
     else
-        pbrt_error(parser, at, "expected the name of a coordinate system, found \"%s\"",
-                   name);
+        pbrt_warning(parser, at,
+                     "there is no coordinate system \"%s\"; the one before stays", name);
     return true;
 }
 

@@ -19,8 +19,7 @@ typedef struct translation {
 static inline void note(const translation *t, const param *q, const char *text)
 {
     source_place at = q ? q->place : t->p->place;
-    log_message(t->log, LOG_NOTE, "%s:%d:%d: pbrt-v3: %s", at.file, at.line, at.column,
-                text);
+    log_at(t->log, LOG_NOTE, at, "pbrt-v3: %s", text);
 }
 
 static inline param *find(const translation *t, const char *name)

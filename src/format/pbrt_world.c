@@ -175,12 +175,9 @@ bool pbrt_light_source(pbrt_parser *parser, source_place place)
     translate(parser, V3_LIGHT, &a);
     pbrt_use_media(parser, &parser->state.inside, &parser->state.outside);
     GError *error = NULL;
-    bool moves = pbrt_is_moving(parser) &&
-                 !build_is_lenient(&parser->scene->build, place,
-                                   "a light that moves stands still where it starts");
-    if (moves)
-        pbrt_error(parser, place, "a light can not move, found a transform that does");
-    else if (scene_add_light(parser->scene, a.kind, a.p, &parser->state.ctm, &error))
+    if (pbrt_is_moving(parser))
+        pbrt_warning(parser, place, "a light that moves stands still where it starts");
+    if (scene_add_light(parser->scene, a.kind, a.p, &parser->state.ctm, &error))
         pbrt_check_used(parser, a.p, "light", a.kind);
     else
         pbrt_report(parser, error);
@@ -266,8 +263,23 @@ static bool add_made_shape(pbrt_parser *parser, const arguments *a, shape_place 
     return done && scene_add_instance(parser->scene, object, &to_world, a->at, error);
 }
 
+/** True of what can not be flattened; as in pbrt it is not seen then. */
+static bool is_lost(const pbrt_parser *parser, const arguments *a)
+{
+    if (!pbrt_is_flat(parser))
+        return false;
+    bool is_mesh = strcmp(a->kind, "plymesh") == 0 || shape_may_be_flat(a->kind);
+    if (is_mesh && !pbrt_is_moving(parser))
+        return false;
+    pbrt_warning(parser, a->at, "a shape \"%s\"%s that is flattened is not seen", a->kind,
+                 is_mesh ? " that moves and" : "");
+    return true;
+}
+
 static void add_shape(pbrt_parser *parser, const arguments *a)
 {
+    if (is_lost(parser, a))
+        return;
     shape_place at = {.to_world = parser->state.ctm,
                       .reverse_orientation = parser->state.reverse_orientation,
                       .material = current_material(parser, a->at),

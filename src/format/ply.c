@@ -180,11 +180,12 @@ static bool read_row(ply_reader *r, const ply_element *e, const column *columns,
     return true;
 }
 
+/* Places must be numbers; what else is none is the mesh's to do without. */
 static bool check_finite(const ply_reader *r, const column *columns, size_t n,
                          GError **error)
 {
-    for (int c = 0; c < N_COLUMNS; c++)
-        for (size_t i = 0; columns[c].property >= 0 && i < n; i++)
+    for (int c = 0; c < 3; c++)
+        for (size_t i = 0; i < n; i++)
             if (!isfinite(columns[c].to[i * columns[c].stride])) {
                 error_set(error, ERROR_INPUT,
                           "%s: expected finite numbers, found %s = %g of vertex %zu",

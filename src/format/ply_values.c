@@ -83,6 +83,14 @@ static size_t next_word(ply_reader *r)
     return (size_t)(p - r->at);
 }
 
+/* "nan", "-nan(ind)", "inf": what is no number, as programs write it. */
+static bool is_no_number(const char *word, size_t length)
+{
+    size_t sign = length > 0 && (*word == '-' || *word == '+');
+    return length >= sign + 3 && (g_ascii_strncasecmp(word + sign, "nan", 3) == 0 ||
+                                  g_ascii_strncasecmp(word + sign, "inf", 3) == 0);
+}
+
 static bool read_word(ply_reader *r, ply_type type, double *out, GError **error)
 {
     size_t length = next_word(r);
@@ -92,7 +100,10 @@ static bool read_word(ply_reader *r, ply_type type, double *out, GError **error)
     bool is_single = type == PLY_FLOAT32;
     bool fine = is_single ? number_float(r->at, length, &single)
                           : number_double(r->at, length, out);
-    if (!fine) {
+    if (!fine && is_no_number(r->at, length)) {
+        *out = (double)NAN;
+        single = NAN;
+    } else if (!fine) {
         g_autofree char *found = g_utf8_make_valid(r->at, (gssize)MIN(length, 60));
         return ply_fail(r, error, "expected a number, found '%s'", found);
     }

@@ -65,6 +65,44 @@ bool transform_from_matrix(const double m[4][4], transform *out)
     return true;
 }
 
+/* The determinant without a row and a column, with the sign of their place. */
+static double cofactor(const double m[4][4], int row, int column)
+{
+    double a[3][3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            a[i][k] = m[i + (i >= row)][k + (k >= column)];
+    double minor = a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -
+                   a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+                   a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+    return (row + column) % 2 ? -minor : minor;
+}
+
+/* The adjugate, scaled as an inverse would be. */
+static void adjugate(const double m[4][4], double out[4][4])
+{
+    double most = 0.0, most_out = 0.0;
+    for (int i = 0; i < 16; i++) {
+        out[i % 4][i / 4] = cofactor(m, i / 4, i % 4);
+        most = MAX(most, fabs(m[i / 4][i % 4]));
+        most_out = MAX(most_out, fabs(out[i % 4][i / 4]));
+    }
+    for (int i = 0; i < 16 && most_out > 0.0; i++)
+        out[i / 4][i % 4] /= most * most_out;
+}
+
+bool transform_from_any_matrix(const double m[4][4], transform *out)
+{
+    if (transform_from_matrix(m, out))
+        return true;
+    memcpy(out->m, m, sizeof out->m);
+    adjugate(m, out->inverse);
+    double sum = 0.0;
+    for (int i = 0; i < 16; i++)
+        sum += fabs(m[i / 4][i % 4]);
+    return isfinite(sum);
+}
+
 static void multiply(const double a[4][4], const double b[4][4], double out[4][4])
 {
     for (int i = 0; i < 4; i++) {
@@ -83,6 +121,14 @@ transform transform_multiply(const transform *a, const transform *b)
     multiply(a->m, b->m, product.m);
     multiply(b->inverse, a->inverse, product.inverse);
     return product;
+}
+
+/* A matrix times its inverse is 1, times its adjugate the determinant, which is 0. */
+bool transform_can_invert(const transform *t)
+{
+    double product[4][4];
+    multiply(t->m, t->inverse, product);
+    return product[0][0] + product[1][1] + product[2][2] + product[3][3] > 2.0;
 }
 
 transform transform_inverse(const transform *t)

@@ -18,6 +18,12 @@ typedef struct transform {
 transform transform_identity(void);
 /** @brief A matrix given row by row. @return false if it is singular or not finite. */
 bool transform_from_matrix(const double m[4][4], transform *out);
+/** @brief The same, but a matrix may flatten: what stands for its inverse then is its
+ * adjugate, up to a factor, so that transform_normal still gives the direction of
+ * normals, of products too. @return false if it is not finite. */
+bool transform_from_any_matrix(const double m[4][4], transform *out);
+/** @brief False of a transform that flattens. */
+bool transform_can_invert(const transform *t);
 transform transform_multiply(const transform *a, const transform *b);
 transform transform_inverse(const transform *t);
 transform transform_translate(double x, double y, double z);

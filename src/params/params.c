@@ -59,7 +59,8 @@ params *params_new_like(const params *p)
 {
     params *like = params_new(p->place, p->base_directory, p->space);
     like->to_world = p->to_world;
-    like->unknown_to = p->unknown_to;
+    like->log = p->log;
+    like->lets_unknown = p->lets_unknown;
     return like;
 }
 
@@ -304,14 +305,12 @@ static bool is_listed(const char *name, const char *list)
 /* Noted and passed over, or an error. */
 static bool meet_unknown(const params *p, param *q, const char *what, GError **error)
 {
-    if (!p->unknown_to) {
+    if (!p->lets_unknown) {
         error_at(error, q->place, "unknown parameter '%s' of %s", q->name, what);
         return false;
     }
-    log_message(p->unknown_to, LOG_NOTE,
-                "%s:%d:%d: unknown parameter '%s' of %s is left out",
-                q->place.file ? q->place.file : "", q->place.line, q->place.column,
-                q->name, what);
+    log_at(p->log, LOG_NOTE, q->place, "unknown parameter '%s' of %s is left out",
+           q->name, what);
     q->used = true;
     return true;
 }

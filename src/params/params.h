@@ -50,10 +50,11 @@ typedef struct params {
     source_place place;         /**< of the directive */
     const char *base_directory; /**< interned; relative file names are relative to it */
     const color_space *space;
-    transform to_world; /**< from the space that the directive stands in; identity unless
-                           the reader says otherwise */
-    const log_sink *unknown_to; /**< where a parameter that its consumer does not know is
-                                   noted (pbrt-v3 goes on); NULL: it is an error */
+    transform to_world;  /**< from the space that the directive stands in; identity unless
+                            the reader says otherwise */
+    const log_sink *log; /**< where consumers note what they do not take; may be NULL */
+    bool lets_unknown;   /**< a parameter that its consumer does not know is noted, and
+                            no error: pbrt-v3 goes on too */
 } params;
 
 params *params_new(source_place place, const char *base_directory,

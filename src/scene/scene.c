@@ -9,6 +9,7 @@
 #include "scene/scene_commit.h"
 #include "scene/scene_film.h"
 #include "scene/scene_geometry.h"
+#include "shape/mesh_repair.h"
 #include "texture/picture.h"
 
 #include <string.h>
@@ -169,15 +170,9 @@ static bool take_shape(scene *s, shape *made, const shape_place *at, GError **er
     made->parts_media = s->around.inside != s->around.outside;
     bool shines = at->area_light;
     if (shines && s->open_object != NO_INDEX) {
-        shines = !build_is_lenient(&s->build, at->area_light->place,
-                                   "a shape that moves or is part of an object does not "
-                                   "shine");
-    }
-    if (shines && s->open_object != NO_INDEX) {
-        error_at(error, at->area_light->place,
-                 "a shape that moves or is part of an object can not shine, in pbrt too");
-        shape_free(made);
-        return false;
+        log_at(&s->build.log, LOG_WARNING, at->area_light->place,
+               "a shape that moves or is part of an object does not shine");
+        shines = false;
     }
     if (shines) {
         light *l =
@@ -212,6 +207,7 @@ bool scene_add_mesh(scene *s, mesh *m, const shape_place *at, source_place place
         mesh_clear(m);
         return false;
     }
+    mesh_drop_bad(m, place, &s->build.log);
     LISTENER_TELL(s, mesh, m, at);
     return take_shape(s, shape_new_mesh(m, at, place, error), at, error);
 }
@@ -219,7 +215,7 @@ bool scene_add_mesh(scene *s, mesh *m, const shape_place *at, source_place place
 bool scene_set_film(scene *s, const char *kind, const params *p, GError **error)
 {
     film_settings film;
-    if (!scene_may_change(s, error) || !film_init(&film, kind, p, error))
+    if (!scene_may_change(s, error) || !film_init(&film, kind, p, &s->build.log, error))
         return false;
     g_free(s->film.filename);
     s->film = film;

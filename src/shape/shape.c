@@ -58,6 +58,12 @@ static shape *shape_wrap(const shape_kind *kind, void *self, const shape_place *
     return s;
 }
 
+bool shape_may_be_flat(const char *name)
+{
+    const shape_kind *kind = find_kind(name);
+    return kind && kind->may_be_flat;
+}
+
 shape *shape_new(const char *name, const params *p, const shape_place *at, GError **error)
 {
     const shape_kind *kind = find_kind(name);

@@ -46,6 +46,8 @@ typedef struct shape_kind {
     const char *parameters; /**< names, blank-separated, for the manual */
     /** What create makes is of that kind; NULL: of this one. */
     const struct shape_kind *becomes;
+    bool may_be_flat; /**< its points are moved to the world one by one, which a transform
+                         that flattens does as well */
     /** From parameters. NULL with ERROR_INPUT. */
     void *(*create)(const params *p, const shape_place *at, GError **error);
     void (*free)(void *self);
@@ -100,6 +102,8 @@ struct shape {
 const char *shape_kind_name(size_t i);
 /** @brief What it may be given, blank-separated; NULL as above. */
 const char *shape_kind_parameters(size_t i);
+/** @brief True if a shape of that kind may stand in a transform that flattens. */
+bool shape_may_be_flat(const char *kind);
 shape *shape_new(const char *kind, const params *p, const shape_place *at,
                  GError **error);
 /** @brief A shape from a mesh in object space (moved to world space here; arrays are

@@ -274,6 +274,7 @@ static shape_sample sample_area(const void *self, float u_primitive, vec2 u)
 const shape_kind shape_bilinear = {
     .name = "bilinearmesh",
     .parameters = "P N uv indices faceIndices emissionfilename",
+    .may_be_flat = true,
     .create = create,
     .free = free_mesh,
     .bounds = bounds,

@@ -99,8 +99,13 @@ static bool read_points(const params *p, curve_input *in, GError **error)
 static bool read_normals(const params *p, curve_input *in, GError **error)
 {
     in->normals = params_find(p, "N");
-    if (in->type != CURVE_RIBBON)
-        return !in->normals || fail(p, "N", error, "is for type \"ribbon\" only");
+    if (in->type != CURVE_RIBBON) {
+        if (in->normals)
+            log_at(p->log, LOG_NOTE, in->normals->place,
+                   "\"N\" is for curves of type \"ribbon\" only");
+        in->normals = NULL;
+        return true;
+    }
     if (!in->normals || in->normals->type != PARAM_NORMAL ||
         in->normals->n != 3 * (in->n_segments + 1))
         return fail(p, "N", error,
@@ -120,8 +125,7 @@ static bool read_input(const params *p, curve_input *in, int *split, GError **er
         return false;
     if (in->degree != 2 && in->degree != 3)
         return fail(p, "degree", error, "must be 2 or 3");
-    if (*split < 0 || *split > MOST_SPLITS)
-        return fail(p, "splitdepth", error, "must be 0 to 8");
+    *split = CLAMP(*split, 0, MOST_SPLITS); /* more do not show either */
     return read_widths(p, in, error) && read_points(p, in, error) &&
            read_normals(p, in, error);
 }

@@ -412,6 +412,7 @@ static float pdf_toward(const void *self, vec3 ref, const surface_hit *hit)
 const shape_kind shape_mesh = {
     .name = "trianglemesh",
     .parameters = "P N S uv indices faceIndices",
+    .may_be_flat = true,
     .create = create,
     .free = mesh_shape_free,
     .bounds = bounds,

@@ -383,5 +383,6 @@ const shape_kind shape_subdivision = {
     .name = "loopsubdiv",
     .parameters = "P indices faceIndices levels scheme",
     .becomes = &shape_mesh,
+    .may_be_flat = true,
     .create = create,
 };

@@ -1,0 +1,251 @@
+/*
+ * What files that people have hold, pbrt reads and a stricter reader would refuse: each
+ * is read as pbrt reads it, and said where it matters.
+ */
+#include "color/balance.h"
+#include "render_with.h"
+
+#include <math.h>
+
+#define CAMERA                                                                           \
+    "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\n"                 \
+    "Camera \"perspective\"\n"
+#define WORLD CAMERA "WorldBegin\nLightSource \"point\"\n" /* four lines */
+
+static void keep_line(log_level level, const char *text, void *data)
+{
+    g_string_append_printf(data, "%s%s\n", level == LOG_WARNING ? "warning" : "note",
+                           strchr(text, ':'));
+}
+
+/* The scene of a text that must be right, and what must be said of it: all lines, each
+ * "note:line:column: text" or "warning:..". */
+static scene *read_saying(const char *text, const char *said)
+{
+    scene_folder f = folder_new(text);
+    g_autoptr(GString) lines = g_string_new(NULL);
+    g_autoptr(GError) error = NULL;
+    const log_sink sink = {keep_line, lines};
+    scene *s = format_load(f.main, 1, &sink, &error);
+    if (!s)
+        g_error("%s\nof\n%s", error->message, text);
+    if (strcmp(lines->str, said) != 0)
+        g_error("of\n%s\nexpected\n%s\nfound\n%s", text, said, lines->str);
+    s->build.log = (log_sink){0};
+    folder_remove(&f);
+    return s;
+}
+
+static const mesh *mesh_at(const scene *s, guint i)
+{
+    const shape *on = s->shapes->pdata[i];
+    return on->kind->triangles(on->self);
+}
+
+/* ---- Transforms ---- */
+
+/* A mesh is pressed flat where pbrt would divide by nothing; its normals are those of the
+ * plane it lies in then, whatever the axes. */
+static void test_flattened_meshes(void)
+{
+#define PRISM                                                                            \
+    "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 2 0 0 3 1] \"normal N\" [1 2 4 1 2 4 " \
+    "1 2 4]\n"
+    g_autoptr(scene) s = read_saying(
+        WORLD "AttributeBegin Scale 1 0 1\n" PRISM "AttributeEnd\n"
+              "AttributeBegin Translate 0 0 5 Rotate 30 1 0 0 Transform [1 0 0 0 0 1 0 "
+              "0 1 1 0 0 7 0 0 1]\n" PRISM "AttributeEnd\n"
+              "AttributeBegin Rotate 90 1 0 0 ConcatTransform [2 0 0 0 0 0 0 0 0 0 2 0 0 "
+              "0 0 1] Scale 3 3 3\n" PRISM "AttributeEnd\n",
+        "");
+    static const vec3 axes[] = {{0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
+    g_assert_cmpuint(s->shapes->len, ==, 3);
+    for (guint i = 0; i < 3; i++) {
+        const mesh *m = mesh_at(s, i);
+        for (int k = 0; k < 3; k++) {
+            const float *p = m->positions + 3 * k, *n = m->normals + 3 * k;
+            vec3 from_first = {p[0] - m->positions[0], p[1] - m->positions[1],
+                               p[2] - m->positions[2]};
+            float along = dot3(vec3_make(n[0], n[1], n[2]), axes[i]);
+            g_assert_cmpfloat(fabsf(dot3(from_first, axes[i])), <, 1e-5f);
+            g_assert_cmpfloat(fabsf(fabsf(along) - 1.0f), <, 1e-5f);
+        }
+    }
+}
+
+/* What is no mesh is not seen then, in pbrt too. */
+static void test_flattened_rest(void)
+{
+    g_autoptr(scene) s =
+        read_saying(WORLD "ObjectBegin \"o\" Shape \"disk\" ObjectEnd\n"
+                          "Scale 0 1 1 Shape \"sphere\"\n"
+                          "ObjectInstance \"o\"\n"
+                          "AreaLightSource \"diffuse\" Shape \"disk\"\n",
+                    "warning:6:19: a shape \"sphere\" that is flattened is not seen\n"
+                    "warning:7:1: an instance that is flattened is not seen\n"
+                    "warning:8:33: a shape \"disk\" that is flattened is not seen\n");
+    g_assert_cmpuint(s->shapes->len, ==, 1);
+    g_assert_cmpuint(s->instances->len, ==, 0);
+}
+
+static void test_transforms_that_do_nothing(void)
+{
+    g_autoptr(scene) s = read_saying(
+        WORLD "Rotate 30 0 0 0\n"
+              "CoordSysTransform \"moon\"\nAttributeEnd\nColorSpace \"cmyk\"\n"
+              "Shape \"trianglemesh\" \"point3 P\" [1 2 3 0 1 0 0 0 1]\n",
+        "warning:5:1: Rotate about an axis 0 0 0 turns nothing\n"
+        "warning:6:19: there is no coordinate system \"moon\"; the one before stays\n"
+        "warning:7:1: AttributeEnd without an AttributeBegin before it ends nothing\n"
+        "warning:8:12: there is no colour space \"cmyk\", but \"srgb\", \"rec2020\", "
+        "\"dci-p3\" and \"aces2065-1\"; the one before stays\n");
+    const float *p = mesh_at(s, 0)->positions;
+    for (int i = 0; i < 3; i++)
+        g_assert_cmpfloat(fabsf(p[i] - (float)(i + 1)), <, 1e-6f);
+}
+
+/* ---- Lights ---- */
+
+static void test_lights_that_can_not_be(void)
+{
+    g_autoptr(scene) s = read_saying(
+        WORLD "ObjectBegin \"lamp\" AreaLightSource \"diffuse\" Shape \"sphere\" "
+              "ObjectEnd\nObjectInstance \"lamp\"\n"
+              "ActiveTransform EndTime Translate 1 0 0\nLightSource \"point\"\n",
+        "warning:5:20: a shape that moves or is part of an object does not shine\n"
+        "warning:8:1: a light that moves stands still where it starts\n");
+    g_assert_cmpuint(s->lights->len, ==, 2);
+}
+
+/* ---- Film ---- */
+
+/* As pbrt: to a camera's sensor the daylight of 6500 K is white, if nothing is said. */
+static void test_sensors(void)
+{
+    g_autoptr(scene) s = read_saying(
+        "Film \"rgb\" \"string sensor\" \"canon_eos_100d\"\nCamera \"perspective\"\n"
+        "WorldBegin\nLightSource \"point\"\n",
+        "note:1:12: sensor \"canon_eos_100d\" sees as \"cie1931\" does, in the colours "
+        "of "
+        "the film\n");
+    g_assert_cmpfloat(fabsf(s->film.kelvin - 6500.0f), <, 1.0f);
+    g_autoptr(scene) told = read_saying(
+        "Film \"rgb\" \"string sensor\" \"sony_ilce_9\" \"float whitebalance\" 3200\n"
+        "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\n",
+        "note:1:12: sensor \"sony_ilce_9\" sees as \"cie1931\" does, in the colours of "
+        "the "
+        "film\n");
+    g_assert_cmpfloat(fabsf(told->film.kelvin - 3200.0f), <, 1.0f);
+}
+
+/* White below daylight is a black body's: its chromaticity at 2856 K is that of CIE
+ * illuminant A, (0.44757, 0.40745). */
+static void test_warm_white(void)
+{
+    double m[9];
+    const double xy[2] = {0.44757, 0.40745};
+    const double xyz[3] = {xy[0] / xy[1], 1.0, (1.0 - xy[0] - xy[1]) / xy[1]};
+    static const double d65[3] = {0.95047, 1.0, 1.08883};
+    color_balance(2856.0f, color_space_srgb(), m);
+    for (int i = 0; i < 3; i++) {
+        double to = m[3 * i] * xyz[0] + m[3 * i + 1] * xyz[1] + m[3 * i + 2] * xyz[2];
+        g_assert_cmpfloat(fabs(to - d65[i]), <, 2e-3);
+    }
+}
+
+static void test_spectral_film(void)
+{
+    g_autoptr(scene) s = read_saying(
+        "Film \"spectral\" \"integer xresolution\" 4 \"integer yresolution\" 5 \"integer "
+        "nbuckets\" 16 \"float lambdamin\" 400 \"float lambdamax\" 700\n"
+        "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\n",
+        "note:1:1: film \"spectral\" becomes \"rgb\": the picture has colours and no "
+        "spectra\n");
+    g_assert_cmpint(s->film.height, ==, 5);
+}
+
+/* Beyond the film it is cut off, turned round it is turned back, and of both the window
+ * counts. */
+static void test_crops(void)
+{
+    static const struct {
+        const char *text, *said;
+        float crop[4];
+    } films[] = {
+        {"\"float cropwindow\" [0.75 0.25 -1 2]", "", {0.3f, 0.8f, 0, 1}},
+        {"\"integer pixelbounds\" [-5 6 2 99]", "", {0, 0.6f, 0.2f, 1}},
+        {"\"integer pixelbounds\" [1 2 1 2] \"float cropwindow\" [0 .5 0 .5]",
+         "note:1:62: \"cropwindow\" counts, and \"pixelbounds\" beside it does not\n",
+         {0, 0.5f, 0, 0.5f}},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(films); i++) {
+        g_autofree char *text = g_strconcat(
+            "Film \"rgb\" \"integer xresolution\" 10 \"integer yresolution\" 10 ",
+            films[i].text,
+            "\nCamera \"perspective\"\nWorldBegin\nLightSource \"point\"\n", NULL);
+        g_autoptr(scene) s = read_saying(text, films[i].said);
+        for (int k = 0; k < 4; k++) /* the pixel that it begins at or ends before */
+            g_assert_cmpfloat(fabsf(ceilf(10 * s->film.crop[k]) / 10 - films[i].crop[k]),
+                              <, 1e-6f);
+    }
+}
+
+/* ---- Meshes ---- */
+
+/* In text and in bytes: normals and coordinates that are no numbers are none. */
+static void test_bad_normals(void)
+{
+    scene_folder f =
+        folder_new(WORLD "Shape \"plymesh\" \"string filename\" \"a.ply\"\n");
+    folder_write(&f, "a.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                 "property float y\nproperty float z\nproperty float nx\nproperty float "
+                 "ny\nproperty float nz\nproperty float u\nproperty float v\nelement "
+                 "face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                 "0 0 0 nan -nan(ind) 0 0 0\n1 0 0 0 0 1 inf 0\n0 1 0 -NaN 0 1 1 1\n"
+                 "3 0 1 2\n",
+                 -1);
+    g_autoptr(GString) lines = g_string_new(NULL);
+    g_autoptr(GError) error = NULL;
+    const log_sink sink = {keep_line, lines};
+    g_autoptr(scene) s = format_load(f.main, 1, &sink, &error);
+    g_assert_no_error(error);
+    g_assert_cmpstr(
+        lines->str, ==,
+        "note:5:17: 2 of 3 normals of the mesh are no numbers and left out\n"
+        "note:5:17: 1 of 3 texture coordinates of the mesh are no numbers and "
+        "left out\n");
+    ray r = {.origin = vec3_make(0.1f, 0.1f, 1),
+             .direction = vec3_make(0, 0, -1),
+             .t_max = INFINITY};
+    surface_hit hit;
+    g_assert_true(scene_intersect(s, &r, &hit));
+    g_assert_cmpfloat(fabsf(hit.n[2] - 1), <, 1e-5f);
+    s->build.log = (log_sink){0};
+    folder_remove(&f);
+}
+
+static void test_curve_normals(void)
+{
+    g_autoptr(scene) s = read_saying(
+        WORLD "Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 1 1 0 2 1 0]\n"
+              "\"normal N\" [0 0 1 0 0 1] \"float width\" .1 \"integer splitdepth\" 12\n",
+        "note:6:1: \"N\" is for curves of type \"ribbon\" only\n");
+    g_assert_cmpuint(s->shapes->len, ==, 1);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/pbrt-real/flattened-meshes", test_flattened_meshes);
+    g_test_add_func("/pbrt-real/flattened-rest", test_flattened_rest);
+    g_test_add_func("/pbrt-real/transforms", test_transforms_that_do_nothing);
+    g_test_add_func("/pbrt-real/lights", test_lights_that_can_not_be);
+    g_test_add_func("/pbrt-real/sensors", test_sensors);
+    g_test_add_func("/pbrt-real/warm-white", test_warm_white);
+    g_test_add_func("/pbrt-real/spectral-film", test_spectral_film);
+    g_test_add_func("/pbrt-real/crops", test_crops);
+    g_test_add_func("/pbrt-real/bad-normals", test_bad_normals);
+    g_test_add_func("/pbrt-real/curve-normals", test_curve_normals);
+    return g_test_run();
+}
