@@ -3,6 +3,7 @@
  */
 #include "arguments.h"
 #include "command.h"
+#include "exposure.h"
 #include "message.h"
 
 static struct {
@@ -63,6 +64,24 @@ static void free_image(void *image)
     neph_image_free(image);
 }
 
+/* Files of floats are read with any exposure: theirs is nobody's concern. */
+static bool has_eight_bits(const char *path)
+{
+    static const char *const endings[] = {".png", ".jpg", ".jpeg"};
+    g_autofree char *lower = g_ascii_strdown(path, -1);
+    bool has = false;
+    for (size_t i = 0; i < G_N_ELEMENTS(endings); i++)
+        has |= g_str_has_suffix(lower, endings[i]);
+    return has;
+}
+
+static bool write_one(const job *j, const NephImage *image, GError **error)
+{
+    const exposure_wish wish = {.stops = (float)j->exposure};
+    float stops = exposure_of(image, &wish, !has_eight_bits(given.output));
+    return neph_image_write(image, given.output, stops, error);
+}
+
 /* A single image keeps all its channels. */
 static bool write_all(const job *j, char **paths, int n, GError **error)
 {
@@ -74,11 +93,10 @@ static bool write_all(const job *j, char **paths, int n, GError **error)
         g_ptr_array_add(images, image);
     }
     if (n == 1)
-        return neph_image_write(images->pdata[0], given.output, (float)j->exposure,
-                                error);
+        return write_one(j, images->pdata[0], error);
     g_autoptr(NephImage) sheet = neph_image_sheet((const NephImage *const *)images->pdata,
                                                   (size_t)n, j->columns, error);
-    return sheet && neph_image_write(sheet, given.output, (float)j->exposure, error);
+    return sheet && write_one(j, sheet, error);
 }
 
 int command_image(int argc, char **argv)

@@ -4,6 +4,7 @@
  */
 #include "arguments.h"
 #include "command.h"
+#include "exposure.h"
 #include "loading.h"
 #include "message.h"
 #include "overrides.h"
@@ -75,7 +76,7 @@ typedef struct job {
     const char *scene_file;
     char **outputs;    /* NULL-terminated */
     int width, height; /* 0: the scene's */
-    float exposure;
+    exposure_wish exposure;
     unsigned threads;
     snapshots snapshots;
 } job;
@@ -100,7 +101,7 @@ static bool job_init(job *j, const char *scene_file, GError **error)
                 overrides_check(&given.settings, &j->threads, error) &&
                 check_outputs(j->outputs, error) &&
                 (!given.stats || neph_file_can_write(given.stats, error));
-    j->exposure = (float)exposure;
+    j->exposure = (exposure_wish){.stops = (float)exposure, .no_notes = given.quiet};
     return good;
 }
 
@@ -160,18 +161,19 @@ static NephRender *prepare(job *j, NephScene *scene, GError **error)
     return render;
 }
 
-static int write_images(const job *j, const NephRender *render, bool quiet)
+static int write_images(const job *j, const NephRender *render, bool is_snapshot)
 {
     g_autoptr(GError) error = NULL;
     g_autoptr(NephImage) image = neph_render_image(render, &error);
     if (!image)
         return report_error(error);
     int result = EXIT_DONE;
+    float stops = exposure_of(image, &j->exposure, is_snapshot);
     for (char **path = j->outputs; *path; path++) {
         g_autoptr(GError) refused = NULL;
-        if (!neph_image_write(image, *path, j->exposure, &refused))
+        if (!neph_image_write(image, *path, stops, &refused))
             result = report_error(refused);
-        else if (!quiet)
+        else if (!is_snapshot && !given.quiet)
             print_result("wrote %s\n", *path);
     }
     return result;
@@ -240,7 +242,7 @@ static int run(job *j, NephRender *render)
     progress_end(&w.shown);
     if (!done && !report_end(render, error, &ended))
         return ended;
-    int images = write_images(j, render, given.quiet);
+    int images = write_images(j, render, false);
     int statistics = write_statistics(render);
     return ended ? ended : images ? images : statistics;
 }
@@ -252,6 +254,7 @@ static int render_scene(job *j)
     g_autoptr(NephScene) scene = neph_scene_load_with(j->scene_file, &options, &error);
     if (!scene)
         return report_error(error);
+    j->exposure.is_free = !given.exposure && !neph_scene_says_exposure(scene);
     g_autoptr(NephRender) render = prepare(j, scene, &error);
     if (!render)
         return report_error(error);

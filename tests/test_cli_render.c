@@ -65,6 +65,101 @@ static void test_scene_names_the_output(folder *f, gconstpointer data)
     }
 }
 
+/* ---- Exposure ---- */
+
+/* Red in the middle of a picture of any kind, linear. */
+static double middle_of(const folder *f, const char *name)
+{
+    int width, height;
+    float pixel[3];
+    g_autofree char *line = g_strdup_printf("image %s -o middle.pfm", name);
+    g_autofree char *path = g_build_filename(f->path, "middle.pfm", NULL);
+    run_well(f, line);
+    g_autofree char *bytes = folder_read(f, "middle.pfm");
+    const char *scale = strchr(strchr(bytes, '\n') + 1, '\n') + 1;
+    g_assert_cmpint(sscanf(bytes, "PF %d %d", &width, &height), ==, 2);
+    memcpy(pixel, strchr(scale, '\n') + 1 + 12 * (width * (height / 2) + width / 2),
+           sizeof pixel);
+    g_assert_cmpint(g_remove(path), ==, 0);
+    return (double)pixel[0];
+}
+
+/* A square of white, 0.8, that a lamp of so many lux shines on straight. */
+static void write_gltf(const folder *f, const char *lux)
+{
+    static const float corners[] = {-1, -1, 0, 1, -1, 0, 1,  1, 0,
+                                    -1, -1, 0, 1, 1,  0, -1, 1, 0};
+    g_autofree char *code = g_base64_encode((const guchar *)corners, sizeof corners);
+    g_autofree char *text = g_strdup_printf(
+        "{\"asset\":{\"version\":\"2.0\"},\"materials\":[{\"pbrMetallicRoughness\":{"
+        "\"baseColorFactor\":[0.8,0.8,0.8,1],\"metallicFactor\":0},\"extensions\":{"
+        "\"KHR_materials_specular\":{\"specularFactor\":0}}}],\"meshes\":[{"
+        "\"primitives\":[{"
+        "\"attributes\":{\"POSITION\":0},\"material\":0}]}],\"cameras\":[{\"type\":"
+        "\"perspective\",\"perspective\":{\"yfov\":0.5,\"aspectRatio\":1}}],\"nodes\":[{"
+        "\"mesh\":0},{\"camera\":0,\"translation\":[0,0,3]},{\"extensions\":{"
+        "\"KHR_lights_punctual\":{\"light\":0}}}],\"extensions\":{\"KHR_lights_"
+        "punctual\":{"
+        "\"lights\":[{\"type\":\"directional\",\"intensity\":%s}]}},\"buffers\":[{"
+        "\"byteLength\":72,\"uri\":\"data:application/octet-stream;base64,%s\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":72}],\"accessors\":[{"
+        "\"bufferView\":0,"
+        "\"componentType\":5126,\"count\":6,\"type\":\"VEC3\"}]}",
+        lux, code);
+    folder_write(f, "sun.gltf", text);
+}
+
+#define RENDER_SUN "render sun.gltf --size 8x8 --passes 1 --spp 4 -o a.png -o a.pfm"
+
+/* 2.5 lx are a picture as viewers show it, 0.8 * 2.5 / pi; what would show nothing is
+   exposed, which is said, unless an exposure is asked for. Floats are true. */
+static void test_exposure_of_gltf(folder *f, gconstpointer data)
+{
+    (void)data;
+    static const struct {
+        const char *lux, *more, *said;
+        double seen; /* 0: not asked */
+    } cases[] = {
+        {"2.5", "", NULL, 0.8 * 2.5 / G_PI},
+        {"0.002", "", "are exposed by +10", 0.0},
+        {"100000", "", "are exposed by -15", 0.0},
+        {"0.002", " --exposure 0", "'--exposure 10' shows it", 0.8 * 0.002 / G_PI},
+        {"0.002", " --exposure 10", NULL, 1024 * 0.8 * 0.002 / G_PI},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autofree char *line = g_strconcat(RENDER_SUN, cases[i].more, NULL);
+        write_gltf(f, cases[i].lux);
+        g_auto(result) r = run(f, line);
+        g_assert_cmpint(r.code, ==, 0);
+        g_test_message("%s%s: %s", cases[i].lux, cases[i].more, r.err);
+        g_assert_true((strstr(r.err, "exposure") != NULL) == (cases[i].said != NULL));
+        if (cases[i].said)
+            contains(r.err, cases[i].said);
+        double seen = middle_of(f, "a.png"), light = middle_of(f, "a.pfm");
+        double expected = 0.8 * g_ascii_strtod(cases[i].lux, NULL) / G_PI;
+        g_assert_cmpfloat(fabs(light / expected - 1.0), <, 0.04);
+        if (cases[i].seen > 0.0)
+            g_assert_cmpfloat(fabs(seen - cases[i].seen), <, 0.03);
+        else
+            g_assert_true(seen > 0.3 && seen < 0.7);
+    }
+}
+
+/* A pbrt scene is shown as it says; that it shows nothing is told. */
+static void test_exposure_of_pbrt(folder *f, gconstpointer data)
+{
+    (void)data;
+    g_auto(result) good = run(f, "render box.pbrt -q -o a.pfm -o a.png");
+    g_assert_cmpstr(good.err, ==, "");
+    g_auto(result) low = run(f, "render box.pbrt -q -o b.png -o b.pfm --exposure -12");
+    contains(low.err, "warning: the picture is nearly black: '--exposure ");
+    g_auto(result) again = run(f, "image a.pfm -o c.png --exposure -12");
+    contains(again.err, "warning: the picture is nearly black: '--exposure ");
+    g_auto(result) floats = run(f, "image a.pfm -o c.pfm --exposure -12");
+    g_assert_cmpstr(floats.err, ==, "");
+    g_assert_cmpfloat(fabs(middle_of(f, "a.pfm") - middle_of(f, "b.pfm")), <, 1e-9);
+}
+
 static void test_order_of_settings(folder *f, gconstpointer data)
 {
     (void)data;
@@ -287,6 +382,8 @@ int main(int argc, char **argv)
     folder_add_test("/cli/render", test_render_writes_all);
     folder_add_test("/cli/quiet", test_quiet_is_quiet);
     folder_add_test("/cli/named", test_scene_names_the_output);
+    folder_add_test("/cli/render/exposure-of-gltf", test_exposure_of_gltf);
+    folder_add_test("/cli/render/exposure-of-pbrt", test_exposure_of_pbrt);
     folder_add_test("/cli/order", test_order_of_settings);
     folder_add_test("/cli/render/stops-by-rules", test_stops_by_rules);
     folder_add_test("/cli/render/every", test_every);

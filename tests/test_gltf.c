@@ -8,6 +8,8 @@
 
 #include <math.h>
 
+#define BLENDER ",\"generator\":\"Khronos glTF Blender I/O v3.4.50\""
+
 /* ---- What is read ---- */
 
 static void test_shapes(void)
@@ -73,7 +75,7 @@ static void test_containers(void)
     assert_at(c->bounds.high, 1, 1, 1);
 }
 
-/* Blender's lamps of 1 W/sr and 1 W/m²; a camera that looks along its -z with y up. */
+/* Lamps of 683 cd and 1366 lx; a camera that looks along its -z with y up. */
 static void test_lights_and_camera(void)
 {
     g_autoptr(scene) s = load(
@@ -115,6 +117,59 @@ static void test_lights_and_camera(void)
     g_assert_cmpfloat(fabsf(raster.y), <, 0.1f);
 }
 
+/* The luminance that a sun of so many lux brings to a place that it shines on. */
+static double lux_of(const char *asset, const char *lights)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *buffers = buffer_uri();
+    g_autofree char *text = g_strdup_printf(
+        "{\"asset\":{\"version\":\"2.0\"%s},\"materials\":[{}]," MESH(
+            "0") "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[%s]}},\"nodes\":[{"
+                 "\"mesh\":0},{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],"
+                 "%s" VIEWS "}",
+        asset, lights, buffers);
+    g_autoptr(scene) s = load_bytes("a.gltf", text, -1, NULL, &error);
+    g_assert_no_error(error);
+    double sum = 0.0;
+    for (int i = 0; i < 32; i++) {
+        wavelengths w = wavelengths_at(((float)i + 0.5f) / 32.0f);
+        const light *l = scene_light(s, 0);
+        light_sample to;
+        float xyz[3];
+        g_assert_true(l->kind->sample(l->self, &w, vec3_make(0, 0, -1), 0.5f,
+                                      (vec2){0.5f, 0.5f}, &to));
+        spectrum_to_xyz(&w, to.radiance, xyz);
+        sum += (double)xyz[1] / 32.0;
+    }
+    return sum;
+}
+
+/* A lux is a lux, and a candela at a metre is one too; what Blender made of watts is
+   watts again, unless it left them as they were. */
+static void test_units(void)
+{
+#define SUN(lux) "{\"type\":\"directional\",\"intensity\":" lux "}"
+#define BULB(candela) "{\"type\":\"point\",\"intensity\":" candela "}"
+    static const struct {
+        const char *asset, *lights;
+        double lux;
+    } cases[] = {
+        {"", SUN("2.5"), 2.5},
+        {"", SUN("100000"), 100000.0},
+        {"", BULB("80"), 80.0},
+        {BLENDER, SUN("2.5"), 2.5},
+        {BLENDER, SUN("1707.5"), 2.5},
+        {BLENDER, BULB("80"), 80.0}, /* 1000 W, left as it was, over 4 pi */
+        {BLENDER, BULB("54351.4"), 79.58},
+        {BLENDER, BULB("80") "," SUN("1707.5"), 80.0 / 683.0},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        double found = lux_of(cases[i].asset, cases[i].lights);
+        g_test_message("%s %s: %g", cases[i].asset, cases[i].lights, found);
+        g_assert_cmpfloat(fabs(found / cases[i].lux - 1.0), <, 0.01);
+    }
+}
+
 /* A spot lamp's light at an angle off its axis, as a share of that along it. */
 static double spot_share(const char *asset, const char *cone, double angle)
 {
@@ -144,7 +199,6 @@ static double spot_share(const char *asset, const char *cone, double angle)
  * 1 - cos is half of that at the edge, and fades by smoothstep in it from there on. */
 static void test_spot_edges(void)
 {
-#define BLENDER ",\"generator\":\"Khronos glTF Blender I/O v3.4.50\""
 #define SOFT "\"innerConeAngle\":0.305432619,\"outerConeAngle\":0.610865238"
 #define SHARP "\"innerConeAngle\":0.5,\"outerConeAngle\":0.5"
     const double edge = 1.0 - cos(0.610865238), tiny = 1e-4;
@@ -355,6 +409,7 @@ int main(int argc, char **argv)
     g_test_add_func("/gltf/shapes", test_shapes);
     g_test_add_func("/gltf/containers", test_containers);
     g_test_add_func("/gltf/lights-and-camera", test_lights_and_camera);
+    g_test_add_func("/gltf/units", test_units);
     g_test_add_func("/gltf/spot-edges", test_spot_edges);
     g_test_add_func("/gltf/defaults", test_defaults);
     g_test_add_func("/gltf/required", test_required);

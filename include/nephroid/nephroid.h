@@ -77,8 +77,7 @@ typedef struct NephSettingInfo {
     const char *unit;          /**< "" if none */
     double low, high, initial; /**< inclusive; index for a choice. An initial value below
                                   low is allowed too, and means none. */
-    const char *const *words;  /**< NULL-terminated: those of a choice; of a number how
-                                  the value below low is written; NULL: none */
+    const char *const *words;  /**< of a choice, NULL-terminated; NULL otherwise */
     const char *aliases;       /**< other accepted names, blank-separated */
     const char *users;         /**< the integrators that read it */
     const char *doc;           /**< one sentence */
@@ -158,6 +157,10 @@ NEPH_API const char *const *neph_scene_files(const NephScene *scene);
 /** @brief The output name in the file, without folders, since a scene is not to choose
  * what of the user's files it replaces; or NULL. Owned by the scene. */
 NEPH_API const char *neph_scene_output(const NephScene *scene);
+/** @brief Whether the scene's format says how its picture is exposed. Where it has no
+ * words for that (glTF, OBJ ...), a picture that would be nearly black or white is best
+ * shown as neph_image_exposure finds. */
+NEPH_API bool neph_scene_says_exposure(const NephScene *scene);
 /** @brief Writes a scene of any format as pbrt-v4 text (out ends in .pbrt), its meshes as
  * PLY and its images into a folder beside it, all at once in the end; a file that was
  * read is not replaced (NEPH_ERROR_USAGE). log may be NULL. */
@@ -235,6 +238,18 @@ NEPH_API NephImage *neph_image_new(int width, int height, const float *rgb,
  * Written to a temporary name and renamed. exposure: stops, for 8-bit formats. */
 NEPH_API bool neph_image_write(const NephImage *image, const char *path, float exposure,
                                GError **error);
+/** @brief How a picture comes out in eight bits. Pixels that no light reaches do not
+ * count. */
+typedef enum {
+    NEPH_EXPOSURE_GOOD,
+    NEPH_EXPOSURE_DARK,   /**< nearly black: nine tenths of it are below 1 % of white */
+    NEPH_EXPOSURE_BRIGHT, /**< nearly white: three quarters of it are above white */
+    NEPH_EXPOSURE_BLACK   /**< no light reaches any of it */
+} NephExposure;
+/** @brief Judges R, G and B at an exposure of so many stops.
+ * @param better gets the stops that would show a dark or bright one; else `exposure` */
+NEPH_API NephExposure neph_image_exposure(const NephImage *image, float exposure,
+                                          float *better);
 /** @brief Whether the name says a format and the place can be written; leaves no trace.
  */
 NEPH_API bool neph_image_can_write(const char *path, GError **error);

@@ -3,6 +3,7 @@
 #include "base/json.h"
 #include "image/arrange.h"
 #include "image/compare.h"
+#include "image/exposure.h"
 
 #include <string.h>
 
@@ -42,6 +43,15 @@ bool neph_image_write(const NephImage *img, const char *path, float exposure,
 {
     const image_write_options options = {.exposure = exposure};
     return image_write(img->image, path, &options, error);
+}
+
+_Static_assert(NEPH_EXPOSURE_BLACK == (int)EXPOSURE_BLACK, "states are one list");
+_Static_assert(NEPH_EXPOSURE_DARK == (int)EXPOSURE_DARK, "states are one list");
+_Static_assert(NEPH_EXPOSURE_BRIGHT == (int)EXPOSURE_BRIGHT, "states are one list");
+
+NephExposure neph_image_exposure(const NephImage *img, float exposure, float *better)
+{
+    return (NephExposure)image_exposure(img->image, exposure, better);
 }
 
 bool neph_image_can_write(const char *path, GError **error)

@@ -112,6 +112,11 @@ const char *const *neph_scene_files(const NephScene *s)
     return scene_sources_paths(s->scene->build.sources);
 }
 
+bool neph_scene_says_exposure(const NephScene *s)
+{
+    return !s->scene->film.is_unexposed;
+}
+
 const char *neph_scene_output(const NephScene *s)
 {
     const char *name = s->scene->film.filename;

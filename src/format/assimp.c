@@ -230,7 +230,7 @@ static bool build(assimp_reader *r, GError **error)
     obj_check_materials(r->scene, r->path);
     return add_node(r, r->source->mRootNode, &identity, 0, error) &&
            assimp_add_lights(r, error) && assimp_add_camera(r, error) &&
-           scene_complete(r->scene, r->path, r->up, r->scene->lights->len > 0, error);
+           scene_complete(r->scene, r->path, r->up, false, error);
 }
 
 static vec3 up_of(const char *path)

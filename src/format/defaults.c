@@ -8,6 +8,7 @@
 
 #include "base/intern.h"
 #include "format/given.h"
+#include "light/light.h"
 #include "math/frame.h"
 #include "scene/scene_geometry.h"
 
@@ -161,13 +162,51 @@ static bool add_view(scene *s, const char *path, vec3 up, GError **error)
            scene_set_camera(s, "perspective", p, &look, error);
 }
 
-bool scene_complete(scene *s, const char *path, vec3 up, bool lit, GError **error)
+/* ---- Whether there is light ---- */
+
+/* Of a white sky's light, as much as surfaces that shine must send out to be lamps. */
+#define LEAST_GLOW 0.01
+
+/* Luminance times area times steradian: of white surfaces of radiance 1, pi times their
+ * area. */
+static double luminous_power(const light *l)
+{
+    enum { N = 4 };
+    double sum = 0.0;
+    for (int i = 0; i < N; i++) {
+        const wavelengths w = wavelengths_at(((float)i + 0.5f) / N);
+        float xyz[3];
+        spectrum_to_xyz(&w, l->kind->power(l->self, &w), xyz);
+        sum += (double)xyz[1] / N;
+    }
+    return sum;
+}
+
+static bool is_lit(const scene *s, bool glow_is_look)
+{
+    const box3 box = scene_world_bounds(s);
+    double glow = 0.0, radius = 0.5 * (double)length3(box.high - box.low);
+    for (guint i = 0; i < s->lights->len; i++) {
+        const light *l = s->lights->pdata[i];
+        if (l->kind->is_delta || l->kind->is_environment)
+            return true;
+        glow += luminous_power(l);
+    }
+    /* A sky of radiance 1 sends pi through each square metre of a sphere. */
+    double sky = G_PI * 4.0 * G_PI * radius * radius;
+    return !glow_is_look && glow > 0.0 && glow >= LEAST_GLOW * sky;
+}
+
+bool scene_complete(scene *s, const char *path, vec3 up, bool glow_is_look,
+                    GError **error)
 {
     if (s->shapes->len == 0) {
         error_at(error, (source_place){intern(path), 0, 0},
                  "expected something with a surface, found nothing");
         return false;
     }
-    return (lit || add_sky(s, path, up, error)) &&
-           (s->has_camera || add_view(s, path, up, error));
+    bool done = (is_lit(s, glow_is_look) || add_sky(s, path, up, error)) &&
+                (s->has_camera || add_view(s, path, up, error));
+    s->film.is_unexposed = true;
+    return done;
 }

@@ -6,8 +6,13 @@
 #include "scene/scene.h"
 
 /** @brief Gives a scene that has no light a soft sky, and one without a camera a view
- * that frames it, each with a note; and a film if the file had none.
+ * that frames it, each with a note; and a film if the file had none. Its formats do not
+ * say how the picture is exposed (film_settings.is_unexposed).
+ *
+ * A scene is lit by a lamp, or by surfaces that shine if they send out a hundredth at
+ * least of what a white sky would send into a sphere around it.
  * @param up the direction that is up in the file, unit
- * @param lit the file has light of its own
+ * @param glow_is_look surfaces that shine are meant to be seen, not to light anything
  * @return false with ERROR_INPUT naming the file if there is nothing to look at */
-bool scene_complete(scene *s, const char *path, vec3 up, bool lit, GError **error);
+bool scene_complete(scene *s, const char *path, vec3 up, bool glow_is_look,
+                    GError **error);

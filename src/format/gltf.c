@@ -333,11 +333,11 @@ static bool read_input(gltf *g, const input *in, GError **error)
     if (gltf_failed(g))
         g_propagate_error(error, g_steal_pointer(&g->json.error));
     json_close(&g->json);
-    /* Who sets up a camera has seen the light; a model that just glows here and there is
-     * looked at by a viewer's light. */
-    bool lit = g->has_lamp || (g->scene->has_camera && g->scene->lights->len > 0);
+    /* A model that just glows here and there is looked at by a viewer's light; who makes
+     * it brighter than paper, or sets up a camera, lights something by it. */
+    bool is_look = !g->shines && !g->scene->has_camera;
     return !*error &&
-           scene_complete(g->scene, g->path, vec3_make(0.0f, 1.0f, 0.0f), lit, error);
+           scene_complete(g->scene, g->path, vec3_make(0.0f, 1.0f, 0.0f), is_look, error);
 }
 
 static bool read_gltf(scene *s, const char *path, GError **error)

@@ -62,7 +62,8 @@ typedef struct gltf {
     guint n_meshes;
     GHashTable *notes; /**< texts given already */
     bool has_camera;
-    bool has_lamp; /**< a light, or a surface whose strength is given apart */
+    bool shines;   /**< a surface is brighter than white paper can be */
+    double lumens; /**< per unit of a lamp's numbers; 0: not known yet */
     bool solid;    /**< closed meshes that transmit are read as solid glass */
     guint n_solid; /**< such meshes */
 } gltf;

@@ -5,9 +5,8 @@
 
 static const gltf_extension_row rows[] = {
     {"KHR_lights_punctual", GLTF_RENDERED,
-     "candela and lux become W/sr and W/m² by 683 lm/W, as Blender writes them; spot "
-     "lamps of "
-     "its files fade as in Blender"},
+     "1 cd/m² is a radiance of 1; Blender's 683 lm for 1 W are taken back, and spot "
+     "lamps of its files fade as in Blender"},
     {"KHR_materials_anisotropy", GLTF_RENDERED, ""},
     {"KHR_materials_clearcoat", GLTF_APPROXIMATED, "with the surface's own normals"},
     {"KHR_materials_diffuse_transmission", GLTF_RENDERED, ""},

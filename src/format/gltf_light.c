@@ -2,10 +2,12 @@
  * Lights (KHR_lights_punctual) and cameras of glTF nodes. Both look along their node's
  * -z, with y up.
  *
- * glTF gives candela and lux. Blender, which writes most of these files, makes them from
- * watts by 683 lm/W, and takes that back when it reads them; so do we. An emissive factor
- * of 1 is a radiance of 1 as in Blender, so that lamps and shining surfaces keep their
- * proportion.
+ * Candela, lux and, of surfaces that shine, candela per square metre are taken as they
+ * stand: a radiance of 1 is 1 cd/m², as viewers of glTF show it, and as pbrt's own
+ * illuminance is meant. Blender makes lamps' numbers from watts by 683 lm/W, unless it is
+ * told to leave them as they are, yet leaves shining surfaces as they are: where it wrote
+ * the file and its lamps are that strong this is taken back, as Blender itself does, so
+ * that lamps and surfaces keep their proportion.
  */
 #include "format/gltf.h"
 
@@ -15,26 +17,61 @@
 #include <string.h>
 
 #define LUMENS_PER_WATT 683.0
+/* Between suns of Blender's that are so many watts per square metre, 0.1 to 20, and those
+   that are 683 times that; between its lamps of 2 to 2000 W, over 4 pi, likewise. */
+#define FAINT_SUN 37.0   /* lx */
+#define FAINT_LAMP 150.0 /* cd */
 #define DEGREES (180.0 / G_PI)
 
 enum { DEFAULT_HEIGHT = 720 };
-
-/* Colour times candela or lux, as radiometric numbers. */
-static params *emission(gltf *g, const json_value *lamp, const char *name)
-{
-    double color[3] = {1.0, 1.0, 1.0};
-    params *p = gltf_params(g);
-    json_numbers(lamp, "color", color, 3);
-    give_triple(p, PARAM_RGB, name, color[0], color[1], color[2]);
-    give_float(p, "scale", json_real(lamp, "intensity", 1.0) / LUMENS_PER_WATT);
-    return p;
-}
 
 static bool is_from_blender(gltf *g)
 {
     json_value asset = json_member(&g->root, "asset");
     const char *generator = json_text(&asset, "generator");
     return generator && g_str_has_prefix(generator, "Khronos glTF Blender I/O");
+}
+
+/* Whether a lamp's number is above those that Blender writes without 683 lm/W. */
+static bool is_strong(const json_value *lamp)
+{
+    const char *type = json_text(lamp, "type");
+    bool is_sun = type && strcmp(type, "directional") == 0;
+    return json_real(lamp, "intensity", 1.0) > (is_sun ? FAINT_SUN : FAINT_LAMP);
+}
+
+/* Lumens that a lamp's unit stands for: 683 where Blender made it from watts. */
+static double lumens_of_unit(gltf *g)
+{
+    json_value extensions;
+    json_value all = gltf_extension(&g->root, "KHR_lights_punctual", &extensions);
+    json_value lights = json_member(&all, "lights");
+    guint n = json_length(&lights);
+    bool strong = false;
+    for (guint i = 0; i < n && !strong && !gltf_failed(g); i++) {
+        json_value lamp = json_element(&lights, i);
+        strong = is_strong(&lamp);
+    }
+    if (!is_from_blender(g))
+        return 1.0;
+    gltf_note(g, LOG_NOTE,
+              strong ? "Blender's lamps: 683 lm are read as 1 W, as it does"
+                     : "Blender's lamps are faint: read as they stand, not "
+                       "as 683 lm for 1 W");
+    return strong ? LUMENS_PER_WATT : 1.0;
+}
+
+/* Colour times candela or lux. */
+static params *emission(gltf *g, const json_value *lamp, const char *name)
+{
+    double color[3] = {1.0, 1.0, 1.0};
+    params *p = gltf_params(g);
+    json_numbers(lamp, "color", color, 3);
+    give_triple(p, PARAM_RGB, name, color[0], color[1], color[2]);
+    if (!(g->lumens > 0.0))
+        g->lumens = lumens_of_unit(g);
+    give_float(p, "scale", json_real(lamp, "intensity", 1.0) / g->lumens);
+    return p;
 }
 
 /* Blender's lamps fade over a share of 1 - cos of the outer angle. What it writes into a
@@ -110,7 +147,6 @@ static void add_light(gltf *g, const json_value *lamp, const transform *to_world
     }
     if (is_black(lamp) || gltf_failed(g))
         return;
-    g->has_lamp = true;
     GError *error = NULL;
     g_autoptr(params) p = found->make(g, lamp);
     if (!gltf_failed(g) && !scene_add_light(g->scene, found->kind, p, to_world, &error))

@@ -240,7 +240,7 @@ static params *read_emission(gltf *g, const json_value *m)
     json_numbers(m, "emissiveFactor", color, 3);
     if (!(color[0] + color[1] + color[2] > 0.0) || !(strength > 0.0))
         return NULL;
-    g->has_lamp |= json_exists(&e);
+    g->shines |= strength * MAX(color[0], MAX(color[1], color[2])) > 1.0;
     params *p = gltf_params(g);
     gltf_give_textured(g, p, "L", &map, &(gltf_channel){0}, color);
     give_float(p, "scale", strength);

@@ -19,7 +19,7 @@ static bool read_ply_scene(scene *s, const char *path, GError **error)
     at.material = scene_add_material(s, NULL, "diffuse", p, error);
     return at.material != NO_INDEX && ply_read(path, &m, error) &&
            scene_add_mesh(s, &m, &at, place, error) &&
-           scene_complete(s, path, vec3_make(0.0f, 1.0f, 0.0f), false, error);
+           scene_complete(s, path, vec3_make(0.0f, 1.0f, 0.0f), true, error);
 }
 
 static bool is_ply(const char *bytes, size_t size)

@@ -29,7 +29,8 @@ typedef struct film_settings {
     int width, height;
     char *filename; /**< absolute or relative to the working folder, NULL if not given */
     float iso;      /**< pbrt's sensor speed; radiance is scaled by iso / 100 */
-    float exposure; /**< stops, for 8-bit output; 0 */
+    bool is_unexposed; /**< the file's format has no words for how bright its picture is
+                          to be */
     float most;     /**< the largest of X, Y, Z of a sample on the sensor; 0: any */
     float kelvin;   /**< daylight that is to look white; 0: no white balance */
     bool gbuffer;   /**< with the layers that pbrt's film of that name has */
