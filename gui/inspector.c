@@ -348,7 +348,7 @@ static void add_display(inspector *n)
     GtkWidget *list, *group = group_make("Show", &list);
     static const char *const first[] = {"Picture", NULL};
     n->layer = choice_make(first);
-    n->exposure = slider_make(-10.0, 10.0, 0.25, 2);
+    n->exposure = slider_make(-20.0, 20.0, 0.25, 2);
     n->curve = choice_make(tone_curve_names);
     n->gamma = slider_make(1.0, 4.0, 0.05, 2);
     n->false_colour = gtk_switch_new();

@@ -73,6 +73,16 @@ static void show_materials(window *w, held_scene *scene)
         lobe_view_choose_number(w->lobes, (unsigned)at.material);
 }
 
+/* A new scene begins at no exposure, unless the user has chosen one. */
+static void forget_exposure(window *w)
+{
+    if (fabs(w->exposed) > 0.0 &&
+        !(fabs(w->exposed - inspector_exposure(w->inspector)) > 1e-6))
+        inspector_set_exposure(w->inspector, 0.0);
+    w->exposed = 0.0;
+    w->judged = false;
+}
+
 static void scene_loaded(window *w, held_scene *scene)
 {
     g_autoptr(NephSettings) fresh = neph_scene_settings(scene->scene);
@@ -88,6 +98,7 @@ static void scene_loaded(window *w, held_scene *scene)
     take_view(w, scene);
     held_scene_unref(w->scene);
     w->scene = held_scene_ref(scene);
+    forget_exposure(w);
     window_photons_new_scene(w);
     show_materials(w, scene);
     camera_panel_show(w->camera_panel, &w->view.camera);
@@ -127,10 +138,46 @@ static void failed(window *w, const session_news *news)
     }
 }
 
+static char *exposure_text(NephExposure is, double better, bool exposes)
+{
+    const char *looks = is == NEPH_EXPOSURE_DARK ? "black" : "white";
+    if (is == NEPH_EXPOSURE_BLACK)
+        return g_strdup("The picture is black: no light reaches what the camera sees");
+    return g_strdup_printf(exposes ? "The picture would be nearly %s and is exposed by "
+                                     "%+g stops (page Inspect)"
+                                   : "The picture is nearly %s: an exposure of %+g stops "
+                                     "shows it (page Inspect)",
+                           looks, better);
+}
+
+/* Once a scene: a picture that shows nothing is told, and exposed where its file has no
+   words for that. A quick look may miss what light there is. */
+static void judge_exposure(window *w, const held_picture *picture)
+{
+    float better;
+    NephExposure is = neph_image_exposure(
+        picture->image, (float)inspector_exposure(w->inspector), &better);
+    if (w->judged || (is == NEPH_EXPOSURE_BLACK && picture->coarse))
+        return;
+    w->judged = true;
+    if (is == NEPH_EXPOSURE_GOOD)
+        return;
+    bool exposes =
+        is != NEPH_EXPOSURE_BLACK && !neph_scene_says_exposure(w->scene->scene);
+    g_autofree char *text = exposure_text(is, (double)better, exposes);
+    messages_panel_add(w->messages, exposes ? MESSAGE_NOTE : MESSAGE_WARNING, text);
+    show_message_count(w);
+    if (exposes) {
+        inspector_set_exposure(w->inspector, (double)better);
+        w->exposed = inspector_exposure(w->inspector);
+    }
+}
+
 static void show_picture(window *w, held_picture *picture)
 {
     canvas_set_picture(w->canvas, picture);
     inspector_picture_changed(w->inspector);
+    judge_exposure(w, picture);
 }
 
 void window_on_news(const session_news *news, void *data)

@@ -65,6 +65,8 @@ struct window {
     NephStatistics statistics; /* of the render, as last told */
     double fraction;
     bool reloading; /* the next scene is the same file: keep what the user changed */
+    bool judged;    /* whether the scene's picture shows anything has been said */
+    double exposed; /* stops that the program chose for it; 0: none */
     bool focusing;  /* the next click chooses what is sharp */
 
     held_photons *photons; /* of the photon view; NULL: none yet */

@@ -121,6 +121,71 @@ static void test_errors(void)
     view_close(w);
 }
 
+/* ---- Pictures that show nothing ---- */
+
+static const char dark_scene[] =
+    "LookAt 0 0 -2  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 50\n"
+    "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\n"
+    "Integrator \"photonmap\" \"integer passes\" 1 \"integer spp\" 1\nWorldBegin\n"
+    "LightSource \"point\" \"rgb I\" [0.001 0.001 0.001]\nShape \"sphere\" \"float "
+    "radius\" 3\n";
+
+static char *write_sun(const char *name, const char *lux)
+{
+    g_autofree char *more = g_strdup_printf(
+        "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"directional\","
+        "\"intensity\":%s}]}},",
+        lux);
+    char *path = write_triangle(name, more);
+    g_autofree char *text = NULL;
+    g_assert_true(g_file_get_contents(path, &text, NULL, NULL));
+    GString *with_lamp = g_string_new(text);
+    g_string_replace(
+        with_lamp, "{\"mesh\":0}",
+        "{\"mesh\":0,\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}", 1);
+    g_assert_true(g_file_set_contents(path, with_lamp->str, -1, NULL));
+    g_string_free(with_lamp, TRUE);
+    return path;
+}
+
+static bool is_plain(window *w)
+{
+    return w->scene && w->scene->width == 24 && w->exposed < 1.0;
+}
+
+static bool is_judged(window *w)
+{
+    return w->judged;
+}
+
+/* A pbrt scene is shown as it says, with a warning; a glTF file, which cannot say, is
+   exposed, with a note, and what comes after it is not. */
+static void test_exposure(void)
+{
+    g_autofree char *dark = view_write("dark.pbrt", dark_scene);
+    g_autofree char *plain = view_write("bright.pbrt", view_scene);
+    g_autofree char *sun = write_sun("sun.gltf", "0.002");
+    window *w = open_file(dark);
+    view_wait(is_judged, w);
+    g_assert_nonnull(find_text(messages_panel_strip(w->messages), "nearly black"));
+    g_assert_cmpfloat_with_epsilon(inspector_exposure(w->inspector), 0.0, 1e-9);
+    window_open(w, sun);
+    while (w->exposed < 1.0)
+        g_main_context_iteration(NULL, TRUE);
+    g_assert_cmpfloat(inspector_exposure(w->inspector), >, 8.0);
+    g_assert_cmpfloat((double)canvas_options(w->canvas)->exposure, >, 8.0);
+    const GPtrArray *list = messages_panel_list(w->messages);
+    const message *last = list->pdata[list->len - 1];
+    g_assert_cmpint(last->kind, ==, MESSAGE_NOTE);
+    g_assert_nonnull(strstr(last->text, "is exposed by +"));
+    window_open(w, plain);
+    view_wait(is_plain, w);
+    view_wait(is_judged, w);
+    g_assert_cmpfloat_with_epsilon(inspector_exposure(w->inspector), 0.0, 1e-9);
+    g_assert_null(find_text(messages_panel_strip(w->messages), "nearly"));
+    view_close(w);
+}
+
 /* ---- Long errors ---- */
 
 static void assert_within(GtkWidget *from, GtkWidget *page, int *n)
@@ -173,6 +238,7 @@ int main(int argc, char **argv)
     view_add_test("/view-messages/notes", test_notes);
     view_add_test("/view-messages/warnings", test_warnings);
     view_add_test("/view-messages/errors", test_errors);
+    view_add_test("/view-messages/exposure", test_exposure);
     view_add_test("/view-messages/long-errors", test_long_errors);
     return view_run();
 }
