@@ -4,8 +4,13 @@
  */
 #pragma once
 
+#include <stdint.h>
+
 /** @brief What the shell is told. 1..3 are NephError's values. */
 enum { EXIT_DONE = 0, EXIT_INPUT = 1, EXIT_USAGE = 2, EXIT_FAILED = 3 };
+
+/** @brief When the program began, monotonic µs. */
+extern int64_t program_start;
 
 typedef struct command {
     const char *name;

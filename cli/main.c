@@ -25,6 +25,8 @@ static const command commands[] = {
     {"view", "open a window on a scene", command_view},
 };
 
+int64_t program_start;
+
 static char *help_text(void)
 {
     GString *out = g_string_new("Usage:\n  nephroid COMMAND [OPTION…] [FILE…]\n\n"
@@ -50,6 +52,7 @@ static int run_command(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    program_start = g_get_monotonic_time();
     setlocale(LC_CTYPE, ""); /* file names; numbers stay with the point */
     g_set_prgname("nephroid");
     stop_init();

@@ -28,8 +28,7 @@ static char *clock_text(double seconds)
 }
 
 /* "pass 3 of 16, 0:12 left"; too early no time is told. */
-static char *state_text(const progress *p, double fraction, const NephStatistics *so_far,
-                        int64_t now)
+static char *state_text(double fraction, const NephStatistics *so_far)
 {
     GString *out = g_string_new("pass ");
     const int64_t passes = so_far->passes, wanted = so_far->passes_wanted;
@@ -38,7 +37,7 @@ static char *state_text(const progress *p, double fraction, const NephStatistics
                                MIN(passes + 1, wanted), wanted);
     else
         g_string_append_printf(out, "%" G_GINT64_FORMAT, passes + 1);
-    double elapsed = (double)(now - p->start) / G_USEC_PER_SEC;
+    double elapsed = so_far->time_total;
     if (fraction > 0.01 || (fraction > 0.0 && elapsed > 2.0)) {
         g_autofree char *left = clock_text(elapsed * (1.0 - fraction) / fraction);
         g_string_append_printf(out, ", %s left", left);
@@ -67,7 +66,7 @@ bool progress_show(double fraction, const NephStatistics *statistics, void *data
                          : tenths > p->shown_tenths || quiet_for >= line_interval;
     if (p->quiet || !due)
         return true;
-    g_autofree char *state = state_text(p, done, statistics, now);
+    g_autofree char *state = state_text(done, statistics);
     if (p->on_terminal)
         draw_bar(done, state);
     else

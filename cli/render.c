@@ -34,7 +34,7 @@ static const GOptionEntry entries[] = {
     {"passes", 0, 0, G_OPTION_ARG_STRING, &given.settings.passes, "Number of passes",
      "N"},
     {"time", 0, 0, G_OPTION_ARG_STRING, &given.settings.time,
-     "Stop after so many seconds, when a pass is done", "SECONDS"},
+     "End after so many seconds, with a picture", "SECONDS"},
     {"noise", 0, 0, G_OPTION_ARG_STRING, &given.settings.noise,
      "Stop when the estimated relative error is below this", "X"},
     {"every", 0, 0, G_OPTION_ARG_STRING, &given.every,
@@ -192,6 +192,23 @@ static int write_statistics(const NephRender *render)
     return result;
 }
 
+/* Passes that time or noise has ended can be had again by their number. */
+static void report_time(const NephRender *render)
+{
+    NephStatistics s;
+    neph_render_statistics(render, &s);
+    g_auto(GStrv) repeat = neph_render_repeat(render);
+    if (given.quiet || s.passes_wanted > 0)
+        return;
+    if (repeat) {
+        g_autofree char *sets = g_strjoinv(" --set ", repeat);
+        tell("note", "the same picture without a limit: --set %s", sets);
+    } else if (s.grid > 1) {
+        tell("note", "time was up in the first pass: every %d%s pixel is rendered",
+             s.grid, s.grid == 2 ? "nd" : "th");
+    }
+}
+
 /* Tells why the render ended early. @return whether there is something to write. */
 static bool report_end(const NephRender *render, const GError *error, int *exit_code)
 {
@@ -238,10 +255,14 @@ static int run(job *j, NephRender *render)
     g_autoptr(GError) error = NULL;
     int ended = EXIT_DONE;
     watch w = {j, render, progress_begin(given.quiet)};
+    /* All counts that is done from the program's start to its end. */
+    double before = (double)(g_get_monotonic_time() - program_start) / G_USEC_PER_SEC;
+    neph_render_set_time_around(render, before, (const char *const *)j->outputs);
     bool done = neph_render_run(render, look_on, &w, &error);
     progress_end(&w.shown);
     if (!done && !report_end(render, error, &ended))
         return ended;
+    report_time(render);
     int images = write_images(j, render, false);
     int statistics = write_statistics(render);
     return ended ? ended : images ? images : statistics;

@@ -212,6 +212,29 @@ static void test_stops_by_rules(folder *f, gconstpointer data)
     }
 }
 
+/* A pass would take minutes: the picture is there all the same, and not black. */
+static void test_time_is_short(folder *f, gconstpointer data)
+{
+    (void)data;
+    double start = (double)g_get_monotonic_time() * 1e-6;
+    g_auto(result) r = run(f, "render box.pbrt --size 800x600 --spp 4000 --time 0.5 -o "
+                              "a.pfm");
+    double took = (double)g_get_monotonic_time() * 1e-6 - start;
+    g_test_message("%g s", took);
+    g_assert_cmpint(r.code, ==, 0);
+    contains(r.err, "note: ");
+    contains(r.out, "stopped by time");
+    g_assert_cmpfloat(took, <, 10.0); /* on a busy machine */
+    run_well(f, "image a.pfm -o one.pfm --size 1x1");
+    g_autofree char *path = g_build_filename(f->path, "one.pfm", NULL);
+    g_autofree char *one = NULL;
+    gsize size;
+    float red;
+    g_assert_true(g_file_get_contents(path, &one, &size, NULL));
+    memcpy(&red, one + size - 3 * sizeof red, sizeof red);
+    g_assert_cmpfloat((double)red, >, 0.0);
+}
+
 /* Looks at the image of a render under way until it has changed so often; each time it
    must be whole. */
 static void test_every(folder *f, gconstpointer data)
@@ -386,6 +409,7 @@ int main(int argc, char **argv)
     folder_add_test("/cli/render/exposure-of-pbrt", test_exposure_of_pbrt);
     folder_add_test("/cli/order", test_order_of_settings);
     folder_add_test("/cli/render/stops-by-rules", test_stops_by_rules);
+    folder_add_test("/cli/render/time-is-short", test_time_is_short);
     folder_add_test("/cli/render/every", test_every);
     folder_add_test("/cli/render/every-is-read", test_every_is_read);
     g_test_add("/cli/interrupt", folder, GINT_TO_POINTER(SIGINT), folder_set_up,

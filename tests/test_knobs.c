@@ -58,10 +58,11 @@ static const struct {
     {"seed", "3", ""},
 };
 
-/* What changes when or how fast the same picture is there; and a last one that acts where
-   it pays, see test_spots.c. */
-static const char *const others[] = {"integrator", "passes",     "time",         "noise",
-                                     "threads",    "photon_map", "bright_spots", NULL};
+/* What changes when or how fast the same picture is there; and two that act where it pays,
+   see test_spots.c and test_pace.c. */
+static const char *const others[] = {"integrator",     "passes",     "time",
+                                     "noise",          "threads",    "photon_map",
+                                     "planned_passes", "bright_spots", NULL};
 
 static image *picture(const scene *s, const char *integrator, const char *with)
 {

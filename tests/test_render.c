@@ -26,21 +26,23 @@ static void test_rules(void)
         stop_state now;
         render_stop expected;
     } cases[] = {
-        {&five, {4, 1e9, 1, 0}, RENDER_GOES_ON},
-        {&five, {5, 0, 0, INFINITY}, RENDER_PASSES_DONE},
-        {&none, {15, 0, 0, INFINITY}, RENDER_GOES_ON},
-        {&none, {16, 0, 0, INFINITY}, RENDER_PASSES_DONE},
-        {&second, {0, 7, 0, INFINITY}, RENDER_GOES_ON}, /* one pass is always rendered */
-        {&second, {1, 7, 7, INFINITY}, RENDER_TIME_UP},
-        {&second, {1000, 0.99, 0.001, INFINITY}, RENDER_GOES_ON},
-        {&second, {1000, 1.0, 0.001, INFINITY}, RENDER_TIME_UP},
-        {&second, {2, 0.6, 0.3, INFINITY}, RENDER_GOES_ON},
-        {&second, {1, 0.6, 0.6, INFINITY}, RENDER_TIME_UP}, /* would take 1.2 s */
-        {&still, {3, 1e9, 1, 0.01}, RENDER_GOES_ON},        /* too few to know */
-        {&still, {4, 0, 1, 0.1}, RENDER_NOISE_REACHED},
-        {&still, {1e6, 0, 1, 0.11}, RENDER_GOES_ON},
-        {&all, {50, 0.5, 0.01, 0.2}, RENDER_GOES_ON},
-        {&all, {50, 0.5, 0.01, 0.05}, RENDER_NOISE_REACHED},
+        {&five, {4, 1e9, 1, 0, 0}, RENDER_GOES_ON},
+        {&five, {5, 0, 0, INFINITY, 0}, RENDER_PASSES_DONE},
+        {&none, {15, 0, 0, INFINITY, 0}, RENDER_GOES_ON},
+        {&none, {16, 0, 0, INFINITY, 0}, RENDER_PASSES_DONE},
+        {&second,
+         {0, 7, 0, INFINITY, 0},
+         RENDER_GOES_ON}, /* one pass is always rendered */
+        {&second, {1, 7, 7, INFINITY, 0}, RENDER_TIME_UP},
+        {&second, {1000, 0.99, 0.001, INFINITY, 0}, RENDER_GOES_ON},
+        {&second, {1000, 1.0, 0.001, INFINITY, 0}, RENDER_TIME_UP},
+        {&second, {2, 0.6, 0.3, INFINITY, 0}, RENDER_GOES_ON},
+        {&second, {1, 0.6, 0.6, INFINITY, 0}, RENDER_TIME_UP}, /* would take 1.2 s */
+        {&still, {3, 1e9, 1, 0.01, 0}, RENDER_GOES_ON},        /* too few to know */
+        {&still, {4, 0, 1, 0.1, 0}, RENDER_NOISE_REACHED},
+        {&still, {1e6, 0, 1, 0.11, 0}, RENDER_GOES_ON},
+        {&all, {50, 0.5, 0.01, 0.2, 0}, RENDER_GOES_ON},
+        {&all, {50, 0.5, 0.01, 0.05, 0}, RENDER_NOISE_REACHED},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         g_test_message("case %zu", i);
@@ -51,8 +53,8 @@ static void test_rules(void)
 static void test_fraction(void)
 {
     const settings four = with_rules(4, 0, 0), all = with_rules(100, 10, 0.1);
-    const stop_state middle = {2.5, 0, 0, INFINITY}, by_time = {1, 8, 1, 1.0},
-                     by_noise = {1, 1, 1, 0.2}, late = {1, 99, 1, INFINITY};
+    const stop_state middle = {2.5, 0, 0, INFINITY, 0}, by_time = {1, 8, 1, 1.0, 0},
+                     by_noise = {1, 1, 1, 0.2, 0}, late = {1, 99, 1, INFINITY, 0};
     g_assert_cmpfloat_with_epsilon(stop_fraction(&four, &middle), 0.625, 1e-12);
     g_assert_cmpfloat_with_epsilon(stop_fraction(&all, &by_time), 0.8, 1e-12);
     g_assert_cmpfloat_with_epsilon(stop_fraction(&all, &by_noise), 0.25, 1e-12);

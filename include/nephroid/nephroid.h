@@ -327,6 +327,8 @@ typedef struct NephStatistics {
                       passes; INFINITY while there are too few. While rendering it is only
                       kept if the setting `noise` asks for it. */
     bool can_look; /**< neph_render_image may be called now */
+    int grid; /**< while no pass is done: every so manieth pixel is, in both directions;
+                 0: none yet */
     NephStop stopped_by;
 } NephStatistics;
 
@@ -348,6 +350,15 @@ NEPH_API void neph_render_free(NephRender *render);
  * goes on from there to the same image. */
 NEPH_API bool neph_render_run(NephRender *render, NephProgressFunc progress, void *data,
                               GError **error);
+/** @brief Before the run: of the setting `time`, so many seconds have gone by already,
+ * and what it takes to write the picture to these files (neph_render_image,
+ * neph_image_write) is kept for after it. @param paths NULL-terminated, copied */
+NEPH_API void neph_render_set_time_around(NephRender *render, double before,
+                                          const char *const *paths);
+/** @brief The settings, "name=value", that with those asked for, but `time` and `noise`,
+ * make a render give the very same picture: the passes done, and what was chosen to fit
+ * into the time. NULL-terminated, freed with g_strfreev; NULL: no pass is done. */
+NEPH_API char **neph_render_repeat(const NephRender *render);
 /** @brief Asks neph_render_run to stop soon. Any thread; also from a signal handler. */
 NEPH_API void neph_render_cancel(NephRender *render);
 /** @brief The mean of the passes so far, with layers; owned by the caller.

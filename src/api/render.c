@@ -32,6 +32,7 @@ NephStatistics statistics_export(const render_statistics *from)
                           .n_not_finite = from->n_not_finite,
                           .noise = from->noise,
                           .can_look = from->can_look,
+                          .grid = from->grid,
                           .stopped_by = (NephStop)from->stopped_by};
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
         out.emitted[c] = from->emitted[c];
@@ -92,4 +93,14 @@ void neph_render_statistics(const NephRender *r, NephStatistics *out)
 double neph_render_noise(const NephRender *r)
 {
     return render_noise(r->render);
+}
+
+void neph_render_set_time_around(NephRender *r, double before, const char *const *paths)
+{
+    render_set_time_around(r->render, before, paths);
+}
+
+char **neph_render_repeat(const NephRender *r)
+{
+    return render_repeat(r->render);
 }

@@ -5,13 +5,18 @@
  *
  * The image is the data window: what lies outside it is not in the file.
  */
+#include "base/parallel.h"
 #include "image/codec.h"
 
 #include <errno.h>
 #include <openexr.h>
 #include <string.h>
 
-enum { MAX_SHORT_NAME = 31 };
+enum {
+    MAX_SHORT_NAME = 31,
+    CHUNKS_A_THREAD = 4, /* packed at once */
+    ZIP_LEVEL = 2, /* of 9: pictures get hardly larger, and are written much sooner */
+};
 
 /* What the callbacks of one context share. */
 typedef struct exr_job {
@@ -378,7 +383,9 @@ static bool declare(exr_job *job)
                    exr_add_part(job->context, NULL, EXR_STORAGE_SCANLINE, &job->part)) ||
         !succeeded(job, exr_initialize_required_attr_simple(job->context, job->part,
                                                             img->width, img->height,
-                                                            EXR_COMPRESSION_ZIP)))
+                                                            EXR_COMPRESSION_ZIP)) ||
+        !succeeded(job,
+                   exr_set_zip_compression_level(job->context, job->part, ZIP_LEVEL)))
         return false;
     for (int c = 0; c < img->n_channels; c++)
         if (!succeeded(job, exr_add_channel(job->context, job->part, img->channels[c],
@@ -405,34 +412,77 @@ static void aim_encoder(const image *img, exr_encode_pipeline_t *encoder, int y)
     }
 }
 
-static bool write_chunk(exr_job *job, exr_encode_pipeline_t *encoder, int y)
+/* A chunk of rows on its way: packed on any thread, written in order. */
+typedef struct exr_chunk {
+    exr_job *job;
+    exr_encode_pipeline_t encoder;
+    exr_result_t (*write)(exr_encode_pipeline_t *encoder);
+    exr_result_t packed;
+} exr_chunk;
+
+static bool begin_chunk(exr_chunk *c, int y)
 {
-    exr_chunk_info_t chunk;
-    if (!succeeded(job,
-                   exr_write_scanline_chunk_info(job->context, job->part, y, &chunk)))
+    exr_job *job = c->job;
+    exr_chunk_info_t rows;
+    if (!succeeded(job, exr_write_scanline_chunk_info(job->context, job->part, y, &rows)))
         return false;
-    bool first = !encoder->channels;
+    bool first = !c->encoder.channels;
     exr_result_t result =
-        first ? exr_encoding_initialize(job->context, job->part, &chunk, encoder)
-              : exr_encoding_update(job->context, job->part, &chunk, encoder);
+        first ? exr_encoding_initialize(job->context, job->part, &rows, &c->encoder)
+              : exr_encoding_update(job->context, job->part, &rows, &c->encoder);
     if (!succeeded(job, result))
         return false;
-    aim_encoder(job->to_write, encoder, y);
-    return (!first || succeeded(job, exr_encoding_choose_default_routines(
-                                         job->context, job->part, encoder))) &&
-           succeeded(job, exr_encoding_run(job->context, job->part, encoder));
+    aim_encoder(job->to_write, &c->encoder, y);
+    if (first && !succeeded(job, exr_encoding_choose_default_routines(
+                                     job->context, job->part, &c->encoder)))
+        return false;
+    if (first)
+        c->write = c->encoder.write_fn;
+    c->encoder.write_fn = c->encoder.yield_until_ready_fn = NULL;
+    return true;
+}
+
+static void pack_chunks(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    exr_chunk *chunks = data;
+    for (size_t i = begin; i < end; i++) {
+        exr_job *job = chunks[i].job;
+        current = job;
+        chunks[i].packed = exr_encoding_run(job->context, job->part, &chunks[i].encoder);
+    }
+}
+
+/* @return the row behind the last one written; -1: failed */
+static int write_chunks(exr_job *job, exr_chunk *chunks, size_t n, int y, int step)
+{
+    size_t used = 0;
+    for (int at = y; used < n && at < job->to_write->height; at += step)
+        if (!begin_chunk(&chunks[used++], at))
+            return -1;
+    parallel_for(used, 1, 0, NULL, pack_chunks, chunks);
+    for (size_t i = 0; i < used; i++)
+        if (!succeeded(job, chunks[i].packed) ||
+            !succeeded(job, chunks[i].write(&chunks[i].encoder)))
+            return -1;
+    return y + (int)used * step;
 }
 
 static bool write_pixels(exr_job *job)
 {
-    exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
     int32_t step = 0;
-    bool written =
-        succeeded(job, exr_get_scanlines_per_chunk(job->context, job->part, &step));
-    for (int y = 0; written && y < job->to_write->height; y += step)
-        written = write_chunk(job, &encoder, y);
-    exr_encoding_destroy(job->context, &encoder);
-    return written;
+    size_t n = CHUNKS_A_THREAD * parallel_threads(0);
+    g_autofree exr_chunk *chunks = g_new0(exr_chunk, n);
+    int y = succeeded(job, exr_get_scanlines_per_chunk(job->context, job->part, &step))
+                ? 0
+                : -1;
+    for (size_t i = 0; i < n; i++)
+        chunks[i] = (exr_chunk){job, EXR_ENCODE_PIPELINE_INITIALIZER, NULL, 0};
+    while (y >= 0 && y < job->to_write->height)
+        y = write_chunks(job, chunks, n, y, step);
+    for (size_t i = 0; i < n; i++)
+        exr_encoding_destroy(job->context, &chunks[i].encoder);
+    return y >= 0;
 }
 
 static bool write_exr(const image *img, const image_sink *sink,

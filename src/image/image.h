@@ -74,6 +74,9 @@ image *image_read_bytes(const char *name, GBytes *bytes,
 bool image_write(const image *img, const char *path, const image_write_options *options,
                  GError **error);
 
+/** @brief About how long image_write would take for the image, s: writes it to memory. */
+double image_write_seconds(const image *img, const char *path);
+
 /** @brief Whether image_write knows the path's extension and its folder is writable:
  * asked before a long render. */
 bool image_can_write(const char *path, GError **error);

@@ -375,7 +375,7 @@ static size_t pixel_put(const film *f, size_t i)
 {
     size_t width = (size_t)f->width, x = i % width, y = i / width;
     const size_t weight = offsetof(film_sum, weight) / sizeof(double);
-    for (size_t step = 1; step <= FILM_COARSE; step *= 2) {
+    for (size_t step = (size_t)MAX(f->grid, 1); step <= FILM_COARSE; step *= 2) {
         size_t at = (y - y % FILM_TILE % step) * width + x - x % FILM_TILE % step;
         if (fabsf(f->pass[at].number[weight]) > 0.0f)
             return at;
@@ -400,15 +400,36 @@ static void write_pixel(const film *f, size_t i, float *out)
     gbuffer_write(f, i, sum, out + 3 * f->n_groups);
 }
 
-image *film_image(const film *f, GError **error)
+typedef struct image_loop {
+    const film *film;
+    image *image;
+    size_t first;
+} image_loop;
+
+static void write_pixels(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const image_loop *loop = data;
+    for (size_t i = begin; i < end; i++)
+        write_pixel(loop->film, loop->first + i,
+                    loop->image->pixels + i * (size_t)loop->image->n_channels);
+}
+
+image *film_image(const film *f, unsigned threads, GError **error)
+{
+    return film_image_rows(f, 0, f->height, threads, error);
+}
+
+image *film_image_rows(const film *f, int y, int rows, unsigned threads, GError **error)
 {
     g_autoptr(GPtrArray) names = channel_names(f);
-    image *img = image_new(f->width, f->height, (int)names->len,
+    image *img = image_new(f->width, rows, (int)names->len,
                            (const char *const *)names->pdata, error);
     if (!img)
         return NULL;
-    for (size_t i = 0; i < n_pixels(f); i++)
-        write_pixel(f, i, img->pixels + i * names->len);
+    image_loop loop = {f, img, (size_t)y * (size_t)f->width};
+    parallel_for((size_t)f->width * (size_t)rows, 1 << 12, threads, NULL, write_pixels,
+                 &loop);
     color_space_chromaticities(f->space, img->chromaticities);
     image_header_set(img, "colorSpace", color_space_name(f->space));
     return img;

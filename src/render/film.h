@@ -64,9 +64,11 @@ typedef struct film {
     double *groups;            /**< of the passes done */
     const char *const *group_names; /**< the scene's */
     int64_t n_passes;               /**< done */
-    float scale;                    /**< the sensor's: scene_imaging_ratio */
-    float most;                     /**< film_settings.most */
-    bool balanced;                  /**< by this matrix of XYZ */
+    int grid;      /**< of the first pass every so manieth pixel is done in
+                      both directions; 0: none of these grids is whole */
+    float scale;   /**< the sensor's: scene_imaging_ratio */
+    float most;    /**< film_settings.most */
+    bool balanced; /**< by this matrix of XYZ */
     double balance[9];
     const color_space *space;
     surface_sum *pass_surfaces; /**< of the pass; NULL: the film is no gbuffer */
@@ -116,6 +118,8 @@ void film_to_rgb(const film *f, const double sum[3], double weight, float out[3]
 /** @brief The picture: R G B, the layers' R G B, albedo, normal, depth; linear, film's
  * space. With two passes or more also variance.Y, the square of the standard error of
  * the luminance; with light groups their layers light.NAME; then those of a gbuffer.
- * Before the first pass is done, what was put of it, pixels that are still to come
- * looking like those beside. */
-image *film_image(const film *f, GError **error);
+ * Before the first pass is done, its finest grid that is whole, pixels that are still to
+ * come looking like those beside. */
+image *film_image(const film *f, unsigned threads, GError **error);
+/** @brief Some of its rows only, from y on. */
+image *film_image_rows(const film *f, int y, int rows, unsigned threads, GError **error);

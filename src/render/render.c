@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "render/gbuffer.h"
+#include "render/pace.h"
 #include "render/stop.h"
 
 #include <string.h>
@@ -14,11 +15,19 @@ enum {
 /* The caller hears of progress no more often than this, s. */
 #define BEAT_INTERVAL 0.1
 
+/* Nothing is done before it is. */
+#define LARGEST_FRACTION 0.99
+
 struct render {
-    transport_plan plan;
+    transport_plan plan; /* by settings that may be paced */
+    settings asked;
     const transport_kind *transport;
     film film;
-    bool prepared;
+    bool paced, prepared;
+    bool given_up; /* the pass under way, since the time is over */
+    double before; /* see render_set_time_around */
+    char **paths;
+    double after; /* s that writing to these takes */
     uint32_t passes_done;
     render_statistics statistics;
     cancel_flag cancel;
@@ -50,6 +59,7 @@ render *render_new(const scene *s, const settings *how, GError **error)
     r->transport = transport_find(how->integrator);
     r->n_threads = parallel_threads((unsigned)how->threads);
     r->plan.how.threads = r->n_threads;
+    r->asked = r->plan.how;
     r->statistics.noise = (double)INFINITY;
     bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
     r->statistics.passes_wanted = open_end ? 0 : settings_most_passes(how);
@@ -65,6 +75,7 @@ void render_free(render *r)
         return;
     film_clear(&r->film);
     transport_plan_clear(&r->plan);
+    g_strfreev(r->paths);
     g_aligned_free(r);
 }
 
@@ -95,6 +106,7 @@ static stop_state state_of(const render *r, double pass_fraction)
         .elapsed = seconds() - r->start,
         .last_pass = r->last_pass,
         .noise = r->statistics.noise,
+        .after = r->after,
     };
 }
 
@@ -103,15 +115,31 @@ static void tell(render *r, double pass_fraction)
     stop_state now = state_of(r, pass_fraction);
     r->last_beat = seconds();
     r->statistics.time_total = now.elapsed;
-    if (r->progress &&
-        !r->progress(stop_fraction(&r->plan.how, &now), &r->statistics, r->progress_data))
+    double fraction = r->statistics.stopped_by == RENDER_GOES_ON
+                          ? fmin(stop_fraction(&r->plan.how, &now), LARGEST_FRACTION)
+                          : 1.0;
+    if (r->progress && !r->progress(fraction, &r->statistics, r->progress_data))
         render_cancel(r);
+}
+
+/* A pass that is not done when the time is over is given up, unless there was none: then
+   there must be a coarse picture at least. */
+static void watch_time(render *r)
+{
+    stop_state now = state_of(r, 0.0);
+    bool has_picture = r->passes_done > 0 || r->film.grid > 0;
+    if (r->prepared && has_picture && stop_at_once(&r->plan.how, &now)) {
+        r->given_up = true;
+        render_cancel(r);
+    }
 }
 
 /* cancel_flag.beat: comes from all parallel work, on the thread that called. */
 static void beat(void *data)
 {
     render *r = data;
+    if (r->plan.how.time > 0.0)
+        watch_time(r);
     if (r->progress && seconds() - r->last_beat >= BEAT_INTERVAL)
         tell(r, r->prepared ? pass_fraction(r) : 0.0);
 }
@@ -327,6 +355,7 @@ static void close_loop(camera_loop *loop)
 /* Nobody works on the film just now, and of the first pass there is a coarse picture. */
 static void tell_coarse(render *r)
 {
+    watch_time(r);
     r->statistics.can_look = true;
     tell(r, pass_fraction(r));
     r->statistics.can_look = false;
@@ -343,6 +372,8 @@ static bool render_tiles(camera_loop *loop)
         loop->fill = loop->step < first_step;
         atomic_store(&r->tiles_done, 0);
         done = parallel_for(r->n_tiles, 1, r->n_threads, &r->cancel, render_tile, loop);
+        if (done && r->passes_done == 0)
+            r->film.grid = r->statistics.grid = loop->step;
         if (done && loop->step > 1)
             tell_coarse(r);
     }
@@ -389,6 +420,8 @@ static void note_pass(render *r, double photons_done)
     r->photon_share = r->last_pass > 0.0 ? photons_done / r->last_pass : 0.0;
     st->passes = ++r->passes_done;
     st->can_look = true;
+    if (r->plan.how.time > 0.0 && r->passes_done == 1)
+        r->after = pace_write_seconds(&r->film, r->n_threads, r->paths);
     if (r->plan.how.noise > 0.0)
         st->noise = film_noise(&r->film);
 }
@@ -411,11 +444,26 @@ static bool run_pass(render *r, GError **error)
         return false;
     film_end_pass(&r->film, r->n_threads);
     note_pass(r, photons_done);
-    tell(r, 0.0);
     return true;
 }
 
 /* ---- All passes ---- */
+
+/* Where there is little time, passes are made small enough for it. */
+static bool set_pace(render *r, GError **error)
+{
+    const settings *how = &r->asked;
+    pace_costs costs;
+    double n_pixels = (double)r->film.width * (double)r->film.height;
+    if (r->paced || !(how->time > 0.0) || how->passes > 0)
+        return true;
+    double left = how->time - r->after - (seconds() - r->start);
+    if (!pace_measure(&r->plan, &r->film, left, &r->cancel, &costs, error))
+        return false;
+    left = how->time - r->after - (seconds() - r->start);
+    r->plan.how = pace_choose(how, &costs, n_pixels, left);
+    return r->paced = true;
+}
 
 static bool prepare(render *r, GError **error)
 {
@@ -423,22 +471,43 @@ static bool prepare(render *r, GError **error)
     if (r->prepared)
         return true;
     transport_plan_clear(&r->plan);
-    r->prepared = r->transport->prepare(&r->plan, &r->cancel, error);
+    r->prepared =
+        set_pace(r, error) && r->transport->prepare(&r->plan, &r->cancel, error);
     r->statistics.time_prepare += seconds() - start;
     return r->prepared;
+}
+
+/* The next pass; true also where it was given up for want of time. */
+static bool try_pass(render *r, GError **error)
+{
+    GError *failed = NULL;
+    r->film.grid = r->statistics.grid = 0;
+    if (run_pass(r, &failed))
+        return true;
+    if (r->given_up && g_error_matches(failed, NEPH_ERROR, ERROR_CANCELLED)) {
+        g_clear_error(&failed);
+        atomic_store(&r->cancel.set, false);
+        r->statistics.stopped_by = RENDER_TIME_UP;
+        return true;
+    }
+    g_propagate_error(error, failed);
+    return false;
 }
 
 /* Renders until a rule says stop. */
 static bool run_passes(render *r, GError **error)
 {
-    for (;;) {
-        stop_state now = state_of(r, 0.0);
-        r->statistics.stopped_by = stop_decide(&r->plan.how, &now);
-        if (r->statistics.stopped_by != RENDER_GOES_ON)
-            return true;
-        if (!run_pass(r, error))
+    stop_state now = state_of(r, 0.0);
+    r->statistics.stopped_by = stop_decide(&r->plan.how, &now);
+    while (r->statistics.stopped_by == RENDER_GOES_ON) {
+        if (!try_pass(r, error))
             return false;
+        now = state_of(r, 0.0);
+        if (r->statistics.stopped_by == RENDER_GOES_ON)
+            r->statistics.stopped_by = stop_decide(&r->plan.how, &now);
+        tell(r, 0.0);
     }
+    return true;
 }
 
 static void end_run(render *r)
@@ -456,7 +525,10 @@ bool render_run(render *r, render_progress progress, void *data, GError **error)
 {
     r->progress = progress;
     r->progress_data = data;
-    r->start = seconds() - r->statistics.time_total;
+    r->start = seconds() - MAX(r->statistics.time_total, r->before);
+    r->given_up = false;
+    if (r->plan.how.time > 0.0)
+        r->after = pace_write_seconds(&r->film, r->n_threads, r->paths);
     r->cancel.beat = beat;
     r->cancel.beat_data = r;
     r->statistics.stopped_by = RENDER_GOES_ON;
@@ -480,10 +552,37 @@ static void describe(const render *r, image *img)
 
 image *render_image(const render *r, GError **error)
 {
-    image *img = film_image(&r->film, error);
+    image *img = film_image(&r->film, r->n_threads, error);
     if (img)
         describe(r, img);
     return img;
+}
+
+void render_set_time_around(render *r, double before, const char *const *paths)
+{
+    r->before = before;
+    g_strfreev(r->paths);
+    r->paths = g_strdupv((char **)paths);
+}
+
+GStrv render_repeat(const render *r)
+{
+    if (r->passes_done == 0)
+        return NULL;
+    settings same = r->plan.how;
+    same.passes = r->passes_done;
+    same.planned_passes = settings_planned_passes(&r->plan.how);
+    g_autoptr(GStrvBuilder) builder = g_strv_builder_new();
+    size_t n;
+    const setting_row *rows = settings_table(&n);
+    for (size_t i = 0; i < n; i++) {
+        g_autofree char *before = settings_get(&r->asked, &rows[i]);
+        g_autofree char *value = settings_get(&same, &rows[i]);
+        g_autofree char *pair = g_strconcat(rows[i].name, "=", value, NULL);
+        if (strcmp(before, value) != 0 && settings_reads(&same, &rows[i]))
+            g_strv_builder_add(builder, pair);
+    }
+    return g_strv_builder_end(builder);
 }
 
 render_statistics render_get_statistics(const render *r)

@@ -30,6 +30,8 @@ typedef struct render_statistics {
     uint64_t n_not_finite;
     double noise;  /**< relative error of the picture (film_noise), INFINITY if unknown */
     bool can_look; /**< render_image may be called now */
+    int grid; /**< of the first pass every so manieth pixel is done in both directions;
+                 0: none yet */
     render_stop stopped_by;
 } render_statistics;
 
@@ -54,6 +56,14 @@ void render_cancel(render *r);
 /** @brief The mean of the passes done, with layers and metadata; before there is one,
  * what was done of the first. Owned by the caller. */
 image *render_image(const render *r, GError **error);
+/** @brief Of the setting `time`, so many seconds have gone by before the run begins, and
+ * what it takes to write the picture to these files is kept for after it.
+ * @param paths NULL-terminated, copied */
+void render_set_time_around(render *r, double before, const char *const *paths);
+/** @brief The settings "name=value" that make a render without `time` and `noise` give
+ * the same picture: passes, and what was chosen otherwise than asked for. Owned by the
+ * caller; NULL: no pass is done. */
+GStrv render_repeat(const render *r);
 render_statistics render_get_statistics(const render *r);
 /** @brief film_noise of the passes done. */
 double render_noise(const render *r);

@@ -13,9 +13,12 @@ typedef struct stop_state {
     double elapsed;   /**< s */
     double last_pass; /**< s that the last pass took */
     double noise;     /**< film_noise, INFINITY if unknown */
+    double after;     /**< s of the time asked for that are kept for what comes later */
 } stop_state;
 
 /** @brief Why to stop now, or RENDER_GOES_ON. One pass is always rendered. */
 render_stop stop_decide(const settings *how, const stop_state *now);
+/** @brief Whether the time is over, so that a pass under way is to be given up. */
+bool stop_at_once(const settings *how, const stop_state *now);
 /** @brief How much is done, 0..1, by the rule that will stop first. */
 double stop_fraction(const settings *how, const stop_state *now);

@@ -45,15 +45,25 @@ settings settings_default(void)
     return s;
 }
 
+bool settings_reads(const settings *s, const setting_row *row)
+{
+    const char *integrator = settings_find("integrator")->words[s->integrator];
+    g_auto(GStrv) users = g_strsplit(row->users, " ", -1);
+    return g_strv_contains((const char *const *)users, "all") ||
+           g_strv_contains((const char *const *)users, integrator);
+}
+
 int64_t settings_most_passes(const settings *s)
 {
     bool other_rule = s->time > 0.0 || s->noise > 0.0;
     return s->passes > 0 ? s->passes : other_rule ? MOST_PASSES : USUAL_PASSES;
 }
 
-int64_t settings_planned_passes(const settings *s)
+double settings_planned_passes(const settings *s)
 {
-    return s->passes > 0 ? s->passes : USUAL_PASSES;
+    return s->planned_passes > 0.0 ? s->planned_passes
+           : s->passes > 0         ? (double)s->passes
+                                   : USUAL_PASSES;
 }
 
 int64_t settings_photons(const settings *s)

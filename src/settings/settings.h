@@ -45,11 +45,12 @@ enum { MOST_TIME_SLICES = 64 };
 
 /** @brief Every knob. Arrays are indexed by photon class. A plain value: copy it. */
 typedef struct settings {
-    int integrator; /**< integrator_choice */
-    int64_t passes; /**< 0: see settings_most_passes */
-    double time;    /**< s; 0: no limit */
-    double noise;   /**< relative error to stop at; 0: none */
-    int64_t spp;    /**< camera samples a pixel in each pass */
+    int integrator;        /**< integrator_choice */
+    int64_t passes;        /**< 0: see settings_most_passes */
+    double time;           /**< s; 0: no limit */
+    double noise;          /**< relative error to stop at; 0: none */
+    double planned_passes; /**< 0: see settings_planned_passes */
+    int64_t spp;           /**< camera samples a pixel in each pass */
     int64_t max_backward_bounces, max_forward_bounces; /**< -1: unlimited */
     bool final_gather;
     int64_t gather_rays;
@@ -103,12 +104,15 @@ typedef struct setting_row {
 const setting_row *settings_table(size_t *n);
 /** @brief A row by name or alias (case-sensitive for names, not for aliases), or NULL. */
 const setting_row *settings_find(const char *name);
+/** @brief Whether the integrator that is set reads the row. */
+bool settings_reads(const settings *s, const setting_row *row);
 settings settings_default(void);
 /** @brief Passes after which a render ends at the latest. */
 int64_t settings_most_passes(const settings *s);
 /** @brief Passes that decisions taken before the first one count on. It does not depend
- * on `time` and `noise`, so neither does what a pass renders. */
-int64_t settings_planned_passes(const settings *s);
+ * on when `time` and `noise` end the render, so neither does what a pass renders. Less
+ * than one where there is no time for a whole one. */
+double settings_planned_passes(const settings *s);
 /** @brief Photons emitted a pass, at most where that is automatic. */
 int64_t settings_photons(const settings *s);
 /** @brief Sets from text, checked against type and range. ERROR_USAGE naming setting,

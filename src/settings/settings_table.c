@@ -38,11 +38,15 @@ static const setting_row table[] = {
      "Independent passes whose mean is the image; 1 is classic photon mapping. 0: as "
      "many as time and noise ask for, or 16 if neither is given."},
     {"time", SETTING_REAL, AT(time), "s", 0, 1e9, 0, NULL, "", "all",
-     "No pass is begun that would end much later; 0: no limit. One pass is always "
-     "rendered."},
+     "The render ends then, with passes of fewer samples and photons where it is short; "
+     "0: no limit. There is a picture always, if need be a coarse one."},
     {"noise", SETTING_REAL, AT(noise), "", 0, 1, 0, NULL, "", "all",
      "Stops when the relative error of the image, estimated from the scatter of its "
      "passes, is below this; 0: never."},
+    {"planned_passes", SETTING_REAL, AT(planned_passes), "", 0, MOST_PASSES, 0, NULL, "",
+     "photonmap auto vcm",
+     "Passes that radii and the number of photons are planned for; 0: passes, or 16 if "
+     "those are not known, or what there is time for."},
     {"spp", SETTING_COUNT, AT(spp), "samples/pixel", 1, 65536, 4, NULL,
      "pixelsamples samples_per_pixel", "all", "Camera rays a pixel in each pass."},
     {"max_backward_bounces", SETTING_COUNT, AT(max_backward_bounces), "", -1, 1e6, 32,

@@ -36,7 +36,7 @@ double caustic_planned_samples(const transport_plan *plan)
 {
     const film_settings *film = &plan->scene->film;
     return (double)film->width * (double)film->height * (double)plan->how.spp *
-           (double)settings_planned_passes(&plan->how);
+           settings_planned_passes(&plan->how);
 }
 
 uint64_t caustic_budget(const transport_plan *plan)
@@ -124,7 +124,7 @@ static double best_share(const transport_plan *plan, const aim_result *found,
                          const path_effort *paths)
 {
     double samples =
-        caustic_planned_samples(plan) / (double)settings_planned_passes(&plan->how);
+        caustic_planned_samples(plan) / settings_planned_passes(&plan->how);
     double each = COST_PHOTON * (double)plan->n_photons[PHOTON_CAUSTIC] / samples;
     double by_paths = (paths->noise + found->noise) * paths->rays;
     double least = CLEARLY_BETTER * by_paths, best = 0.0;
@@ -199,7 +199,7 @@ float spots_decide(const path_pass *pass, uint32_t index)
 {
     const transport_plan *plan = pass->plan;
     double samples =
-        caustic_planned_samples(plan) / (double)settings_planned_passes(&plan->how);
+        caustic_planned_samples(plan) / settings_planned_passes(&plan->how);
     uint32_t n = (uint32_t)CLAMP(samples / SAMPLES_PER_SPOT_TRIAL / 2.0,
                                  LEAST_SPOT_TRIALS, MAX_SPOT_TRIALS);
     spot_trial trial = {0};

@@ -159,7 +159,7 @@ static bool send_pilot(const pilot *p, photon_class c, const cancel_flag *cancel
 /* Of n in a map of a slice of time. */
 static double wanted_in_reach(const transport_plan *plan, photon_class c, double n)
 {
-    double passes = (double)settings_planned_passes(&plan->how);
+    double passes = fmax(settings_planned_passes(&plan->how), 1.0);
     double wanted = fmax(photons_wanted[c] / passes, photons_wanted_least[c]);
     return c == PHOTON_CAUSTIC ? fmin(wanted, fmax(MOST_SHARE * n, 1.0)) : wanted;
 }
