@@ -235,7 +235,8 @@ static void test_textured_emission(void)
         half->kind->radiance(half->self, &hit, vec3_make(0, 0, 1), &w)));
 }
 
-/* What glows shines from both sides if the file says so, unless it is a closed body. */
+/* What glows shines from both sides if the file says so, unless it is a closed body; what
+   is unlit is seen from both. */
 static void test_double_sided(void)
 {
     static const struct {
@@ -245,7 +246,8 @@ static void test_double_sided(void)
     } cases[] = {{"", false, 0.0f},
                  {",\"doubleSided\":true", false, 1.0f},
                  {",\"doubleSided\":true", true, 0.0f},
-                 {UNLIT ",\"doubleSided\":true", true, 1.0f}};
+                 {UNLIT ",\"doubleSided\":true", true, 1.0f},
+                 {UNLIT, false, 1.0f}};
     wavelengths w = wavelengths_at(0.5f);
     surface_hit hit = {.n_geom = {0, 0, 1}, .n = {0, 0, 1}};
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
@@ -262,6 +264,42 @@ static void test_double_sided(void)
         g_assert_cmpfloat(
             fabsf(spectrum_mean(back) / spectrum_mean(front) - cases[i].back), <, 1e-5f);
     }
+}
+
+/* A face that is not double-sided is no hole where it is seen from behind, nor black: it
+   is there, and scatters there what it does in front. */
+static void test_single_sided(void)
+{
+    static const char *const indices[] = {"\"mode\":5,", "\"indices\":2,"};
+    for (size_t i = 0; i < G_N_ELEMENTS(indices); i++)
+        for (int k = 0; k < 2; k++) {
+            g_autofree char *text = g_strdup_printf(
+                "\"materials\":[{\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
+                "\"baseColorFactor\":[0.5,0.5,0.5,1]},\"doubleSided\":%s}],\"meshes\":[{"
+                "\"primitives\":[{\"attributes\":{\"POSITION\":0},%s\"material\":0}]}]"
+                "," NODES,
+                k ? "true" : "false", indices[i]);
+            g_autoptr(scene) s = load(text, NULL);
+            double albedo[2];
+            for (int side = 0; side < 2; side++) {
+                const wavelengths w = wavelengths_at(0.5f);
+                const bsdf_options plain = {0};
+                vec3 toward = normalize3(vec3_make(-1, -1, -1)) * (side ? 1.0f : -1.0f);
+                ray r = {.origin = vec3_make(0.33f, 0.33f, 0.33f) - 0.1f * toward,
+                         .direction = toward,
+                         .t_max = INFINITY};
+                surface_hit hit;
+                bsdf b;
+                g_assert_true(scene_see(s, &r, &hit));
+                g_assert_cmpfloat(fabsf(hit.t - 0.1f), <, 0.02f);
+                material_bsdf(s->materials->pdata[hit.material], &hit, &w, ALL_LANES,
+                              &plain, &b);
+                albedo[side] = (double)spectrum_mean(
+                    bsdf_albedo(&b, vec3_make(0, 0, side ? -1 : 1), LOBE_ALL));
+            }
+            g_assert_cmpfloat(albedo[0], >, 0.3);
+            g_assert_cmpfloat(fabs(albedo[0] - albedo[1]), <, 0.01);
+        }
 }
 
 /* An unlit surface shines with its base colour, and returns no light. */
@@ -370,6 +408,7 @@ int main(int argc, char **argv)
     g_test_add_func("/gltf-material/emission", test_emission);
     g_test_add_func("/gltf-material/textured-emission", test_textured_emission);
     g_test_add_func("/gltf-material/double-sided", test_double_sided);
+    g_test_add_func("/gltf-material/single-sided", test_single_sided);
     g_test_add_func("/gltf-material/unlit", test_unlit);
     g_test_add_func("/gltf-material/anisotropy", test_anisotropy);
     g_test_add_func("/gltf-material/diffuse-transmission", test_diffuse_transmission);

@@ -340,9 +340,10 @@ static void read_info(gltf *g, const json_value *m, gltf_material_info *info)
     info->alpha = read_alpha(g, m, info->colored);
     note_occlusion(g, m);
     info->area_light = read_shine(g, m, info->colored);
-    if (!info->area_light || !json_flag(m, "doubleSided", false))
+    /* What is unlit is a picture, and black behind it would be none; a closed body of it
+     * may be a sky, seen from within. */
+    if (!info->area_light || !(is_unlit(m) || json_flag(m, "doubleSided", false)))
         return;
-    /* A closed body that is unlit may be a sky, seen from within. */
     if (!is_unlit(m))
         info->both_sides = read_shine(g, m, info->colored);
     if (!gltf_failed(g))
