@@ -97,7 +97,7 @@ static void test_kinds_and_parameters(void)
     refuse(WORLD "Texture \"t\" \"rgb\" \"constant\"\n",
            "%s:4:13: expected \"float\" or \"spectrum\", found \"rgb\"");
     refuse(WORLD "NamedMaterial \"gold\"\n",
-           "%s:4:15: expected the name of a material made before, found \"gold\"");
+           "%s:4:15: expected the name of a material, found \"gold\"");
     refuse(WORLD "MakeNamedMaterial \"gold\"\n",
            "%s:4:19: expected \"string type\" of material 'gold', found none");
     refuse(WORLD "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"
@@ -116,8 +116,8 @@ static void test_what_is_not_supported(void)
     refuse(WORLD "ObjectBegin \"leaf\"\nObjectBegin \"twig\"\nObjectEnd\n"
                  "ObjectInstance \"tree\"\nObjectBegin \"leaf\"\n",
            "%s:5:1: expected ObjectEnd before another ObjectBegin\n"
-           "%s:7:16: expected the name of an object made before, found \"tree\"\n"
-           "%s:8:13: object \"leaf\" is there already");
+           "%s:8:13: object \"leaf\" is there already\n"
+           "%s:7:16: expected the name of an object, found \"tree\"");
     refuse(WORLD "ObjectBegin \"lamp\"\nAreaLightSource \"diffuse\"\nShape \"sphere\"\n"
                  "ObjectInstance \"lamp\"\n",
            "%s:7:1: expected ObjectEnd before ObjectInstance, found none\n"

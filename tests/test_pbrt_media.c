@@ -272,9 +272,6 @@ static void test_wrong_names(void)
         "%s:4:20: expected the name of a medium made before it is used, found \"fog\"\n"
         "%s:8:32: expected the name of a medium made before it is used, found "
         "\"mist\"");
-    refuse(WORLD "MediumInterface \"fog\"\n" BALL MAKE("fog"),
-           "%s:4:17: expected the name of a medium made before it is used, found "
-           "\"fog\"");
     refuse("MediumInterface \"fog\"\n" WORLD MAKE("fog"),
            "%s:1:17: expected the name of a medium made before it is used, found "
            "\"fog\"");

@@ -190,6 +190,153 @@ static scene *noted_scene(const char *text, GString *notes)
     return s;
 }
 
+/* Names may be given again, and what is given between AttributeBegin and AttributeEnd
+ * ends there; TransformBegin keeps transforms alone. */
+static void test_names_given_again(void)
+{
+#define COLOR3(name, rgb)                                                                \
+    "Texture \"" name "\" \"color\" \"constant\" \"color value\" [" rgb "]\n"
+#define MATTE3 "Material \"matte\" \"texture Kd\" \"t\"\n"
+#define MATTE4(rgb) "Material \"diffuse\" \"rgb reflectance\" [" rgb "]\n"
+#define LEFT "Translate -1 0 0 Shape \"sphere\" Translate 1 0 0\n"
+#define RIGHT "Translate 1.5 0 0 Shape \"sphere\"\n"
+    static const pair pairs[] = {
+        {"texture",
+         WORLD3(COLOR3("t", ".9 .1 .1") MATTE3 LEFT COLOR3("t", ".1 .1 .9") MATTE3 RIGHT),
+         WORLD4(MATTE4(".9 .1 .1") LEFT MATTE4(".1 .1 .9") RIGHT)},
+        {"scope",
+         WORLD3(COLOR3("t", ".9 .1 .1") "AttributeBegin\n" COLOR3("t", ".1 .1 .9")
+                    MATTE3 LEFT "AttributeEnd\n" MATTE3 RIGHT),
+         WORLD4(MATTE4(".1 .1 .9") LEFT MATTE4(".9 .1 .1") RIGHT)},
+        {"types",
+         WORLD3("Texture \"t\" \"float\" \"constant\" \"float value\" 0.2\n" COLOR3(
+             "t", ".1 .1 .9") MATTE3 LEFT RIGHT),
+         WORLD4(MATTE4(".1 .1 .9") LEFT RIGHT)},
+        {"material",
+         WORLD3(
+             "MakeNamedMaterial \"m\" \"string type\" \"matte\" \"rgb Kd\" [.9 .1 .1]\n"
+             "NamedMaterial \"m\" " LEFT
+             "MakeNamedMaterial \"m\" \"string type\" \"matte\" \"rgb Kd\" [.1 .1 .9]\n"
+             "NamedMaterial \"m\" " RIGHT),
+         WORLD4(MATTE4(".9 .1 .1") LEFT MATTE4(".1 .1 .9") RIGHT)},
+        {"object",
+         WORLD3(MATTE4(".9 .1 .1") "ObjectBegin \"o\" " LEFT "ObjectEnd ObjectInstance "
+                                   "\"o\"\nObjectBegin \"o\" " RIGHT
+                                   "ObjectEnd ObjectInstance \"o\"\n"),
+         WORLD4(MATTE4(".9 .1 .1") LEFT RIGHT)},
+        {"transform-begin",
+         WORLD3("TransformBegin Scale 2 2 2 Material \"matte\" \"rgb Kd\" [.9 .1 .1] "
+                "TransformEnd\n" RIGHT),
+         WORLD4(MATTE4(".9 .1 .1") RIGHT)},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
+        check_alike(&pairs[i]);
+}
+
+/* Colours where pbrt-v4 wants numbers, and the other way round. */
+static void test_types_of_textures(void)
+{
+#define CHECKS3                                                                          \
+    "Texture \"t\" \"color\" \"checkerboard\" \"rgb tex1\" [.2 .4 .6] \"rgb tex2\" [1 "  \
+    "1 "                                                                                 \
+    "1]\n"
+#define TWO(a, b)                                                                        \
+    "MakeNamedMaterial \"a\" \"string type\" \"" a                                       \
+    "\" MakeNamedMaterial \"b\" \"string "                                               \
+    "type\" \"" b "\"\n"
+    static const pair pairs[] = {
+        {"amount",
+         WORLD3(
+             CHECKS3 TWO("matte", "mirror") "Material \"mix\" \"string namedmaterial1\" "
+                                            "\"a\" \"string namedmaterial2\" \"b\" "
+                                            "\"texture amount\" \"t\" " BALL),
+         WORLD4(
+             "Texture \"n\" \"float\" \"checkerboard\" \"float tex1\" .4 \"float tex2\" "
+             "1\nMakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial "
+             "\"b\" \"string type\" \"conductor\" \"rgb reflectance\" [.9 .9 .9] "
+             "Material \"mix\" \"string materials\" [\"b\" \"a\"] \"texture amount\" "
+             "\"n\" " BALL)},
+        {"noise",
+         WORLD3("Texture \"t\" \"color\" \"wrinkled\" \"integer octaves\" 3 Material "
+                "\"matte\" \"texture Kd\" \"t\" " BALL),
+         WORLD4(
+             "Texture \"n\" \"float\" \"wrinkled\" \"integer octaves\" 3 Texture \"t\" "
+             "\"spectrum\" \"mix\" \"rgb tex1\" [0 0 0] \"rgb tex2\" [1 1 1] \"texture "
+             "amount\" \"n\" Material \"diffuse\" \"texture reflectance\" \"t\" " BALL)},
+        {"grey",
+         WORLD3("Texture \"t\" \"float\" \"constant\" \"float value\" 0.3 Material "
+                "\"matte\" \"texture Kd\" \"t\" " BALL),
+         WORLD4("Material \"diffuse\" \"rgb reflectance\" [.3 .3 .3] " BALL)},
+        {"uv",
+         WORLD3("Texture \"t\" \"color\" \"uv\" Material \"matte\" \"texture Kd\" "
+                "\"t\" " BALL),
+         WORLD4(
+             "Texture \"t\" \"spectrum\" \"bilerp\" \"rgb v00\" [0 0 0] \"rgb v01\" [0 "
+             "1 0] \"rgb v10\" [1 0 0] \"rgb v11\" [1 1 0] Material \"diffuse\" "
+             "\"texture "
+             "reflectance\" \"t\" " BALL)},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
+        check_alike(&pairs[i]);
+}
+
+/* pbrt-v3 tells of what is not there and goes on. */
+static void test_what_is_not_there(void)
+{
+    static const pair pairs[] = {
+        {"material",
+         WORLD3("Material \"matte\" \"rgb Kd\" [.9 .1 .1] NamedMaterial "
+                "\"gold\" " BALL),
+         WORLD4(MATTE4(".9 .1 .1") BALL)},
+        {"texture", WORLD3("Material \"matte\" \"texture Kd\" \"gold\" " BALL),
+         WORLD4("Material \"diffuse\" " BALL)},
+        {"object", WORLD3("ObjectInstance \"gold\" " BALL), WORLD4(BALL)},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
+        check_alike(&pairs[i]);
+}
+
+static void test_include_among_parameters(void)
+{
+    scene_folder f = folder_new(
+        LOOK FILM3
+        "WorldBegin\n" LAMP
+        "Shape \"trianglemesh\" Include \"mesh.pbrt\" \"point P\" [0 0 0 1 0 0 0 "
+        "1 0]\nShape \"sphere\" Include \"more.pbrt\"\nWorldEnd\n");
+    folder_write(&f, "mesh.pbrt", "\"integer indices\" [0 1 2]\n", -1);
+    folder_write(&f, "more.pbrt", "Shape \"sphere\" Shape \"disk\"\n", -1);
+    g_autoptr(GError) error = NULL;
+    g_autoptr(scene) s = format_load(f.main, 1, NULL, &error);
+    g_assert_no_error(error);
+    g_assert_cmpuint(s->shapes->len, ==, 4);
+    folder_remove(&f);
+}
+
+/* Disney's base, metal and coat are those of the gltf material. */
+static void test_disney(void)
+{
+    static const pair pairs[] = {
+        {"base",
+         WORLD3("Material \"disney\" \"color color\" [.8 .3 .1] \"float roughness\" "
+                ".4 \"float eta\" 1.4 \"float sheen\" 0 " BALL),
+         WORLD4("Material \"gltf\" \"rgb basecolor\" [.8 .3 .1] \"float metallic\" 0 "
+                "\"float roughness\" .4 \"float eta\" 1.4 " BALL)},
+        {"metal",
+         WORLD3("Material \"disney\" \"color color\" [.8 .3 .1] \"float metallic\" "
+                "1 \"float clearcoat\" 1 \"float clearcoatgloss\" 0 " BALL),
+         WORLD4("Material \"gltf\" \"rgb basecolor\" [.8 .3 .1] \"float metallic\" 1 "
+                "\"float roughness\" .5 \"float clearcoat\" .25 \"float "
+                "clearcoatroughness\" 0.316228 " BALL)},
+        {"glass",
+         WORLD3("Material \"disney\" \"color color\" [1 1 1] \"float spectrans\" 1 "
+                "\"float roughness\" 0 " BALL),
+         WORLD4("Material \"gltf\" \"float metallic\" 0 \"float roughness\" 0 \"float "
+                "transmission\" 1 \"bool thin\" false " BALL)},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
+        check_alike(&pairs[i]);
+}
+
 /* pbrt-v3 warns of parameters that it does not know, and goes on. */
 static void test_unknown_parameters(void)
 {
@@ -270,11 +417,11 @@ static void test_recognised(void)
         g_assert_true(pbrt_v3_recognises(old[i], strlen(old[i])));
         g_assert_false(pbrt_v3_recognises(new[i], strlen(new[i])));
     }
-    scene_folder f = folder_new(WORLD3("Material \"disney\"\n" BALL));
+    scene_folder f = folder_new(WORLD3("Material \"fourier\"\n" BALL));
     g_autoptr(GError) error = NULL;
     g_assert_null(format_load(f.main, 1, NULL, &error));
     g_assert_nonnull(
-        strstr(error->message, "material \"disney\" is not supported; --lenient takes"));
+        strstr(error->message, "material \"fourier\" is not supported; --lenient takes"));
     folder_remove(&f);
 }
 
@@ -285,6 +432,11 @@ int main(int argc, char **argv)
     g_test_add_func("/pbrt-v3/lights", test_lights);
     g_test_add_func("/pbrt-v3/rest", test_rest);
     g_test_add_func("/pbrt-v3/settings", test_settings);
+    g_test_add_func("/pbrt-v3/names-given-again", test_names_given_again);
+    g_test_add_func("/pbrt-v3/types-of-textures", test_types_of_textures);
+    g_test_add_func("/pbrt-v3/what-is-not-there", test_what_is_not_there);
+    g_test_add_func("/pbrt-v3/include-among-parameters", test_include_among_parameters);
+    g_test_add_func("/pbrt-v3/disney", test_disney);
     g_test_add_func("/pbrt-v3/unknown-parameters", test_unknown_parameters);
     g_test_add_func("/pbrt-v3/texture-before-value", test_texture_before_value);
     g_test_add_func("/pbrt-v3/recognised", test_recognised);

@@ -123,6 +123,14 @@ static void on_texture(void *data, const char *name, const char *kind, bool is_s
     end(c->world);
 }
 
+/* Its name, for shapes that come before it. */
+static void on_material_awaited(void *data, int index, const char *name)
+{
+    converter *c = data;
+    g_ptr_array_set_size(c->materials, MAX((int)c->materials->len, index + 1));
+    c->materials->pdata[index] = g_strdup(name);
+}
+
 static void on_material(void *data, int index, const char *name, const char *kind,
                         const params *p)
 {
@@ -455,6 +463,7 @@ bool format_convert(const char *in, const char *out, const load_options *options
     const scene_listener listener = {.data = &c,
                                      .texture = on_texture,
                                      .material = on_material,
+                                     .material_awaited = on_material_awaited,
                                      .medium = on_medium,
                                      .medium_interface = on_medium_interface,
                                      .light = on_light,

@@ -18,7 +18,6 @@ static const substitute substitutes[] = {
      {"reflectance", "eta", "roughness", "uroughness", "vroughness", "remaproughness"}},
     {"measured", "diffuse", {NULL}},
     {"fourier", "diffuse", {NULL}},
-    {"disney", "diffuse", {NULL}},
     {"kdsubsurface", "coateddiffuse", {"eta", "roughness", "remaproughness"}},
 };
 
@@ -41,17 +40,6 @@ static bool stays(const substitute *sub, const param *q)
     return g_strv_contains(of_all, q->name);
 }
 
-static bool copy_param(params *to, const param *q, GError **error)
-{
-    if (q->strings)
-        return params_add_strings(to, q->place, q->type, q->name,
-                                  (const char *const *)q->strings, q->n, error);
-    if (q->integers)
-        return params_add_integers(to, q->place, q->type, q->name, q->integers, q->n,
-                                   error);
-    return params_add_numbers(to, q->place, q->type, q->name, q->numbers, q->n, error);
-}
-
 /* The parameters that stay; the names of the others are put into `dropped`. */
 static params *keep_params(const substitute *sub, const params *p, GString *dropped,
                            GError **error)
@@ -61,7 +49,7 @@ static params *keep_params(const substitute *sub, const params *p, GString *drop
         param *q = p->list->pdata[i];
         bool is_type = strcmp(q->name, "type") == 0; /* of MakeNamedMaterial */
         q->used = true;
-        if (stays(sub, q) && !copy_param(kept, q, error))
+        if (stays(sub, q) && !params_add_copy(kept, q, error))
             return NULL;
         if (!stays(sub, q) && !is_type)
             g_string_append_printf(dropped, "%s '%s'", dropped->len ? "," : ", without",

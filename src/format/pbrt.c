@@ -59,7 +59,7 @@ static const directive directives[] = {
     {"Texture", IN_WORLD, pbrt_texture},
     {"Transform", ANYWHERE, pbrt_transform},
     {"TransformBegin", IN_WORLD, pbrt_attribute_begin},
-    {"TransformEnd", IN_WORLD, pbrt_attribute_end},
+    {"TransformEnd", IN_WORLD, pbrt_transform_end},
     {"TransformTimes", ANYWHERE, pbrt_transform_times},
     {"Translate", ANYWHERE, pbrt_translate},
     {"WorldBegin", BEFORE_WORLD, pbrt_world_begin},
@@ -184,7 +184,10 @@ static bool is_open(const pbrt_parser *parser, const char *path)
     return false;
 }
 
-void pbrt_include(pbrt_parser *parser, const char *name, source_place place)
+/* Another file, as if it stood here. */
+static void include_with(pbrt_parser *parser, const char *name, source_place place,
+                         void (*read)(pbrt_parser *parser, lexer *words, void *data),
+                         void *data)
 {
     g_autofree char *path = g_canonicalize_filename(name, parser->base_directory);
     if (is_open(parser, path)) {
@@ -208,9 +211,58 @@ void pbrt_include(pbrt_parser *parser, const char *name, source_place place)
     }
     lexer words = lexer_new(path, in.data, in.size);
     g_ptr_array_add(parser->open_files, path);
-    read_words(parser, &words);
+    read(parser, &words, data);
     g_ptr_array_remove_index(parser->open_files, parser->open_files->len - 1);
     input_close(&in);
+}
+
+static void read_directives(pbrt_parser *parser, lexer *words, void *data)
+{
+    (void)data;
+    read_words(parser, words);
+}
+
+void pbrt_include(pbrt_parser *parser, const char *name, source_place place)
+{
+    include_with(parser, name, place, read_directives, NULL);
+}
+
+/* Where an Include among parameters leads. */
+typedef struct parameter_file {
+    params *p;
+    bool has_some, fine;
+} parameter_file;
+
+static void read_parameters(pbrt_parser *parser, lexer *words, void *data)
+{
+    parameter_file *file = data;
+    lexer *outer = parser->words;
+    parser->words = words;
+    file->has_some = lexer_peek(words).kind == TOKEN_STRING;
+    file->fine = !file->has_some || pbrt_read_param_list(parser, file->p);
+    token t = lexer_peek(words);
+    if (file->has_some && file->fine && t.kind != TOKEN_END)
+        file->fine = pbrt_expected(parser, "a parameter", &t);
+    parser->words = outer;
+}
+
+bool pbrt_include_parameters(pbrt_parser *parser, params *p, bool *fine)
+{
+    lexer before = *parser->words;
+    lexer_next(parser->words);
+    token name = lexer_peek(parser->words);
+    parameter_file file = {.p = p, .fine = true};
+    guint n_errors = parser->errors->len;
+    if (name.kind == TOKEN_STRING) {
+        lexer_next(parser->words);
+        g_autofree char *text = token_string(&name);
+        include_with(parser, text, name.place, read_parameters, &file);
+    }
+    bool failed = parser->errors->len > n_errors;
+    if (!file.has_some && !failed)
+        *parser->words = before;
+    *fine = file.fine && !failed;
+    return file.has_some || failed;
 }
 
 static bool handle_include(pbrt_parser *parser, source_place place)
@@ -263,10 +315,16 @@ static void parser_init(pbrt_parser *parser, scene *s, const char *path)
     parser->saved = g_array_new(FALSE, FALSE, sizeof(saved_state));
     parser->coordinate_systems =
         g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+    parser->given_materials =
+        g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     parser->interfaces = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     parser->empty_media = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     parser->missing_media = g_hash_table_new(g_str_hash, g_str_equal);
     parser->awaited_media = g_array_new(FALSE, FALSE, sizeof(medium_name));
+    parser->v3_names = g_ptr_array_new_with_free_func(g_free);
+    parser->v3_objects = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    parser->late = pbrt_late_new();
+    parser->awaited_materials = g_array_new(FALSE, FALSE, sizeof(medium_name));
     parser->kept = g_ptr_array_new_with_free_func(free_params);
     parser->attributes = g_ptr_array_new_with_free_func(g_free);
     parser->state = (graphics_state){.ctm = transform_identity(),
@@ -285,10 +343,15 @@ static void parser_clear(pbrt_parser *parser)
     big_free(parser->values.data);
     g_ptr_array_unref(parser->attributes);
     g_ptr_array_unref(parser->kept);
+    g_array_unref(parser->awaited_materials);
+    g_ptr_array_unref(parser->late);
+    g_hash_table_unref(parser->v3_objects);
+    g_ptr_array_unref(parser->v3_names);
     g_array_unref(parser->awaited_media);
     g_hash_table_unref(parser->missing_media);
     g_hash_table_unref(parser->empty_media);
     g_hash_table_unref(parser->interfaces);
+    g_hash_table_unref(parser->given_materials);
     g_hash_table_unref(parser->coordinate_systems);
     g_array_unref(parser->saved);
     g_ptr_array_unref(parser->errors);
@@ -303,6 +366,8 @@ static void check_end(pbrt_parser *parser, source_place end)
     if (parser->object != NO_INDEX)
         pbrt_error(parser, parser->object_place,
                    "expected ObjectEnd for this ObjectBegin, found the end of the file");
+    pbrt_make_late(parser);
+    pbrt_check_materials(parser);
     pbrt_check_media(parser);
     if (pbrt_should_stop(parser))
         return;

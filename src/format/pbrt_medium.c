@@ -94,6 +94,13 @@ static int find_medium(pbrt_parser *parser, const medium_name *m)
     return scene_find_medium(parser->scene, m->name);
 }
 
+bool pbrt_awaits_media(const pbrt_parser *parser)
+{
+    const char *in = parser->state.inside.name, *out = parser->state.outside.name;
+    return !parser->is_v3 && !parser->at_end &&
+           ((in && !is_made(parser, in)) || (out && !is_made(parser, out)));
+}
+
 void pbrt_use_media(pbrt_parser *parser, const medium_name *inside,
                     const medium_name *outside)
 {

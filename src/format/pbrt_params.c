@@ -265,15 +265,27 @@ static bool read_param(pbrt_parser *parser, params *p)
     return fine;
 }
 
+bool pbrt_read_param_list(pbrt_parser *parser, params *p)
+{
+    for (bool fine = true; fine;) {
+        token t = lexer_peek(parser->words);
+        if (t.kind == TOKEN_STRING)
+            fine = read_param(parser, p);
+        else if (!parser->is_v3 || !token_is(&t, "Include") ||
+                 !pbrt_include_parameters(parser, p, &fine))
+            return true;
+    }
+    return false;
+}
+
 params *pbrt_read_params(pbrt_parser *parser, source_place place)
 {
     g_autoptr(params) p = params_new(place, parser->base_directory, parser->state.space);
     p->to_world = parser->state.ctm;
     p->log = &parser->scene->build.log;
     p->lets_unknown = parser->is_v3;
-    while (lexer_peek(parser->words).kind == TOKEN_STRING)
-        if (!read_param(parser, p))
-            return NULL;
+    if (!pbrt_read_param_list(parser, p))
+        return NULL;
     token t = lexer_peek(parser->words);
     if (t.kind == TOKEN_UNTERMINATED || t.kind == TOKEN_LEFT || t.kind == TOKEN_RIGHT) {
         pbrt_expected(parser, "a parameter or a directive", &t);
@@ -285,7 +297,6 @@ params *pbrt_read_params(pbrt_parser *parser, source_place place)
 /** Copies a default; it may go unused, since it is meant for many kinds. */
 static bool copy_default(params *p, const params *from, const param *q, GError **error)
 {
-    bool done;
     if (q->type == PARAM_RGB && from->space != p->space) {
         error_at(error, q->place,
                  "parameter '%s': expected the colour space of the directives it is for, "
@@ -293,15 +304,7 @@ static bool copy_default(params *p, const params *from, const param *q, GError *
                  q->name);
         return false;
     }
-    if (q->strings)
-        done = params_add_strings(p, q->place, q->type, q->name,
-                                  (const char *const *)q->strings, q->n, error);
-    else if (q->integers)
-        done =
-            params_add_integers(p, q->place, q->type, q->name, q->integers, q->n, error);
-    else
-        done = params_add_numbers(p, q->place, q->type, q->name, q->numbers, q->n, error);
-    if (!done)
+    if (!params_add_copy(p, q, error))
         return false;
     param *copy = p->list->pdata[p->list->len - 1];
     copy->used = copy->is_default = true;

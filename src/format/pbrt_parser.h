@@ -8,6 +8,8 @@
  *   pbrt_medium.c     participating media, and which of them are around
  *   pbrt_options.c    what stands before WorldBegin, kept until then
  *   pbrt_integrator.c integrators and samplers as settings
+ *   pbrt_late.c       what is named before it is made
+ *   pbrt_v3_names.c   what is named again, in pbrt-v3
  *   pbrt_world.c      materials, textures, lights and shapes, given to the scene
  *
  * A handler reads a directive's arguments. It returns false if they do not follow the
@@ -58,6 +60,9 @@ typedef struct medium_name {
     source_place place;
 } medium_name;
 
+/** What a pbrt-v3 file calls by a name. */
+typedef struct v3_name v3_name;
+
 /** What AttributeBegin keeps. */
 typedef struct graphics_state {
     transform ctm;     /**< at the start time */
@@ -69,12 +74,20 @@ typedef struct graphics_state {
     const color_space *space;
     medium_name inside, outside;
     const attribute *attributes[N_TARGETS];
+    v3_name *v3_names; /**< names in force (pbrt_v3_names.c); NULL: none */
 } graphics_state;
 
 typedef struct saved_state {
     graphics_state state;
     source_place place; /**< of the AttributeBegin */
 } saved_state;
+
+/** A quoted argument and parameters: "kind" "type name" value ... */
+typedef struct directive_arguments {
+    char *kind;
+    source_place at; /**< of the kind */
+    params *p;       /**< owned, unless kept by the parser */
+} directive_arguments;
 
 /** A directive kept until WorldBegin. */
 typedef struct pending {
@@ -107,14 +120,21 @@ typedef struct pbrt_parser {
     graphics_state state;
     GArray *saved;                  /**< saved_state */
     GHashTable *coordinate_systems; /**< name -> transform_pair* */
+    GHashTable *given_materials;    /**< names that MakeNamedMaterial gave */
     GHashTable *interfaces;         /**< names of materials that are none */
     GHashTable *empty_media;        /**< names of media that are none */
     GHashTable *missing_media;      /**< names that an error told of */
     GArray *awaited_media;          /**< medium_name, not made when it was named */
     medium_name around_camera;
-    int default_material;  /**< its index once made, or NO_INDEX */
-    GPtrArray *kept;       /**< params* that outlive their directive */
-    GPtrArray *attributes; /**< attribute* */
+    GPtrArray *v3_names;       /**< v3_name*, owned */
+    GHashTable *v3_objects;    /**< name -> its name in the scene, interned */
+    GPtrArray *late;           /**< what waits for a name (pbrt_late.c) */
+    GArray *awaited_materials; /**< medium_name: of materials not made when named */
+    guint n_unnamed;           /**< materials without a name that wait */
+    bool at_end;               /**< nothing waits any more */
+    int default_material;      /**< its index once made, or NO_INDEX */
+    GPtrArray *kept;           /**< params* that outlive their directive */
+    GPtrArray *attributes;     /**< attribute* */
     pending film, filter, sampler, integrator, camera;
     scratch values; /**< of the parameter being read */
 } pbrt_parser;
@@ -141,7 +161,15 @@ char *pbrt_read_string(pbrt_parser *parser, const char *what, source_place *plac
 /** @brief Reads another file's directives as if they stood here. */
 void pbrt_include(pbrt_parser *parser, const char *name, source_place place);
 
+/** @brief pbrt-v3: an Include among parameters, of a file that begins with one, is read
+ * into the list. @return false: it is a directive, and left where it is */
+bool pbrt_include_parameters(pbrt_parser *parser, params *p, bool *fine);
+
 /* ---- pbrt_params.c ---- */
+
+/** @brief Reads parameters into a list, up to what is none. @return false, reported, if
+ * they do not follow the grammar */
+bool pbrt_read_param_list(pbrt_parser *parser, params *p);
 
 /** @brief A parameter list up to the next directive, without attributes; NULL if it does
  * not follow the grammar. Owned by the caller. */
@@ -152,6 +180,54 @@ params *pbrt_read_params_for(pbrt_parser *parser, source_place place,
 /** @brief Reports parameters that nobody asked for. */
 void pbrt_check_used(pbrt_parser *parser, const params *p, const char *what,
                      const char *kind);
+
+/* ---- pbrt_late.c ---- */
+
+/** In which order what waits is made. */
+typedef enum late_rank {
+    LATE_TEXTURE,
+    LATE_MATERIAL,
+    LATE_SHAPE,
+    LATE_INSTANCE,
+    N_LATE_RANKS
+} late_rank;
+
+/** @brief Makes what waited; the parser's state is that of its directive. */
+typedef void (*late_maker)(pbrt_parser *parser, const char *name,
+                           const directive_arguments *a);
+
+GPtrArray *pbrt_late_new(void);
+/** @brief True if parameters name a texture or material that may still come. */
+bool pbrt_must_wait(const pbrt_parser *parser, const params *p);
+/** @brief Lets a directive wait; its arguments are taken. */
+void pbrt_wait(pbrt_parser *parser, late_rank rank, late_maker make, const char *name,
+               directive_arguments *a);
+/** @brief Makes all that waits: at the end of the file. */
+void pbrt_make_late(pbrt_parser *parser);
+/** @brief Keeps a place for a material that is named before it is made. @return index */
+int pbrt_await_material(pbrt_parser *parser, const char *name, source_place place);
+/** @brief Reports names of materials that were never made. */
+void pbrt_check_materials(pbrt_parser *parser);
+
+/* ---- pbrt_world.c ---- */
+
+void pbrt_clear_arguments(directive_arguments *a);
+void pbrt_make_texture(pbrt_parser *parser, const char *name, bool is_spectrum,
+                       const char *kind, const params *p);
+
+/* ---- pbrt_v3_names.c ---- */
+
+/** @brief A texture by a name that may be there already; a->p is taken. */
+void pbrt_v3_add_texture(pbrt_parser *parser, const char *name, bool is_spectrum,
+                         directive_arguments *a);
+/** @brief The name in the scene for a material that the file calls so from here on. */
+const char *pbrt_v3_new_material(pbrt_parser *parser, const char *name,
+                                 source_place place);
+/** @brief What the scene calls the material that the file means by a name here. */
+const char *pbrt_v3_material_name(const pbrt_parser *parser, const char *name);
+/** @brief Turns names of textures and materials in parameters into the scene's.
+ * @param in_colors where pbrt says nothing else textures are of colours */
+void pbrt_v3_resolve(pbrt_parser *parser, params *p, bool in_colors);
 
 /* ---- handlers ---- */
 
@@ -179,6 +255,8 @@ motion pbrt_motion(const pbrt_parser *parser);
 bool pbrt_attribute(pbrt_parser *parser, source_place place);
 bool pbrt_attribute_begin(pbrt_parser *parser, source_place place);
 bool pbrt_attribute_end(pbrt_parser *parser, source_place place);
+/** @brief As AttributeEnd; in pbrt-v3 the transforms alone come back. */
+bool pbrt_transform_end(pbrt_parser *parser, source_place place);
 bool pbrt_reverse_orientation(pbrt_parser *parser, source_place place);
 bool pbrt_color_space(pbrt_parser *parser, source_place place);
 bool pbrt_object_begin(pbrt_parser *parser, source_place place);
@@ -191,6 +269,9 @@ bool pbrt_make_named_medium(pbrt_parser *parser, source_place place);
  * that were not made. */
 void pbrt_use_media(pbrt_parser *parser, const medium_name *inside,
                     const medium_name *outside);
+/** @brief True if a medium around may still be made: pbrt-v4 asks what a shape is between
+ * when all has been read. */
+bool pbrt_awaits_media(const pbrt_parser *parser);
 /** @brief Reports names that nothing used, of media that were never made. */
 void pbrt_check_media(pbrt_parser *parser);
 

@@ -4,6 +4,8 @@
  */
 #include "format/pbrt_parser.h"
 
+#include "base/intern.h"
+
 #include <string.h>
 
 bool pbrt_attribute_begin(pbrt_parser *parser, source_place place)
@@ -23,6 +25,18 @@ bool pbrt_attribute_end(pbrt_parser *parser, source_place place)
     guint last = parser->saved->len - 1;
     parser->state = g_array_index(parser->saved, saved_state, last).state;
     g_array_set_size(parser->saved, last);
+    return true;
+}
+
+bool pbrt_transform_end(pbrt_parser *parser, source_place place)
+{
+    graphics_state kept = parser->state;
+    pbrt_attribute_end(parser, place);
+    kept.ctm = parser->state.ctm;
+    kept.ctm_end = parser->state.ctm_end;
+    kept.active = parser->state.active;
+    if (parser->is_v3)
+        parser->state = kept;
     return true;
 }
 
@@ -87,6 +101,21 @@ bool pbrt_color_space(pbrt_parser *parser, source_place place)
     return true;
 }
 
+/** In pbrt-v3 an object may be given again. */
+static char *new_object_name(pbrt_parser *parser, const char *name, source_place at)
+{
+    char *own = g_strdup(name);
+    for (unsigned i = 2; scene_find_object(parser->scene, own) != NO_INDEX; i++) {
+        g_free(own);
+        own = g_strdup_printf("%s, %u", name, i);
+    }
+    if (strcmp(own, name) != 0)
+        log_at(&parser->scene->build.log, LOG_NOTE, at,
+               "pbrt-v3: \"%s\" is given again; what follows has the new one", name);
+    g_hash_table_insert(parser->v3_objects, g_strdup(name), (char *)intern(own));
+    return own;
+}
+
 /** Opens attributes too, as ObjectEnd closes them. */
 bool pbrt_object_begin(pbrt_parser *parser, source_place place)
 {
@@ -100,7 +129,8 @@ bool pbrt_object_begin(pbrt_parser *parser, source_place place)
         return true;
     }
     pbrt_attribute_begin(parser, place);
-    parser->object = scene_object_begin(parser->scene, name, at, &error);
+    g_autofree char *own = parser->is_v3 ? new_object_name(parser, name, at) : NULL;
+    parser->object = scene_object_begin(parser->scene, own ? own : name, at, &error);
     parser->object_place = place;
     if (parser->object == NO_INDEX) {
         pbrt_report(parser, error);
@@ -120,29 +150,34 @@ bool pbrt_object_end(pbrt_parser *parser, source_place place)
     return pbrt_attribute_end(parser, place);
 }
 
-bool pbrt_object_instance(pbrt_parser *parser, source_place place)
+static void make_instance(pbrt_parser *parser, const char *name,
+                          const directive_arguments *a)
 {
-    source_place at = place;
-    g_autofree char *name = pbrt_read_string(parser, "a name", &at);
-    if (!name)
-        return false;
-    int object = scene_find_object(parser->scene, name);
-    if (object == NO_INDEX) {
-        pbrt_error(parser, at, "expected the name of an object made before, found \"%s\"",
-                   name);
-        return true;
-    }
-    if (parser->object != NO_INDEX) {
-        pbrt_error(parser, place, "expected ObjectEnd before ObjectInstance, found none");
-        return true;
-    }
-    if (pbrt_is_flat(parser)) {
-        pbrt_warning(parser, place, "an instance that is flattened is not seen");
-        return true;
-    }
+    const char *own = g_hash_table_lookup(parser->v3_objects, name);
+    int object = scene_find_object(parser->scene, own ? own : name);
     GError *error = NULL;
     motion to_world = pbrt_motion(parser);
-    if (!scene_add_instance(parser->scene, object, &to_world, place, &error))
+    if (object == NO_INDEX && parser->is_v3)
+        pbrt_warning(parser, a->at, "there is no object \"%s\" to be seen here", name);
+    else if (object == NO_INDEX)
+        pbrt_error(parser, a->at, "expected the name of an object, found \"%s\"", name);
+    else if (pbrt_is_flat(parser))
+        pbrt_warning(parser, a->at, "an instance that is flattened is not seen");
+    else if (!scene_add_instance(parser->scene, object, &to_world, a->at, &error))
         pbrt_report(parser, error);
+}
+
+bool pbrt_object_instance(pbrt_parser *parser, source_place place)
+{
+    directive_arguments a = {.at = place};
+    g_autofree char *name = pbrt_read_string(parser, "a name", &a.at);
+    if (!name)
+        return false;
+    if (parser->object != NO_INDEX)
+        pbrt_error(parser, place, "expected ObjectEnd before ObjectInstance, found none");
+    else if (scene_find_object(parser->scene, name) == NO_INDEX && !parser->is_v3)
+        pbrt_wait(parser, LATE_INSTANCE, make_instance, name, &a);
+    else
+        make_instance(parser, name, &a);
     return true;
 }

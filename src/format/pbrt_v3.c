@@ -14,9 +14,6 @@
 #include <math.h>
 #include <string.h>
 
-/* ∫ ȳ dλ, which v3 divides luminances by. */
-#define CIE_Y_INTEGRAL 106.856895
-
 /* ---- Recognising ---- */
 
 static const char *const v3_words[] = {
@@ -38,6 +35,7 @@ static const char *const v3_words[] = {
     "\"string type\" \"substrate\"",
     "\"string type\" \"uber\"",
     "\"string type\" \"translucent\"",
+    "\"string type\" \"disney\"",
     "\"string type\" [ \"matte\"",
     "\"string type\" [ \"plastic\"",
     "\"string type\" [ \"uber\"",

@@ -137,6 +137,10 @@ static void to_mix(const translation *t)
     if (a && b && a->type == PARAM_STRING && b->type == PARAM_STRING && a->n == 1 &&
         b->n == 1) {
         const char *both[] = {a->strings[0], b->strings[0]};
+        if (amount && amount->type == PARAM_TEXTURE) { /* the other way round instead */
+            both[0] = b->strings[0];
+            both[1] = a->strings[0];
+        }
         params_add_strings(t->p, a->place, PARAM_STRING, "materials", both, 2, NULL);
         drop(t, "namedmaterial1");
         drop(t, "namedmaterial2");
@@ -154,6 +158,55 @@ static void to_mix(const translation *t)
     give_float(t->p, "amount", 1.0 - share);
 }
 
+/* Says what is lost, unless it is nothing. */
+static void drop_lost(const translation *t, const char *name)
+{
+    const param *q = find(t, name);
+    float sum = 0.0f;
+    for (size_t i = 0; q && q->numbers && i < q->n; i++)
+        sum += fabsf(q->numbers[i]);
+    if (q && (sum > 0.0f || !q->numbers)) {
+        g_autofree char *text = g_strdup_printf("'%s' of disney is left out", name);
+        note(t, q, text);
+    }
+    drop(t, name);
+}
+
+static void default_number(const translation *t, const char *name, double value)
+{
+    if (!find(t, name))
+        give_float(t->p, name, value);
+}
+
+/* Base, metal, coat and glass are those of the gltf material, whose facets are the same.
+ * A Disney coat is a quarter of one, with alpha from 0.1 to 0.001 by its gloss. */
+static void to_disney(const translation *t)
+{
+    static const char *const lost[] = {"sheen", "speculartint", "flatness", "difftrans",
+                                       "scatterdistance"};
+    double coat = number(t, "clearcoat", 0.0), gloss = number(t, "clearcoatgloss", 1.0);
+    set_kind(t, "gltf");
+    default_rgb(t, "color", 0.5);
+    clamp_rgb(t, "color");
+    rename_to(t, "color", "basecolor");
+    default_number(t, "metallic", 0.0);
+    default_number(t, "roughness", 0.5);
+    rename_to(t, "anisotropic", "anisotropy");
+    if (find(t, "spectrans") && !find(t, "thin"))
+        give_bool(t->p, "thin", false);
+    rename_to(t, "spectrans", "transmission");
+    if (coat > 0.0) {
+        set_number(t, "clearcoat", CLAMP(0.25 * coat, 0.0, 1.0));
+        give_float(t->p, "clearcoatroughness",
+                   sqrt(0.1 + (0.001 - 0.1) * CLAMP(gloss, 0.0, 1.0)));
+    }
+    drop(t, "clearcoatgloss");
+    drop(t, "sheentint");
+    for (size_t i = 0; i < G_N_ELEMENTS(lost); i++)
+        drop_lost(t, lost[i]);
+    note(t, NULL, "disney becomes the gltf material");
+}
+
 typedef struct v3_kind {
     const char *name;
     void (*translate)(const translation *t);
@@ -169,6 +222,7 @@ static const v3_kind materials[] = {
     {"metal", to_metal},
     {"translucent", to_translucent},
     {"mix", to_mix},
+    {"disney", to_disney},
 };
 
 void pbrt_v3_material(const translation *t)
@@ -209,11 +263,24 @@ static void translate_scale(const translation *t)
     rename_to(t, "tex2", "scale");
 }
 
+/* u is red and v is green. */
+static void translate_uv(const translation *t)
+{
+    set_kind(t, "bilerp");
+    give_triple(t->p, PARAM_RGB, "v00", 0.0, 0.0, 0.0);
+    give_triple(t->p, PARAM_RGB, "v01", 0.0, 1.0, 0.0);
+    give_triple(t->p, PARAM_RGB, "v10", 1.0, 0.0, 0.0);
+    give_triple(t->p, PARAM_RGB, "v11", 1.0, 1.0, 0.0);
+    note(t, NULL, "texture uv becomes bilerp, which does not repeat");
+}
+
 void pbrt_v3_texture(const translation *t)
 {
     const param *gamma = find(t, "gamma"), *trilinear = find(t, "trilinear");
     if (strcmp(*t->kind, "scale") == 0)
         translate_scale(t);
+    if (strcmp(*t->kind, "uv") == 0)
+        translate_uv(t);
     drop(t, "aamode");
     if (strcmp(*t->kind, "imagemap") != 0)
         return;

@@ -9,6 +9,9 @@
 
 #include <string.h>
 
+/* ∫ ȳ dλ, which v3 divides luminances by. */
+#define CIE_Y_INTEGRAL 106.856895
+
 /* A directive being translated. */
 typedef struct translation {
     char **kind;

@@ -9,12 +9,7 @@
 
 #include <string.h>
 
-/** A quoted argument and parameters: "kind" "type name" value ... */
-typedef struct arguments {
-    char *kind;
-    source_place at; /**< of the kind */
-    params *p;       /**< owned, unless kept by the parser */
-} arguments;
+typedef directive_arguments arguments;
 
 static bool read_arguments(pbrt_parser *parser, source_place place,
                            attribute_target target, arguments *out)
@@ -29,13 +24,16 @@ static bool read_arguments(pbrt_parser *parser, source_place place,
 }
 
 /** What a pbrt-v3 file says, in pbrt-v4's words. */
-static void translate(const pbrt_parser *parser, pbrt_v3_target target, arguments *a)
+static void translate(pbrt_parser *parser, pbrt_v3_target target, arguments *a)
 {
-    if (parser->is_v3)
-        pbrt_v3_translate(target, &a->kind, a->p, &parser->scene->build.log);
+    if (!parser->is_v3)
+        return;
+    pbrt_v3_translate(target, &a->kind, a->p, &parser->scene->build.log);
+    if (target != V3_TEXTURE) /* which asks what type it is of */
+        pbrt_v3_resolve(parser, a->p, true);
 }
 
-static void clear_arguments(arguments *a)
+void pbrt_clear_arguments(arguments *a)
 {
     g_free(a->kind);
     params_free(a->p);
@@ -64,33 +62,78 @@ static int add_material(pbrt_parser *parser, const char *name, const char *kind,
     return index;
 }
 
+/** Of a name. */
+static void make_material(pbrt_parser *parser, const char *name, const arguments *a)
+{
+    if (add_material(parser, name, a->kind, a->p) != NO_INDEX)
+        return;
+    g_hash_table_add(parser->interfaces, g_strdup(name));
+    if (scene_material_is_awaited(parser->scene, name))
+        scene_make_interface(parser->scene, name, a->p);
+}
+
+/** A material that waits has a name, by which its place in the scene is kept. */
+static void let_material_wait(pbrt_parser *parser, const char *name, arguments *a)
+{
+    g_autofree char *own =
+        name ? NULL : g_strdup_printf("material %u of the file", ++parser->n_unnamed);
+    const char *by = name ? name : own;
+    int index = scene_find_material(parser->scene, by);
+    if (index == NO_INDEX)
+        index = scene_await_material(parser->scene, by);
+    if (!name)
+        parser->state.material = index;
+    pbrt_wait(parser, LATE_MATERIAL, make_material, by, a);
+}
+
 bool pbrt_material(pbrt_parser *parser, source_place place)
 {
     arguments a;
     if (!read_arguments(parser, place, TARGET_MATERIAL, &a))
         return false;
     translate(parser, V3_MATERIAL, &a);
-    parser->state.material = add_material(parser, NULL, a.kind, a.p);
-    clear_arguments(&a);
+    if (pbrt_must_wait(parser, a.p))
+        let_material_wait(parser, NULL, &a);
+    else
+        parser->state.material = add_material(parser, NULL, a.kind, a.p);
+    pbrt_clear_arguments(&a);
     return true;
 }
 
+/** True of what is made or waits to be, and of interfaces. */
 static bool is_known_material(const pbrt_parser *parser, const char *name)
 {
     return scene_find_material(parser->scene, name) != NO_INDEX ||
            g_hash_table_contains(parser->interfaces, name);
 }
 
-static int add_named(pbrt_parser *parser, const arguments *a, const char *kind)
+/** True of what MakeNamedMaterial gave already. */
+static bool is_given_material(const pbrt_parser *parser, const char *name)
 {
-    arguments of = {.kind = g_strdup(kind), .at = a->at, .p = a->p};
-    translate(parser, V3_MATERIAL, &of);
-    int index = add_material(parser, a->kind, of.kind, a->p);
-    g_free(of.kind);
-    return index;
+    return g_hash_table_contains(parser->given_materials, name);
 }
 
-static void make_named_material(pbrt_parser *parser, const arguments *a)
+static void add_named(pbrt_parser *parser, const arguments *named, const char *kind)
+{
+    arguments a = {.kind = g_strdup(kind), .at = named->at, .p = named->p};
+    translate(parser, V3_MATERIAL, &a);
+    g_hash_table_add(parser->given_materials, g_strdup(named->kind));
+    const char *name = parser->is_v3
+                           ? pbrt_v3_new_material(parser, named->kind, named->at)
+                           : named->kind;
+    make_material(parser, name, &a);
+    g_free(a.kind);
+}
+
+static void let_named_wait(pbrt_parser *parser, arguments *named, const char *kind)
+{
+    arguments a = {
+        .kind = g_strdup(kind), .at = named->at, .p = g_steal_pointer(&named->p)};
+    g_hash_table_add(parser->given_materials, g_strdup(named->kind));
+    let_material_wait(parser, named->kind, &a);
+}
+
+static void make_named_material(pbrt_parser *parser, arguments *a)
 {
     GError *error = NULL;
     const char *kind = NULL;
@@ -99,12 +142,13 @@ static void make_named_material(pbrt_parser *parser, const arguments *a)
     else if (!kind)
         pbrt_error(parser, a->at, "expected \"string type\" of material '%s', found none",
                    a->kind);
-    else if (is_known_material(parser, a->kind))
+    else if (!parser->is_v3 && is_given_material(parser, a->kind))
         pbrt_error(parser, a->at, "expected a new material's name, found \"%s\" again",
                    a->kind);
-    else if (add_named(parser, a, kind) != NO_INDEX)
-        return;
-    g_hash_table_add(parser->interfaces, g_strdup(a->kind));
+    else if (pbrt_must_wait(parser, a->p))
+        let_named_wait(parser, a, kind);
+    else
+        add_named(parser, a, kind);
 }
 
 bool pbrt_make_named_material(pbrt_parser *parser, source_place place)
@@ -113,7 +157,7 @@ bool pbrt_make_named_material(pbrt_parser *parser, source_place place)
     if (!read_arguments(parser, place, TARGET_MATERIAL, &a))
         return false;
     make_named_material(parser, &a);
-    clear_arguments(&a);
+    pbrt_clear_arguments(&a);
     return true;
 }
 
@@ -123,32 +167,59 @@ bool pbrt_named_material(pbrt_parser *parser, source_place place)
     g_autofree char *name = pbrt_read_string(parser, "a material's name", &at);
     if (!name)
         return false;
-    if (!is_known_material(parser, name))
-        pbrt_error(parser, at,
-                   "expected the name of a material made before, found \"%s\"", name);
-    parser->state.material = scene_find_material(parser->scene, name);
+    const char *actual = parser->is_v3 ? pbrt_v3_material_name(parser, name) : name;
+    if (!is_known_material(parser, actual) && parser->is_v3) {
+        pbrt_warning(parser, at, "there is no material \"%s\"; the one before stays",
+                     name);
+        return true;
+    }
+    if (!is_known_material(parser, actual))
+        pbrt_await_material(parser, actual, at);
+    bool is_none = g_hash_table_contains(parser->interfaces, actual);
+    parser->state.material =
+        is_none ? NO_INDEX : scene_find_material(parser->scene, actual);
     return true;
 }
 
-static void add_texture(pbrt_parser *parser, const char *name, const char *type,
-                        source_place type_at, const arguments *a)
+void pbrt_make_texture(pbrt_parser *parser, const char *name, bool is_spectrum,
+                       const char *kind, const params *p)
 {
     GError *error = NULL;
-    bool is_spectrum = strcmp(type, "spectrum") == 0;
-    if (!is_spectrum && strcmp(type, "float") != 0) {
-        pbrt_error(parser, type_at, "expected \"float\" or \"spectrum\", found \"%s\"",
-                   type);
-        return;
-    }
-    const char *kind = a->kind;
     g_autoptr(params) replaced =
-        lenient_texture(&parser->scene->build, &kind, is_spectrum, a->p, &error);
-    const params *given = replaced ? replaced : a->p;
+        lenient_texture(&parser->scene->build, &kind, is_spectrum, p, &error);
+    const params *given = replaced ? replaced : p;
     if (!error &&
         scene_add_texture(parser->scene, name, kind, is_spectrum, given, &error))
         pbrt_check_used(parser, given, "texture", kind);
     else
         pbrt_report(parser, error);
+}
+
+static void make_float_texture(pbrt_parser *parser, const char *name, const arguments *a)
+{
+    pbrt_make_texture(parser, name, false, a->kind, a->p);
+}
+
+static void make_spectrum_texture(pbrt_parser *parser, const char *name,
+                                  const arguments *a)
+{
+    pbrt_make_texture(parser, name, true, a->kind, a->p);
+}
+
+static void add_texture(pbrt_parser *parser, const char *name, const char *type,
+                        source_place type_at, arguments *a)
+{
+    bool is_spectrum = strcmp(type, "spectrum") == 0;
+    late_maker make = is_spectrum ? make_spectrum_texture : make_float_texture;
+    if (!is_spectrum && strcmp(type, "float") != 0)
+        pbrt_error(parser, type_at, "expected \"float\" or \"spectrum\", found \"%s\"",
+                   type);
+    else if (parser->is_v3)
+        pbrt_v3_add_texture(parser, name, is_spectrum, a);
+    else if (pbrt_must_wait(parser, a->p))
+        pbrt_wait(parser, LATE_TEXTURE, make, name, a);
+    else
+        make(parser, name, a);
 }
 
 bool pbrt_texture(pbrt_parser *parser, source_place place)
@@ -163,7 +234,7 @@ bool pbrt_texture(pbrt_parser *parser, source_place place)
     translate(parser, V3_TEXTURE, &a);
     bool is_color = parser->is_v3 && strcmp(type, "color") == 0;
     add_texture(parser, name, is_color ? "spectrum" : type, type_at, &a);
-    clear_arguments(&a);
+    pbrt_clear_arguments(&a);
     return true;
 }
 
@@ -181,7 +252,7 @@ bool pbrt_light_source(pbrt_parser *parser, source_place place)
         pbrt_check_used(parser, a.p, "light", a.kind);
     else
         pbrt_report(parser, error);
-    clear_arguments(&a);
+    pbrt_clear_arguments(&a);
     return true;
 }
 
@@ -198,7 +269,7 @@ bool pbrt_area_light_source(pbrt_parser *parser, source_place place)
         pbrt_error(parser, a.at, "expected AreaLightSource \"diffuse\", found \"%s\"",
                    a.kind);
     }
-    clear_arguments(&a);
+    pbrt_clear_arguments(&a);
     return true;
 }
 
@@ -276,8 +347,9 @@ static bool is_lost(const pbrt_parser *parser, const arguments *a)
     return true;
 }
 
-static void add_shape(pbrt_parser *parser, const arguments *a)
+static void make_shape(pbrt_parser *parser, const char *name, const arguments *a)
 {
+    (void)name;
     if (is_lost(parser, a))
         return;
     shape_place at = {.to_world = parser->state.ctm,
@@ -310,7 +382,11 @@ bool pbrt_shape(pbrt_parser *parser, source_place place)
     if (!read_arguments(parser, place, TARGET_SHAPE, &a))
         return false;
     translate(parser, V3_SHAPE, &a);
-    add_shape(parser, &a);
-    clear_arguments(&a);
+    bool waits = pbrt_must_wait(parser, a.p) || pbrt_awaits_media(parser);
+    if (waits && parser->object == NO_INDEX)
+        pbrt_wait(parser, LATE_SHAPE, make_shape, NULL, &a);
+    else
+        make_shape(parser, NULL, &a);
+    pbrt_clear_arguments(&a);
     return true;
 }

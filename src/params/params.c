@@ -144,6 +144,17 @@ bool params_add_strings(params *p, source_place place, param_type type, const ch
     return true;
 }
 
+bool params_add_copy(params *p, const param *q, GError **error)
+{
+    if (q->strings)
+        return params_add_strings(p, q->place, q->type, q->name,
+                                  (const char *const *)q->strings, q->n, error);
+    if (q->integers)
+        return params_add_integers(p, q->place, q->type, q->name, q->integers, q->n,
+                                   error);
+    return params_add_numbers(p, q->place, q->type, q->name, q->numbers, q->n, error);
+}
+
 void params_remove(params *p, const char *name)
 {
     param *q = look_up(p, name);

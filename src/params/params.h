@@ -72,6 +72,8 @@ bool params_add_integers(params *p, source_place place, param_type type, const c
 bool params_add_strings(params *p, source_place place, param_type type, const char *name,
                         const char *const *strings, size_t n, GError **error);
 
+/** @brief Adds a copy of a parameter of another list. */
+bool params_add_copy(params *p, const param *q, GError **error);
 /** @brief Takes the parameter of that name out, if there is one. */
 void params_remove(params *p, const char *name);
 /** @brief The parameter of that name, marked used; NULL if there is none. */

@@ -20,6 +20,8 @@ typedef struct scene_listener {
     /** @param index that it gets */
     void (*material)(void *data, int index, const char *name, const char *kind,
                      const params *p);
+    /** A material that shapes may have before it is made. */
+    void (*material_awaited)(void *data, int index, const char *name);
     void (*medium)(void *data, const char *name, const char *kind, const params *p);
     /** @param inside,outside names; NULL: none */
     void (*medium_interface)(void *data, const char *inside, const char *outside);

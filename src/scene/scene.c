@@ -108,21 +108,15 @@ bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spe
     return true;
 }
 
-int scene_add_material(scene *s, const char *name, const char *kind, const params *p,
-                       GError **error)
+/* Puts a new material into the place that its name has, or behind the last. */
+static int take_material(scene *s, material *m, const char *name)
 {
-    if (!scene_may_change(s, error))
-        return NO_INDEX;
-    if (name && scene_find_material(s, name) != NO_INDEX) {
-        error_at(error, p->place, "material \"%s\" is there already", name);
-        return NO_INDEX;
+    int index = name ? scene_find_material(s, name) : NO_INDEX;
+    if (index == NO_INDEX) {
+        index = (int)s->materials->len;
+        g_ptr_array_add(s->materials, NULL);
     }
-    LISTENER_TELL(s, material, (int)s->materials->len, name, kind, p);
-    material *m = material_new(&s->build, kind, p, error);
-    if (!m)
-        return NO_INDEX;
-    int index = (int)s->materials->len;
-    g_ptr_array_add(s->materials, m);
+    s->materials->pdata[index] = m;
     if (name) {
         g_free(m->name);
         m->name = g_strdup(name);
@@ -131,6 +125,51 @@ int scene_add_material(scene *s, const char *name, const char *kind, const param
         g_hash_table_insert(s->build.materials, g_strdup(name), m);
     }
     return index;
+}
+
+int scene_add_material(scene *s, const char *name, const char *kind, const params *p,
+                       GError **error)
+{
+    if (!scene_may_change(s, error))
+        return NO_INDEX;
+    int index = name ? scene_find_material(s, name) : NO_INDEX;
+    if (index != NO_INDEX && s->materials->pdata[index]) {
+        error_at(error, p->place, "material \"%s\" is there already", name);
+        return NO_INDEX;
+    }
+    LISTENER_TELL(s, material, index == NO_INDEX ? (int)s->materials->len : index, name,
+                  kind, p);
+    material *m = material_new(&s->build, kind, p, error);
+    return m ? take_material(s, m, name) : NO_INDEX;
+}
+
+int scene_await_material(scene *s, const char *name)
+{
+    int index = (int)s->materials->len;
+    g_ptr_array_add(s->materials, NULL);
+    g_hash_table_insert(s->material_names, g_strdup(name), GINT_TO_POINTER(index + 1));
+    LISTENER_TELL(s, material_awaited, index, name);
+    return index;
+}
+
+bool scene_material_is_awaited(const scene *s, const char *name)
+{
+    int index = scene_find_material(s, name);
+    return index != NO_INDEX && !s->materials->pdata[index];
+}
+
+/* What stands in its place is used by nothing. */
+void scene_make_interface(scene *s, const char *name, const params *p)
+{
+    int index = scene_find_material(s, name);
+    LISTENER_TELL(s, material, index, name, "interface", p);
+    g_autoptr(params) none = params_new(p->place, p->base_directory, p->space);
+    take_material(s, material_new(&s->build, "diffuse", none, NULL), name);
+    for (guint i = 0; i < s->shapes->len; i++) {
+        shape *on = s->shapes->pdata[i];
+        if (on->material == index)
+            on->material = NO_INDEX;
+    }
 }
 
 int scene_find_material(const scene *s, const char *name)

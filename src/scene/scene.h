@@ -11,7 +11,6 @@
 #pragma once
 
 #include "accel/accel.h"
-#include "shape/instance.h"
 #include "camera/camera.h"
 #include "camera/filter.h"
 #include "light/light.h"
@@ -20,6 +19,7 @@
 #include "params/sources.h"
 #include "scene/listener.h"
 #include "settings/settings.h"
+#include "shape/instance.h"
 #include "texture/texture.h"
 
 #include "math/distribution.h"
@@ -130,7 +130,14 @@ bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spe
 /** @brief name may be NULL. @return index, or NO_INDEX. */
 int scene_add_material(scene *s, const char *name, const char *kind, const params *p,
                        GError **error);
-/** @brief Index of a named material, or NO_INDEX. */
+/** @brief Keeps a place for a material that shapes have before it is made; adding it by
+ * its name fills the place, which must come before the commit. @return its index */
+int scene_await_material(scene *s, const char *name);
+/** @brief True from scene_await_material until it is made. */
+bool scene_material_is_awaited(const scene *s, const char *name);
+/** @brief Makes an awaited material none: the shapes that have it are interfaces. */
+void scene_make_interface(scene *s, const char *name, const params *p);
+/** @brief Index of a named material, made or awaited, or NO_INDEX. */
 int scene_find_material(const scene *s, const char *name);
 /** @brief A participating medium. @return index, or NO_INDEX. */
 int scene_add_medium(scene *s, const char *name, const char *kind, const params *p,
