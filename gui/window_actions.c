@@ -15,12 +15,16 @@ static void scene_chosen(const char *path, void *data)
 static void open_scene(GSimpleAction *action, GVariant *parameter, void *data)
 {
     (void)action, (void)parameter;
-    static const char *const scenes[] = {"*.pbrt", "*.pbrt.gz", "*.gltf",
-                                         "*.glb",  "*.obj",     NULL};
     window *w = data;
+    g_autoptr(GStrvBuilder) patterns = g_strv_builder_new();
+    for (const char *const *e = neph_scene_extensions(); *e; e++) {
+        g_autofree char *pattern = g_strconcat("*", *e, NULL);
+        g_strv_builder_add(patterns, pattern);
+    }
+    g_auto(GStrv) scenes = g_strv_builder_end(patterns);
     g_autofree char *folder = document_folder(w->document);
-    const file_question question = {"Open a scene", false,    NULL,
-                                    folder,         "Scenes", scenes};
+    const file_question question = {
+        "Open a scene", false, NULL, folder, "Scenes", (const char *const *)scenes};
     file_dialog_ask(w->gtk, &question, scene_chosen, w);
 }
 

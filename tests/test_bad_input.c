@@ -20,7 +20,7 @@ static void test_files(void)
     g_assert_null(format_load("/nowhere/a.scene", 1, NULL, &unknown));
     g_assert_true(g_str_has_prefix(unknown->message,
                                    "/nowhere/a.scene: expected a scene file: pbrt"));
-    g_assert_true(g_str_has_suffix(unknown->message, ", found .scene"));
+    g_assert_true(strstr(unknown->message, ", found .scene; Blender") != NULL);
     scene_folder f = folder_new("");
     g_autofree char *name = g_build_filename(f.path, "x.pbrt", NULL);
     g_mkdir(name, 0700);

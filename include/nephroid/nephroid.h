@@ -111,6 +111,9 @@ NEPH_API char *neph_features_describe(void);
 
 /* ---- Scenes ---- */
 
+/** @brief What names of scene files end in, with the dot: ".pbrt" and so on;
+ * NULL-terminated, static. */
+NEPH_API const char *const *neph_scene_extensions(void);
 /** @brief A loaded scene; immutable but for its size and camera. */
 typedef struct NephScene NephScene;
 /** @brief Loads a scene (pbrt, glTF, OBJ ...). log may be NULL. threads 0 = all. On
@@ -119,6 +122,8 @@ NEPH_API NephScene *neph_scene_load(const char *path, unsigned threads, NephLogF
                                     void *log_data, GError **error);
 /** @brief Receives the absolute path of a file, on the thread that called the library. */
 typedef void (*NephFileFunc)(const char *path, void *data);
+/** @brief Asked now and then, on the thread that called. @return false to stop. */
+typedef bool (*NephGoOnFunc)(void *data);
 /** @brief How to load a scene; zero-initialise. */
 typedef struct NephLoadOptions {
     unsigned threads; /**< for the acceleration structure; 0: one per processor */
@@ -132,6 +137,10 @@ typedef struct NephLoadOptions {
     NephFileFunc file; /**< told each file just before it is first opened, be it there or
                           not, also where reading then fails; may be NULL */
     void *file_data;
+    NephGoOnFunc go_on; /**< asked while a model (OBJ, STL, 3MF, Collada, FBX) is imported
+                           by the program that does that; stopped, loading ends with
+                           NEPH_ERROR_CANCELLED; may be NULL */
+    void *go_on_data;
 } NephLoadOptions;
 
 /** @brief The same by options. */
@@ -384,8 +393,6 @@ typedef struct NephPhotons NephPhotons;
 /** @brief Traces the photons of pass 0 without rendering. The scene must outlive them. */
 NEPH_API NephPhotons *neph_photons_trace(const NephScene *scene,
                                          const NephSettings *settings, GError **error);
-/** @brief Asked now and then, on the thread that called. @return false to stop. */
-typedef bool (*NephGoOnFunc)(void *data);
 /** @brief The same, as long as go_on says so; else NULL with NEPH_ERROR_CANCELLED. */
 NEPH_API NephPhotons *neph_photons_trace_while(const NephScene *scene,
                                                const NephSettings *settings,

@@ -4,35 +4,16 @@
  */
 #include "api/photons.h"
 
+#include "api/asking.h"
 #include "api/statistics.h"
 #include "base/output.h"
-
-/* Asks the caller whether to go on, as work's pulse. */
-typedef struct asking {
-    cancel_flag cancel;
-    NephGoOnFunc go_on;
-    void *data;
-} asking;
-
-static void ask(void *data)
-{
-    asking *a = data;
-    if (!a->go_on(a->data))
-        atomic_store(&a->cancel.set, true);
-}
-
-static asking asking_make(NephGoOnFunc go_on, void *data)
-{
-    return (asking){.cancel.beat = go_on ? ask : NULL, .go_on = go_on, .data = data};
-}
 
 NephPhotons *neph_photons_trace_while(const NephScene *s, const NephSettings *how,
                                       NephGoOnFunc go_on, void *data, GError **error)
 {
-    asking a = asking_make(go_on, data);
-    a.cancel.beat_data = &a;
-    render_photons *traced =
-        render_trace_photons(s->scene, &how->values, &a.cancel, error);
+    asking a;
+    const cancel_flag *cancel = asking_begin(&a, go_on, data);
+    render_photons *traced = render_trace_photons(s->scene, &how->values, cancel, error);
     if (!traced)
         return NULL;
     NephPhotons *photons = g_new(NephPhotons, 1);
@@ -49,9 +30,9 @@ NephPhotons *neph_photons_trace(const NephScene *s, const NephSettings *how,
 bool neph_photons_follow(NephPhotons *photons, NephGoOnFunc go_on, void *data,
                          GError **error)
 {
-    asking a = asking_make(go_on, data);
-    a.cancel.beat_data = &a;
-    return render_photons_follow(photons->traced, &a.cancel, error);
+    asking a;
+    const cancel_flag *cancel = asking_begin(&a, go_on, data);
+    return render_photons_follow(photons->traced, cancel, error);
 }
 
 void neph_photons_free(NephPhotons *photons)

@@ -1,5 +1,6 @@
 #include "api/objects.h"
 
+#include "api/asking.h"
 #include "format/convert.h"
 #include "format/format.h"
 
@@ -16,18 +17,26 @@ static void forward_log(log_level level, const char *text, void *data)
                s->log_data);
 }
 
+const char *const *neph_scene_extensions(void)
+{
+    return format_extensions();
+}
+
 NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options,
                                 GError **error)
 {
     NephScene *s = g_new(NephScene, 1);
     *s = (NephScene){.log = options->log, .log_data = options->log_data};
     const log_sink sink = {forward_log, s};
+    asking a;
     const load_options how = {.threads = options->threads,
                               .lenient = options->lenient,
                               .thin_glass = options->thin_glass,
                               .log = &sink,
                               .source = options->file,
-                              .source_data = options->file_data};
+                              .source_data = options->file_data,
+                              .cancel =
+                                  asking_begin(&a, options->go_on, options->go_on_data)};
     s->scene = format_load_with(path, &how, error);
     if (!s->scene)
         g_clear_pointer(&s, neph_scene_free);
@@ -47,11 +56,14 @@ bool neph_scene_convert_with(const char *in, const char *out,
 {
     NephScene to = {.log = options->log, .log_data = options->log_data};
     const log_sink sink = {forward_log, &to};
+    asking a;
     const load_options how = {.lenient = options->lenient,
                               .thin_glass = options->thin_glass,
                               .log = &sink,
                               .source = options->file,
-                              .source_data = options->file_data};
+                              .source_data = options->file_data,
+                              .cancel =
+                                  asking_begin(&a, options->go_on, options->go_on_data)};
     return format_convert(in, out, &how, error);
 }
 

@@ -481,6 +481,7 @@ bool format_convert(const char *in, const char *out, const load_options *options
     s->thin_glass = options && options->thin_glass;
     s->build.sources = scene_sources_new(options ? options->source : NULL,
                                          options ? options->source_data : NULL);
+    s->build.cancel = options ? options->cancel : NULL;
     s->listener = &listener;
     c.scene = s;
     c.files.scene = s;

@@ -10,14 +10,15 @@
 #include <string.h>
 
 static const format_reader *const readers[] = {&pbrt_reader, &gltf_reader, &ply_reader,
-                                               &assimp_reader_kind};
+                                               &model_reader};
 
-/* A format that knows its files by what is in them. */
+/* A format that knows its files by what is in them; what may keep us waiting for bytes is
+ * not asked. */
 static const format_reader *recognise(const char *path)
 {
     char bytes[512];
     const format_reader *found = NULL;
-    FILE *file = g_fopen(path, "rbe");
+    FILE *file = g_file_test(path, G_FILE_TEST_IS_REGULAR) ? g_fopen(path, "rbe") : NULL;
     if (!file)
         return NULL;
     size_t size = fread(bytes, 1, sizeof bytes, file);
@@ -34,13 +35,27 @@ static const format_reader *find_reader(const char *path)
     if (by_content)
         return by_content;
     g_autofree char *name = g_ascii_strdown(path, -1);
-    if (g_str_has_suffix(name, ".gz"))
-        name[strlen(name) - 3] = '\0';
     for (size_t i = 0; i < G_N_ELEMENTS(readers); i++)
         for (const char *const *e = readers[i]->extensions; *e; e++)
             if (g_str_has_suffix(name, *e))
                 return readers[i];
     return NULL;
+}
+
+const char *const *format_extensions(void)
+{
+    static gsize made;
+    static const char *all[32];
+    if (g_once_init_enter(&made)) {
+        size_t n = 0;
+        for (size_t i = 0; i < G_N_ELEMENTS(readers); i++)
+            for (const char *const *e = readers[i]->extensions; *e; e++) {
+                g_assert(n + 1 < G_N_ELEMENTS(all));
+                all[n++] = *e;
+            }
+        g_once_init_leave(&made, 1);
+    }
+    return all;
 }
 
 static void refuse(const char *path, GError **error)
@@ -54,8 +69,9 @@ static void refuse(const char *path, GError **error)
     const char *dot = strrchr(path, '.');
     bool has_extension = dot && !strchr(dot, '/');
     error_at(error, (source_place){intern(path), 0, 0},
-             "expected a scene file: %s, found %s", known->str,
-             has_extension ? dot : "no extension");
+             "expected a scene file: %s, found %s; Blender, for one, makes glTF of most "
+             "others",
+             known->str, has_extension ? dot : "no extension");
 }
 
 /** In the dark a scene can be looked at all the same. */
@@ -98,8 +114,10 @@ scene *format_load_with(const char *path, const load_options *options, GError **
     s->build.lenient = options->lenient;
     s->thin_glass = options->thin_glass;
     s->build.sources = scene_sources_new(options->source, options->source_data);
+    s->build.cancel = options->cancel;
     if (!format_read(s, path, error) || !commit(s, path, options->threads, error))
         return NULL;
+    s->build.cancel = NULL;
     return g_steal_pointer(&s);
 }
 

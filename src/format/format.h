@@ -9,6 +9,10 @@
  * format_load has it. */
 bool format_read(scene *s, const char *path, GError **error);
 
+/** @brief What names of scene files end in, with the dot, lower case; NULL-terminated,
+ * static. */
+const char *const *format_extensions(void);
+
 /** @brief How to load. */
 typedef struct load_options {
     unsigned threads;    /**< for the acceleration structure; 0 = all */
@@ -17,6 +21,7 @@ typedef struct load_options {
     const log_sink *log; /**< may be NULL; must outlive the scene */
     source_func source;  /**< told the files that are read; may be NULL */
     void *source_data;
+    const cancel_flag *cancel; /**< heard while a model is imported; may be NULL */
 } load_options;
 
 /** @brief format_load by options. */

@@ -413,7 +413,7 @@ static bool read_pbrt(scene *s, const char *path, GError **error)
     return fine;
 }
 
-static const char *const extensions[] = {".pbrt", NULL};
+static const char *const extensions[] = {".pbrt", ".pbrt.gz", NULL};
 
 const format_reader pbrt_reader = {
     .name = "pbrt-v4", .extensions = extensions, .read = read_pbrt};

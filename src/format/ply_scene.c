@@ -28,7 +28,7 @@ static bool is_ply(const char *bytes, size_t size)
            (bytes[3] == '\n' || bytes[3] == '\r');
 }
 
-static const char *const extensions[] = {".ply", NULL};
+static const char *const extensions[] = {".ply", ".ply.gz", NULL};
 
 const format_reader ply_reader = {.name = "PLY",
                                   .extensions = extensions,

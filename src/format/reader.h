@@ -17,4 +17,4 @@ typedef struct format_reader {
 extern const format_reader pbrt_reader;
 extern const format_reader gltf_reader;
 extern const format_reader ply_reader;
-extern const format_reader assimp_reader_kind;
+extern const format_reader model_reader;

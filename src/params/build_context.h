@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/log.h"
+#include "base/parallel.h"
 #include "image/image.h"
 #include "params/sources.h"
 
@@ -19,6 +20,7 @@ typedef struct build_context {
     GHashTable *pictures;   /**< how and what was read -> picture* */
     scene_sources *sources; /**< borrowed; NULL: nobody asks for them */
     log_sink log;
+    const cancel_flag *cancel; /**< borrowed, for readers that wait; NULL: none */
     bool
         lenient; /**< what can not be rendered is replaced, and said (build_is_lenient) */
 } build_context;

@@ -1,12 +1,11 @@
 /*
  * What an OBJ file names and what its MTL files define are read side by side, line by
  * line; all else in them is the importer's. A name is the rest of its line. Where a file
- * of materials is missing the importer tries the one named like the OBJ file, and so does
- * this.
+ * of materials is missing the one named like the OBJ file is taken.
  */
-#include "format/obj_materials.h"
+#include "format/model/obj_materials.h"
 
-#include "format/input.h"
+#include "format/model/importer.h"
 
 #include <string.h>
 
@@ -18,7 +17,7 @@ typedef struct obj_names {
     char *directory;
     GHashTable *files, *defined, *used; /* char* */
     GPtrArray *in_order;                /* those used; borrowed */
-    bool has_library;                   /* one that could be read */
+    GArray *found;                      /* import_file */
 } obj_names;
 
 /* ---- Lines ---- */
@@ -40,10 +39,13 @@ static char *after(const char *word, const char *line, size_t length)
 
 static bool each_line(obj_names *names, const char *path, line_func told)
 {
-    input in;
-    if (!g_file_test(path, G_FILE_TEST_IS_REGULAR) || !input_open(&in, path, NULL))
+    g_autoptr(GMappedFile) file = g_file_test(path, G_FILE_TEST_IS_REGULAR)
+                                      ? g_mapped_file_new(path, FALSE, NULL)
+                                      : NULL;
+    if (!file)
         return false;
-    const char *at = in.data, *end = in.data + in.size;
+    const char *at = g_mapped_file_get_contents(file);
+    const char *end = at + g_mapped_file_get_length(file);
     while (at < end) {
         const char *stop = memchr(at, '\n', (size_t)(end - at));
         stop = stop ? stop : end;
@@ -52,7 +54,6 @@ static bool each_line(obj_names *names, const char *path, line_func told)
         told(names, at, (size_t)(stop - at));
         at = stop + 1;
     }
-    input_close(&in);
     return true;
 }
 
@@ -75,17 +76,26 @@ static char *own_library(const obj_names *names)
     return g_build_filename(names->directory, name, NULL);
 }
 
-/* Takes the name. */
-static void read_library(obj_names *names, char *name)
+static void read_library(obj_names *names, const char *name)
 {
-    if (!g_hash_table_add(names->files, name))
+    if (g_hash_table_contains(names->files, name))
         return;
+    g_hash_table_add(names->files, g_strdup(name));
+    if (names->found->len == MOST_IMPORT_FILES) {
+        log_message(&names->scene->build.log, LOG_WARNING,
+                    "%s: it names more than %d files of materials: '%s' is left out",
+                    names->path, MOST_IMPORT_FILES, name);
+        return;
+    }
     g_autofree char *path = g_canonicalize_filename(name, names->directory);
     g_autofree char *own = own_library(names);
     scene_sources_add(names->scene->build.sources, path);
     bool found = each_line(names, path, note_definition);
     bool has_own = !found && each_line(names, own, note_definition);
-    names->has_library |= found || has_own;
+    if (found || has_own) {
+        const import_file file = {g_strdup(name), g_strdup(found ? path : own)};
+        g_array_append_val(names->found, file);
+    }
     if (found)
         return;
     g_autofree char *instead =
@@ -97,12 +107,16 @@ static void read_library(obj_names *names, char *name)
 
 static void note_line(obj_names *names, const char *line, size_t length)
 {
-    char *library = after("mtllib", line, length);
+    g_autofree char *library = after("mtllib", line, length);
     char *used = after("usemtl", line, length);
     if (library)
         read_library(names, library);
-    if (used && g_hash_table_add(names->used, used))
+    if (used && !g_hash_table_contains(names->used, used)) {
+        g_hash_table_add(names->used, used);
         g_ptr_array_add(names->in_order, used);
+        used = NULL;
+    }
+    g_free(used);
 }
 
 static void tell_missing(const obj_names *names)
@@ -114,7 +128,7 @@ static void tell_missing(const obj_names *names)
                     "%s: it names materials (usemtl) and no file of them (mtllib): they "
                     "are grey",
                     names->path);
-    for (guint i = 0; i < names->in_order->len && names->has_library; i++) {
+    for (guint i = 0; i < names->in_order->len && names->found->len > 0; i++) {
         const char *name = names->in_order->pdata[i];
         if (g_hash_table_contains(names->defined, name) || ++n_missing > MOST_NAMED)
             continue;
@@ -133,24 +147,31 @@ static GHashTable *names_new(void)
     return g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
 }
 
-void obj_check_materials(scene *s, const char *path)
+static void clear_file(void *data)
 {
-    g_autofree char *lower = g_ascii_strdown(path, -1);
+    const import_file *file = data;
+    g_free((char *)file->name);
+    g_free((char *)file->path);
+}
+
+GArray *obj_material_files(scene *s, const char *path)
+{
     g_autofree char *absolute = g_canonicalize_filename(path, NULL);
     g_autofree char *directory = g_path_get_dirname(absolute);
-    if (!g_str_has_suffix(lower, ".obj"))
-        return;
     obj_names names = {.scene = s,
                        .path = path,
                        .directory = directory,
                        .files = names_new(),
                        .defined = names_new(),
                        .used = names_new(),
-                       .in_order = g_ptr_array_new()};
+                       .in_order = g_ptr_array_new(),
+                       .found = g_array_new(FALSE, FALSE, sizeof(import_file))};
+    g_array_set_clear_func(names.found, clear_file);
     each_line(&names, path, note_line);
     tell_missing(&names);
     g_hash_table_unref(names.files);
     g_hash_table_unref(names.defined);
     g_hash_table_unref(names.used);
     g_ptr_array_unref(names.in_order);
+    return names.found;
 }
