@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "format/model/importer.h"
+#include "nephroid/nephroid.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -154,6 +155,30 @@ static void test_cancel(void)
     g_assert_cmpint(g_get_monotonic_time() - start, <, 15 * G_USEC_PER_SEC);
 }
 
+static bool stop_now(void *data)
+{
+    ++*(int *)data;
+    return false;
+}
+
+/* By the header's own way, through the true importer. */
+static void test_stopped(void)
+{
+    int n_asked = 0;
+    scene_folder f = folder_new("");
+    folder_write(&f, "a.obj", triangle_obj, -1);
+    const NephLoadOptions options = {.go_on = stop_now, .go_on_data = &n_asked};
+    g_autoptr(GError) error = NULL;
+    g_assert_null(neph_scene_load_with(f.files->pdata[1], &options, &error));
+    g_assert_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
+    g_assert_cmpint(n_asked, >=, 1);
+    g_clear_error(&error);
+    g_autofree char *out = g_build_filename(f.path, "out.pbrt", NULL);
+    g_assert_false(neph_scene_convert_with(f.files->pdata[1], out, &options, &error));
+    g_assert_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
+    folder_remove(&f);
+}
+
 /* A program that lets the system reap its children, or blocks signals, is served too. */
 static void test_strange_parents(void)
 {
@@ -204,6 +229,21 @@ static void test_kinds_not_read(void)
         const char *dot = strrchr(names[i], '.');
         g_assert_nonnull(strstr(error->message, dot ? dot : "no extension"));
         g_assert_nonnull(strstr(error->message, "Blender"));
+    }
+}
+
+/* What is read is listed, and what is listed is read. */
+static void test_list_of_kinds(void)
+{
+    static const char *const read[] = {".pbrt", ".gltf", ".glb", ".ply", ".obj",
+                                       ".stl",  ".3mf",  ".dae", ".fbx"};
+    const char *const *list = neph_scene_extensions();
+    for (size_t i = 0; i < G_N_ELEMENTS(read); i++)
+        g_assert_true(g_strv_contains(list, read[i]));
+    for (; *list; list++) {
+        g_autofree char *name = g_strconcat("a", *list, NULL);
+        g_autoptr(GError) error = load_error(name, "?", 1, NULL, NULL);
+        g_assert_null(strstr(error->message, "expected a scene file"));
     }
 }
 
@@ -359,8 +399,10 @@ int main(int argc, char **argv)
     g_test_add_func("/importer/no-program", test_no_program);
     g_test_add_func("/importer/nonsense", test_nonsense);
     g_test_add_func("/importer/cancel", test_cancel);
+    g_test_add_func("/importer/stopped", test_stopped);
     g_test_add_func("/importer/strange-parents", test_strange_parents);
     g_test_add_func("/importer/kinds-not-read", test_kinds_not_read);
+    g_test_add_func("/importer/list-of-kinds", test_list_of_kinds);
     g_test_add_func("/importer/other-content", test_other_content);
     g_test_add_func("/importer/map-without-material", test_map_without_material);
     g_test_add_func("/importer/nested-nodes", test_nested_nodes);

@@ -63,6 +63,11 @@ static bool has_picture(const heard *h)
     return h->pictures > 0;
 }
 
+static bool is_loading(const heard *h)
+{
+    return h->state == SESSION_LOADING;
+}
+
 static bool has_error(const heard *h)
 {
     return h->errors > 0;
@@ -112,6 +117,32 @@ static void test_missing(void)
     wait_until(has_error, &h);
     g_assert_cmpint(h.state, ==, SESSION_EMPTY);
     end(s, &h);
+}
+
+/* A model whose importer never ends holds nobody up: another scene stops it, unheard, and
+ * so does the end. */
+static void test_endless_import(void)
+{
+    heard h = {0};
+    g_autofree char *importer = g_build_filename(folder, "importer", NULL);
+    g_autofree char *model = g_build_filename(folder, "a.obj", NULL);
+    g_assert_true(
+        g_file_set_contents(importer, "#!/bin/sh\nexec sleep 1000\n", -1, NULL));
+    g_assert_true(g_file_set_contents(model, "v 0 0 0\n", -1, NULL));
+    g_assert_cmpint(g_chmod(importer, 0700), ==, 0);
+    g_setenv("NEPHROID_IMPORTER", importer, TRUE);
+    session *s = session_new(listen, &h);
+    session_load(s, model);
+    wait_until(is_loading, &h);
+    session_load(s, scene_file);
+    wait_until(is_done, &h);
+    g_assert_cmpint(h.errors, ==, 0);
+    session_load(s, model);
+    wait_until(is_loading, &h);
+    end(s, &h);
+    g_unsetenv("NEPHROID_IMPORTER");
+    g_unlink(importer);
+    g_unlink(model);
 }
 
 /* While the view moves only quick looks come; when it stands still, the whole. */
@@ -201,6 +232,7 @@ int main(int argc, char **argv)
     g_assert_true(g_file_set_contents(scene_file, scene_text, -1, NULL));
     g_test_add_func("/session/same-picture", test_same_picture);
     g_test_add_func("/session/missing", test_missing);
+    g_test_add_func("/session/endless-import", test_endless_import);
     g_test_add_func("/session/moving", test_moving);
     g_test_add_func("/session/any-order", test_any_order);
     int result = g_test_run();
