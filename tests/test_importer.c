@@ -301,6 +301,15 @@ static void test_nested_nodes(void)
     g_assert_nonnull(error);
 }
 
+/* Told as what it is, not as nonsense. */
+static void test_not_finite(void)
+{
+    static const char obj[] = "v 1e99 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    g_autoptr(GError) error = load_error("a.obj", obj, -1, NULL, NULL);
+    g_assert_nonnull(error);
+    g_assert_nonnull(strstr(error->message, "a position of a mesh is not finite"));
+}
+
 /* An STL that says it has four thousand million triangles. */
 static void test_lying_count(void)
 {
@@ -406,6 +415,7 @@ int main(int argc, char **argv)
     g_test_add_func("/importer/other-content", test_other_content);
     g_test_add_func("/importer/map-without-material", test_map_without_material);
     g_test_add_func("/importer/nested-nodes", test_nested_nodes);
+    g_test_add_func("/importer/not-finite", test_not_finite);
     g_test_add_func("/importer/lying-count", test_lying_count);
     g_test_add_func("/importer/no-file", test_no_file);
     g_test_add_func("/importer/many-libraries", test_many_libraries);

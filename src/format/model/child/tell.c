@@ -12,6 +12,14 @@
 _Static_assert(sizeof(struct aiVector3D) == 3 * sizeof(float),
                "positions go as they are");
 
+static bool all_finite(const float *x, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!isfinite(x[i]))
+            return false;
+    return true;
+}
+
 /* ---- Meshes ---- */
 
 static uint64_t count_triangles(const struct aiMesh *m)
@@ -24,6 +32,8 @@ static uint64_t count_triangles(const struct aiMesh *m)
 
 static void tell_mesh(out *o, const struct aiMesh *m)
 {
+    if (!all_finite((const float *)m->mVertices, 3 * (size_t)m->mNumVertices))
+        out_fail(o, STREAM_DAMAGED, "a position of a mesh is not finite");
     const struct aiVector3D *uvs = m->mTextureCoords[0];
     const stream_mesh mesh = {.n_vertices = m->mNumVertices,
                               .n_triangles = count_triangles(m),
@@ -95,14 +105,6 @@ static bool each_node(const struct aiScene *scene,
         }
     }
     free(open);
-    return true;
-}
-
-static bool all_finite(const float *x, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        if (!isfinite(x[i]))
-            return false;
     return true;
 }
 
