@@ -88,18 +88,18 @@ static void test_not_finite_is_left_out(void)
 
 static void test_refuses(void)
 {
-    const char *const grey[] = {"Y"};
+    const char *const colourless[] = {"U", "V"};
     image_difference d;
     GError *error = NULL;
     g_autoptr(image) a = uniform(8, 8, 1, 1, 1), b = uniform(8, 9, 1, 1, 1);
-    g_autoptr(image) c = image_new(8, 8, 1, grey, NULL);
+    g_autoptr(image) c = image_new(8, 8, 2, colourless, NULL);
     g_assert_false(image_compare(a, b, &d, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
     g_assert_nonnull(strstr(error->message, "8 x 8 and 8 x 9"));
     g_clear_error(&error);
     g_assert_false(image_compare(a, c, &d, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
-    g_assert_nonnull(strstr(error->message, "second image has no channel 'R'"));
+    g_assert_nonnull(strstr(error->message, "second image has no channels 'R'"));
     g_clear_error(&error);
     for (int i = 0; i < 8 * 8 * 3; i++)
         a->pixels[i] = NAN;
@@ -440,8 +440,8 @@ static void test_sheet(void)
     g_assert_cmpfloat(sums[0], ==, 12);
     g_assert_cmpfloat(sums[1], ==, 4);
     g_assert_cmpfloat(sums[2], ==, 0);
-    const char *const grey[] = {"Y"};
-    g_autoptr(image) other = image_new(2, 2, 1, grey, NULL);
+    const char *const colourless[] = {"U", "V"};
+    g_autoptr(image) other = image_new(2, 2, 2, colourless, NULL);
     const image *const two[] = {a, other};
     g_autoptr(GError) error = NULL;
     g_assert_null(image_sheet(two, 2, 2, &error));

@@ -468,8 +468,8 @@ static void test_read_refuses(void)
 
 static void test_write_refuses(void)
 {
-    const char *const grey[] = {"Y"};
-    g_autoptr(image) img = image_new(2, 2, 1, grey, NULL);
+    const char *const colourless[] = {"U", "V"};
+    g_autoptr(image) img = image_new(2, 2, 2, colourless, NULL);
     const char *const names[] = {"a.png", "a.jpg", "a.hdr", "a.pfm"};
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
         GError *error = NULL;

@@ -62,7 +62,7 @@ static unsigned count_faults(const house *h)
     return h->faults->len;
 }
 
-/** @brief Calls visit for every .c and .h below the folder, which need not exist. */
+/** @brief Calls visit for every .c, .cpp and .h below the folder, which need not exist. */
 static void each_source(house *h, const char *folder,
                         void (*visit)(house *h, const char *path, const char *text))
 {
@@ -74,7 +74,8 @@ static void each_source(house *h, const char *folder,
         g_autofree char *text = NULL;
         if (g_file_test(file, G_FILE_TEST_IS_DIR))
             each_source(h, path, visit);
-        else if ((g_str_has_suffix(name, ".c") || g_str_has_suffix(name, ".h")) &&
+        else if ((g_str_has_suffix(name, ".c") || g_str_has_suffix(name, ".cpp") ||
+                  g_str_has_suffix(name, ".h")) &&
                  g_file_get_contents(file, &text, NULL, NULL))
             visit(h, path, text);
     }

@@ -78,8 +78,10 @@ static int *edges(const image *const *images, size_t n, size_t columns, bool of_
 
 static void put(image *sheet, const image *img, int left, int top)
 {
+    int rgba[4];
+    image_colors(img, rgba);
     for (int c = 0; c < 3; c++) {
-        const float *from = img->pixels + image_channel(img, rgb_names[c]);
+        const float *from = img->pixels + rgba[c];
         for (int y = 0; y < img->height; y++)
             for (int x = 0; x < img->width; x++) {
                 size_t at = (size_t)(top + y) * (size_t)sheet->width + (size_t)(left + x);
@@ -91,13 +93,13 @@ static void put(image *sheet, const image *img, int left, int top)
 
 static bool all_have_colours(const image *const *images, size_t n, GError **error)
 {
+    int rgba[4];
     for (size_t i = 0; i < n; i++)
-        for (int c = 0; c < 3; c++)
-            if (image_channel(images[i], rgb_names[c]) < 0) {
-                error_set(error, ERROR_INPUT, "image %zu has no channel '%s'", i + 1,
-                          rgb_names[c]);
-                return false;
-            }
+        if (!image_colors(images[i], rgba)) {
+            error_set(error, ERROR_INPUT,
+                      "image %zu has no channels 'R', 'G', 'B' or 'Y'", i + 1);
+            return false;
+        }
     return true;
 }
 

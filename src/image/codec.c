@@ -64,17 +64,13 @@ float *encoding_table(const image_read_options *options, unsigned n_codes)
     return table;
 }
 
-bool image_rgb(const image *img, const char *path, int rgb[3], GError **error)
+bool image_rgba(const image *img, const char *path, int rgba[4], GError **error)
 {
-    for (int c = 0; c < 3; c++) {
-        rgb[c] = image_channel(img, rgba_names[c]);
-        if (rgb[c] >= 0)
-            continue;
-        error_set(error, ERROR_INPUT, "%s: the image has no channel '%s'", path,
-                  rgba_names[c]);
-        return false;
-    }
-    return true;
+    if (image_colors(img, rgba))
+        return true;
+    error_set(error, ERROR_INPUT, "%s: the image has no channels 'R', 'G', 'B' or 'Y'",
+              path);
+    return false;
 }
 
 uint8_t srgb_code(float linear)

@@ -64,8 +64,8 @@ bool source_line(const image_source *source, size_t *at, char *line, size_t size
  * the caller (g_free). */
 float *encoding_table(const image_read_options *options, unsigned n_codes);
 
-/** @brief Indices of R, G and B. @return false with ERROR_INPUT if one is missing. */
-bool image_rgb(const image *img, const char *path, int rgb[3], GError **error);
+/** @brief image_colors. @return false with ERROR_INPUT if there are none. */
+bool image_rgba(const image *img, const char *path, int rgba[4], GError **error);
 
 /** @brief The 8-bit sRGB code of a linear value; not finite counts as 0. */
 uint8_t srgb_code(float linear);

@@ -25,21 +25,21 @@ static bool comparable(const image *a, const image *b, GError **error)
                   a->height, b->width, b->height);
         return false;
     }
-    for (int c = 0; c < 3; c++) {
-        const char *which = image_channel(a, rgb_names[c]) < 0 ? "first" : "second";
-        if (image_channel(a, rgb_names[c]) >= 0 && image_channel(b, rgb_names[c]) >= 0)
-            continue;
-        error_set(error, ERROR_INPUT, "the %s image has no channel '%s' to compare",
-                  which, rgb_names[c]);
-        return false;
-    }
-    return true;
+    int rgba[4];
+    bool a_has = image_colors(a, rgba), b_has = image_colors(b, rgba);
+    if (!a_has || !b_has)
+        error_set(error, ERROR_INPUT,
+                  "the %s image has no channels 'R', 'G', 'B' or 'Y' to compare",
+                  a_has ? "second" : "first");
+    return a_has && b_has;
 }
 
 static void load(const image *img, size_t n, double *out)
 {
+    int rgba[4];
+    image_colors(img, rgba);
     for (int c = 0; c < 3; c++) {
-        const float *from = img->pixels + image_channel(img, rgb_names[c]);
+        const float *from = img->pixels + rgba[c];
         for (size_t i = 0; i < n; i++)
             out[3 * i + (size_t)c] = (double)from[i * (size_t)img->n_channels];
     }

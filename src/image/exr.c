@@ -1,12 +1,13 @@
 /*
- * OpenEXR through its C core. Read: the first flat part of a file, scanlines or tiles,
- * all channels as float under their own names, string attributes into the header.
- * Written: one part of 32-bit float scanlines, ZIP-compressed.
+ * OpenEXR. Read: the first flat part of a file, scanlines or tiles, all channels as float
+ * under their own names, string attributes into the header; by the C++ library behind
+ * exr_file.h. Written, by the C core: one part of 32-bit float scanlines, ZIP-compressed.
  *
  * The image is the data window: what lies outside it is not in the file.
  */
 #include "base/parallel.h"
 #include "image/codec.h"
+#include "image/exr_file.h"
 
 #include <errno.h>
 #include <openexr.h>
@@ -18,15 +19,139 @@ enum {
     ZIP_LEVEL = 2, /* of 9: pictures get hardly larger, and are written much sooner */
 };
 
+/* ---- reading ---- */
+
+typedef struct exr_reading {
+    const image_source *source;
+    image *img;
+    GError **error;
+} exr_reading;
+
+static bool recognises(const image_source *source)
+{
+    return source->size >= 4 && memcmp(source->bytes, "\x76\x2f\x31\x01", 4) == 0;
+}
+
+/* Moves *at behind a text and the zero at its end. @return its length, -1: it has none */
+static ptrdiff_t skip_text(const image_source *source, size_t *at)
+{
+    const uint8_t *begin = source->bytes + *at;
+    const uint8_t *end = memchr(begin, 0, source->size - *at);
+    if (!end)
+        return -1;
+    *at += (size_t)(end - begin) + 1;
+    return end - begin;
+}
+
+/* Name, type, size, value; all headers end with an empty name. @return as skip_text */
+static ptrdiff_t skip_attribute(const image_source *source, size_t *at)
+{
+    int32_t size;
+    ptrdiff_t name = skip_text(source, at);
+    if (name <= 0)
+        return name;
+    if (skip_text(source, at) < 0 || source->size - *at < sizeof size)
+        return -1;
+    memcpy(&size, source->bytes + *at, sizeof size);
+    size = GINT32_FROM_LE(size);
+    *at += sizeof size;
+    if (size < 0 || (size_t)size > source->size - *at)
+        return -1;
+    *at += (size_t)size;
+    return name;
+}
+
+/* The library makes room for as much as an attribute says it has, before it reads. */
+static bool attributes_fit(const image_source *source)
+{
+    enum { VERSION = 4, HEADERS = 8, MULTI_PART = 0x10 };
+    if (source->size < HEADERS)
+        return false;
+    bool several = source->bytes[VERSION + 1] & MULTI_PART;
+    size_t at = HEADERS, begin;
+    do {
+        ptrdiff_t name;
+        begin = at;
+        while ((name = skip_attribute(source, &at)) > 0)
+            ;
+        if (name < 0)
+            return false;
+    } while (several && at > begin + 1); /* an empty header is the last */
+    return true;
+}
+
+static bool can_be_read(const exr_description *part, const image_source *source,
+                        GError **error)
+{
+    if (part->subsampled) {
+        error_set(error, ERROR_INPUT,
+                  "%s: channel '%s' is subsampled, which is not supported", source->path,
+                  part->subsampled);
+        return false;
+    }
+    if (!source_size_possible(source, part->width, part->height, part->bytes_per_pixel,
+                              part->best_ratio, error))
+        return false;
+    if (part->n_channels >= 1 &&
+        (double)part->width * (double)part->n_channels <= (double)INT32_MAX / 4)
+        return true;
+    source_damaged(source, codec_exr.name, "no channels, or too many", error);
+    return false;
+}
+
+/* An exr_place_function. */
+static float *make_image(const exr_description *part, void *data)
+{
+    exr_reading *r = data;
+    if (!can_be_read(part, r->source, r->error))
+        return NULL;
+    r->img = image_new((int)part->width, (int)part->height, (int)part->n_channels,
+                       part->channels, r->error);
+    if (!r->img)
+        return NULL;
+    for (size_t i = 0; i < part->n_strings; i++)
+        image_header_set(r->img, part->strings[i].name, part->strings[i].value);
+    if (part->has_chromaticities)
+        memcpy(r->img->chromaticities, part->chromaticities,
+               sizeof r->img->chromaticities);
+    return r->img->pixels;
+}
+
+static bool read_file(exr_reading *r, GError **error)
+{
+    char message[300] = "its header does not end";
+    exr_result result = EXR_DAMAGED;
+    if (attributes_fit(r->source))
+        result = exr_file_read(r->source->path, r->source->bytes, r->source->size,
+                               make_image, r, message);
+    if (result == EXR_DAMAGED)
+        source_damaged(r->source, codec_exr.name, message, error);
+    else if (result == EXR_NO_MEMORY)
+        error_set(error, ERROR_FAILED, "%s: out of memory", r->source->path);
+    else if (result == EXR_ONLY_DEEP)
+        error_set(error, ERROR_INPUT, "%s: only deep data, which is not supported",
+                  r->source->path);
+    return result == EXR_READ;
+}
+
+static image *read_exr(const image_source *source, const image_read_options *options,
+                       GError **error)
+{
+    (void)options;
+    exr_reading r = {.source = source, .error = error};
+    if (!read_file(&r, error))
+        image_free(g_steal_pointer(&r.img));
+    return r.img;
+}
+
+/* ---- writing ---- */
+
 /* What the callbacks of one context share. */
 typedef struct exr_job {
     exr_context_t context;
     char message[300]; /* the first error */
-    const image_source *source;
     const image_sink *sink;
     int part;
-    exr_attr_box2i_t window;
-    image *img;
     const image *to_write;
 } exr_job;
 
@@ -50,27 +175,6 @@ static bool succeeded(exr_job *job, exr_result_t code)
     return code == EXR_ERR_SUCCESS;
 }
 
-static int64_t file_size(exr_const_context_t context, void *data)
-{
-    (void)context;
-    const exr_job *job = data;
-    return (int64_t)job->source->size;
-}
-
-/* Like pread: fewer bytes at the file's end, which the library knows how to judge. */
-static int64_t read_bytes(exr_const_context_t context, void *data, void *buffer,
-                          uint64_t size, uint64_t offset,
-                          exr_stream_error_func_ptr_t report)
-{
-    const exr_job *job = data;
-    (void)context;
-    (void)report;
-    uint64_t left = job->source->size - MIN(offset, job->source->size);
-    size_t n = MIN(size, left);
-    memcpy(buffer, job->source->bytes + job->source->size - left, n);
-    return (int64_t)n;
-}
-
 static int64_t write_bytes(exr_const_context_t context, void *data, const void *buffer,
                            uint64_t size, uint64_t offset,
                            exr_stream_error_func_ptr_t report)
@@ -83,251 +187,6 @@ static int64_t write_bytes(exr_const_context_t context, void *data, const void *
     report(context, EXR_ERR_WRITE_IO, "%s", g_strerror(errno));
     return -1;
 }
-
-static exr_context_initializer_t begin(exr_job *job)
-{
-    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    setup.error_handler_fn = on_error;
-    setup.user_data = job;
-    setup.read_fn = job->source ? read_bytes : NULL;
-    setup.size_fn = job->source ? file_size : NULL;
-    setup.write_fn = job->sink ? write_bytes : NULL;
-    setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-    current = job;
-    return setup;
-}
-
-/* ---- reading ---- */
-
-static bool recognises(const image_source *source)
-{
-    return source->size >= 4 && memcmp(source->bytes, "\x76\x2f\x31\x01", 4) == 0;
-}
-
-static bool find_flat_part(exr_job *job, GError **error)
-{
-    int n_parts = 0;
-    exr_get_count(job->context, &n_parts);
-    for (job->part = 0; job->part < n_parts; job->part++) {
-        exr_storage_t storage;
-        if (exr_get_storage(job->context, job->part, &storage) == EXR_ERR_SUCCESS &&
-            (storage == EXR_STORAGE_SCANLINE || storage == EXR_STORAGE_TILED))
-            return true;
-    }
-    error_set(error, ERROR_INPUT, "%s: only deep data, which is not supported",
-              job->source->path);
-    return false;
-}
-
-static double bytes_per_pixel(const exr_attr_chlist_t *list)
-{
-    double bytes = 0;
-    for (int c = 0; c < list->num_channels; c++)
-        bytes += list->entries[c].pixel_type == EXR_PIXEL_HALF ? 2 : 4;
-    return bytes;
-}
-
-/* The most that a compression can gain: deflate and Huffman runs, and in DWA's case runs
- * of runs. */
-static double best_ratio(const exr_job *job)
-{
-    exr_compression_t compression = EXR_COMPRESSION_NONE;
-    exr_get_compression(job->context, job->part, &compression);
-    bool dwa = compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB;
-    return dwa ? 65536.0 : 2048.0;
-}
-
-static bool channels_supported(const exr_job *job, const exr_attr_chlist_t *list,
-                               GError **error)
-{
-    for (int c = 0; c < list->num_channels; c++) {
-        const exr_attr_chlist_entry_t *entry = &list->entries[c];
-        if (entry->x_sampling == 1 && entry->y_sampling == 1)
-            continue;
-        error_set(error, ERROR_INPUT,
-                  "%s: channel '%s' is subsampled, which is not supported",
-                  job->source->path, entry->name.str);
-        return false;
-    }
-    return true;
-}
-
-static image *allocate_image(exr_job *job, GError **error)
-{
-    const exr_attr_chlist_t *list = NULL;
-    const exr_attr_box2i_t *w = &job->window;
-    if (!succeeded(job, exr_get_channels(job->context, job->part, &list)) ||
-        !succeeded(job, exr_get_data_window(job->context, job->part, &job->window))) {
-        source_damaged(job->source, codec_exr.name, job->message, error);
-        return NULL;
-    }
-    int64_t width = (int64_t)w->max.x - w->min.x + 1;
-    int64_t height = (int64_t)w->max.y - w->min.y + 1;
-    if (!channels_supported(job, list, error) ||
-        !source_size_possible(job->source, width, height, bytes_per_pixel(list),
-                              best_ratio(job), error))
-        return NULL;
-    if (list->num_channels < 1 || width * list->num_channels > INT32_MAX / 4) {
-        source_damaged(job->source, codec_exr.name, "no channels, or too many", error);
-        return NULL;
-    }
-    g_autofree const char **names = g_new(const char *, list->num_channels);
-    for (int c = 0; c < list->num_channels; c++)
-        names[c] = list->entries[c].name.str;
-    return image_new((int)width, (int)height, list->num_channels, names, error);
-}
-
-/* Channels of the file and of the image stand in the same order: no names are sought. */
-static void aim_decoder(const exr_job *job, exr_decode_pipeline_t *decoder, int x, int y)
-{
-    const image *img = job->img;
-    size_t n = (size_t)img->n_channels;
-    float *pixel = img->pixels + ((size_t)y * (size_t)img->width + (size_t)x) * n;
-    for (int c = 0; c < decoder->channel_count; c++) {
-        exr_coding_channel_info_t *channel = &decoder->channels[c];
-        channel->decode_to_ptr = (uint8_t *)(pixel + c);
-        channel->user_data_type = EXR_PIXEL_FLOAT;
-        channel->user_bytes_per_element = sizeof(float);
-        channel->user_pixel_stride = (int32_t)(n * sizeof(float));
-        channel->user_line_stride = (int32_t)(n * (size_t)img->width * sizeof(float));
-    }
-}
-
-static bool chunk_inside(const exr_job *job, const exr_chunk_info_t *chunk, int x, int y)
-{
-    return x >= 0 && y >= 0 && chunk->width >= 0 && chunk->height >= 0 &&
-           chunk->width <= job->img->width - x && chunk->height <= job->img->height - y;
-}
-
-/* Decodes a chunk whose corner is pixel x, y of the image. */
-static bool read_chunk(exr_job *job, exr_decode_pipeline_t *decoder,
-                       const exr_chunk_info_t *chunk, int x, int y)
-{
-    if (!chunk_inside(job, chunk, x, y)) {
-        g_strlcpy(job->message, "a chunk lies outside the image", sizeof job->message);
-        return false;
-    }
-    bool first = !decoder->channels;
-    exr_result_t result =
-        first ? exr_decoding_initialize(job->context, job->part, chunk, decoder)
-              : exr_decoding_update(job->context, job->part, chunk, decoder);
-    if (!succeeded(job, result))
-        return false;
-    if (decoder->channel_count != job->img->n_channels)
-        return false;
-    aim_decoder(job, decoder, x, y);
-    return (!first || succeeded(job, exr_decoding_choose_default_routines(
-                                         job->context, job->part, decoder))) &&
-           succeeded(job, exr_decoding_run(job->context, job->part, decoder));
-}
-
-static bool read_scanlines(exr_job *job, exr_decode_pipeline_t *decoder)
-{
-    int32_t step = 0;
-    if (!succeeded(job, exr_get_scanlines_per_chunk(job->context, job->part, &step)) ||
-        step < 1)
-        return false;
-    for (int64_t y = job->window.min.y; y <= job->window.max.y; y += step) {
-        exr_chunk_info_t chunk;
-        if (!succeeded(job, exr_read_scanline_chunk_info(job->context, job->part, (int)y,
-                                                         &chunk)) ||
-            !read_chunk(job, decoder, &chunk, 0, (int)(y - job->window.min.y)))
-            return false;
-    }
-    return true;
-}
-
-static bool read_tile(exr_job *job, exr_decode_pipeline_t *decoder, const int32_t size[2],
-                      int column, int row)
-{
-    exr_chunk_info_t chunk;
-    return succeeded(job, exr_read_tile_chunk_info(job->context, job->part, column, row,
-                                                   0, 0, &chunk)) &&
-           read_chunk(job, decoder, &chunk, column * size[0], row * size[1]);
-}
-
-/* Level 0 only: the image itself, not its smaller copies. */
-static bool read_tiles(exr_job *job, exr_decode_pipeline_t *decoder)
-{
-    int32_t size[2] = {0, 0};
-    if (!succeeded(
-            job, exr_get_tile_sizes(job->context, job->part, 0, 0, &size[0], &size[1])) ||
-        size[0] < 1 || size[1] < 1)
-        return false;
-    for (int row = 0; row <= (job->img->height - 1) / size[1]; row++)
-        for (int column = 0; column <= (job->img->width - 1) / size[0]; column++)
-            if (!read_tile(job, decoder, size, column, row))
-                return false;
-    return true;
-}
-
-static bool read_pixels(exr_job *job)
-{
-    exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
-    exr_storage_t storage;
-    exr_get_storage(job->context, job->part, &storage);
-    bool read = storage == EXR_STORAGE_TILED ? read_tiles(job, &decoder)
-                                             : read_scanlines(job, &decoder);
-    exr_decoding_destroy(job->context, &decoder);
-    return read;
-}
-
-/* "name" and "type" belong to the part, not to the picture. */
-static void read_attributes(exr_job *job)
-{
-    int32_t n = 0;
-    exr_get_attribute_count(job->context, job->part, &n);
-    for (int32_t i = 0; i < n; i++) {
-        const exr_attribute_t *a = NULL;
-        if (exr_get_attribute_by_index(job->context, job->part, EXR_ATTR_LIST_FILE_ORDER,
-                                       i, &a) != EXR_ERR_SUCCESS)
-            continue;
-        if (a->type == EXR_ATTR_CHROMATICITIES)
-            memcpy(job->img->chromaticities, a->chromaticities,
-                   sizeof job->img->chromaticities);
-        if (a->type != EXR_ATTR_STRING || strcmp(a->name, "name") == 0 ||
-            strcmp(a->name, "type") == 0)
-            continue;
-        g_autofree char *value =
-            g_strndup(a->string->str, (gsize)MAX(a->string->length, 0));
-        image_header_set(job->img, a->name, value);
-    }
-}
-
-static bool read_opened(exr_job *job, GError **error)
-{
-    if (!find_flat_part(job, error))
-        return false;
-    job->img = allocate_image(job, error);
-    if (!job->img)
-        return false;
-    if (!read_pixels(job)) {
-        const char *message = job->message[0] ? job->message : "its chunks do not fit";
-        source_damaged(job->source, codec_exr.name, message, error);
-        return false;
-    }
-    read_attributes(job);
-    return true;
-}
-
-static image *read_exr(const image_source *source, const image_read_options *options,
-                       GError **error)
-{
-    (void)options;
-    exr_job job = {.source = source};
-    exr_context_initializer_t setup = begin(&job);
-    if (!succeeded(&job, exr_start_read(&job.context, source->path, &setup))) {
-        source_damaged(source, codec_exr.name, job.message, error);
-        return NULL;
-    }
-    bool read = read_opened(&job, error);
-    exr_finish(&job.context);
-    if (!read)
-        image_free(g_steal_pointer(&job.img));
-    return job.img;
-}
-
-/* ---- writing ---- */
 
 static bool needs_long_names(const image *img)
 {
@@ -490,7 +349,11 @@ static bool write_exr(const image *img, const image_sink *sink,
 {
     (void)options;
     exr_job job = {.sink = sink, .to_write = img};
-    exr_context_initializer_t setup = begin(&job);
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.error_handler_fn = on_error;
+    setup.user_data = &job;
+    setup.write_fn = write_bytes;
+    current = &job;
     bool written = succeeded(
         &job, exr_start_write(&job.context, sink->path, EXR_WRITE_FILE_DIRECTLY, &setup));
     if (written) {

@@ -323,16 +323,16 @@ static bool write_hdr(const image *img, const image_sink *sink,
                       const image_write_options *options, GError **error)
 {
     (void)options;
-    int rgb[3];
-    if (!image_rgb(img, sink->path, rgb, error))
+    int rgba[4];
+    if (!image_rgba(img, sink->path, rgba, error))
         return false;
     g_autofree uint8_t *scanline = g_malloc_n((gsize)img->width, 4);
     const float *p = img->pixels;
     write_header(img, sink->stream);
     for (int y = 0; y < img->height; y++) {
         for (int x = 0; x < img->width; x++, p += img->n_channels) {
-            const float v[3] = {writable(p[rgb[0]]), writable(p[rgb[1]]),
-                                writable(p[rgb[2]])};
+            const float v[3] = {writable(p[rgba[0]]), writable(p[rgba[1]]),
+                                writable(p[rgba[2]])};
             encode_pixel(v, scanline + 4 * (size_t)x);
         }
         write_scanline(sink->stream, scanline, img->width);

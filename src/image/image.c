@@ -59,6 +59,18 @@ int image_channel(const image *img, const char *name)
     return -1;
 }
 
+bool image_colors(const image *img, int rgba[4])
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    for (int c = 0; c < 4; c++)
+        rgba[c] = image_channel(img, names[c]);
+    if (rgba[0] >= 0 && rgba[1] >= 0 && rgba[2] >= 0)
+        return true;
+    int grey = img->n_channels == 1 ? 0 : image_channel(img, "Y");
+    rgba[0] = rgba[1] = rgba[2] = grey;
+    return grey >= 0;
+}
+
 const char *image_header_get(const image *img, const char *key)
 {
     return img->header ? g_hash_table_lookup(img->header, key) : NULL;

@@ -30,7 +30,7 @@ typedef struct jpeg_job {
     const float *table;
     JSAMPLE *row;
     float scale; /* 2^exposure */
-    int rgb[3];  /* channels of to_write */
+    int rgba[4]; /* channels of to_write */
 } jpeg_job;
 
 static void on_error(j_common_ptr info)
@@ -155,7 +155,7 @@ static void encode_row(const jpeg_job *job, const float *pixel)
 {
     for (int x = 0; x < job->to_write->width; x++, pixel += job->to_write->n_channels)
         for (int c = 0; c < 3; c++)
-            job->row[3 * x + c] = srgb_code(pixel[job->rgb[c]] * job->scale);
+            job->row[3 * x + c] = srgb_code(pixel[job->rgba[c]] * job->scale);
 }
 
 static void write_file(jpeg_job *job)
@@ -191,7 +191,7 @@ static bool write_jpeg(const image *img, const image_sink *sink,
     job->row = g_malloc_n((gsize)img->width, 3);
     job->out.err = handlers(job);
     job->out.client_data = job;
-    bool written = image_rgb(img, sink->path, job->rgb, error);
+    bool written = image_rgba(img, sink->path, job->rgba, error);
     if (written && !guarded(job, write_file)) {
         error_set(error, ERROR_FAILED, "%s: cannot be written: %s", sink->path,
                   job->message);

@@ -118,8 +118,8 @@ static bool write_pfm(const image *img, const image_sink *sink,
                       const image_write_options *options, GError **error)
 {
     (void)options;
-    int rgb[3];
-    if (!image_rgb(img, sink->path, rgb, error))
+    int rgba[4];
+    if (!image_rgba(img, sink->path, rgba, error))
         return false;
     fprintf(sink->stream, "PF\n%d %d\n-1\n", img->width, img->height);
     for (int y = img->height - 1; y >= 0; y--)
@@ -128,7 +128,7 @@ static bool write_pfm(const image *img, const image_sink *sink,
             const float *p = img->pixels + pixel * (size_t)img->n_channels;
             uint32_t bits[3];
             for (int c = 0; c < 3; c++) {
-                memcpy(&bits[c], &p[rgb[c]], sizeof bits[c]);
+                memcpy(&bits[c], &p[rgba[c]], sizeof bits[c]);
                 bits[c] = GUINT32_TO_LE(bits[c]);
             }
             fwrite(bits, sizeof bits, 1, sink->stream);

@@ -247,11 +247,10 @@ static bool write_png(const image *img, const image_sink *sink,
     job->width = img->width;
     job->height = img->height;
     job->scale = exp2f(options->exposure);
-    job->channel[3] = image_channel(img, "A");
-    job->n_values = job->channel[3] >= 0 ? 4 : 3;
     job->bytes = g_malloc_n((gsize)img->width, 4);
-    bool written =
-        image_rgb(img, sink->path, job->channel, error) && write_guarded(job, error);
+    bool written = image_rgba(img, sink->path, job->channel, error);
+    job->n_values = job->channel[3] >= 0 ? 4 : 3;
+    written = written && write_guarded(job, error);
     g_free(job->bytes);
     g_free(job);
     return written;

@@ -30,29 +30,15 @@ static const color_space *space_of(const image *img)
     return NULL;
 }
 
-static bool find_channels(picture *pic, const image *img)
-{
-    static const char *const names[] = {"R", "G", "B", "A"};
-    for (int i = 0; i < 4; i++)
-        pic->channels[i] = image_channel(img, names[i]);
-    if (pic->channels[0] >= 0 && pic->channels[1] >= 0 && pic->channels[2] >= 0)
-        return true;
-    int grey = image_channel(img, "Y");
-    if (grey < 0 && img->n_channels == 1)
-        grey = 0;
-    pic->channels[0] = pic->channels[1] = pic->channels[2] = grey;
-    pic->grey = true;
-    return grey >= 0;
-}
-
 /* Channels and colour space. */
 static bool understand(picture *pic, const image *img, const char *path, GError **error)
 {
-    if (!find_channels(pic, img)) {
+    if (!image_colors(img, pic->channels)) {
         error_set(error, ERROR_INPUT, "%s: expected channels R, G, B or one channel",
                   path);
         return false;
     }
+    pic->grey = pic->channels[0] == pic->channels[1];
     pic->space = space_of(img);
     if (!pic->space)
         error_set(error, ERROR_INPUT,
