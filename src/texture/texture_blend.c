@@ -5,7 +5,7 @@
  *   mix          (1 - amount) tex1 + amount tex2
  *   directionmix |n·dir| tex1 + (1 - |n·dir|) tex2, n the true normal
  *   checkerboard tex1 and tex2 in turn, in the plane or in space
- *   dots         inside and outside of discs strewn over the plane, some cells without
+ *   dots         discs strewn over the plane, some cells without; inside is around them
  *   bilerp       between four corners of the unit square
  *
  * Each is Σ weight input; what they differ in is how the weights come about. Edges are
@@ -217,11 +217,13 @@ static bool is_in_dot(vec2 st)
     return dx * dx + dy * dy < radius * radius;
 }
 
+/* pbrt's two names are exchanged in versions 3 and 4: the discs show "outside", and
+   scenes are made by looking at what pbrt draws. */
 static void weigh_dots(const blend *b, const surface_hit *hit, float weights[MAX_INPUTS])
 {
-    bool inside = is_in_dot(mapping2_eval(&b->mapping, hit).st);
-    weights[0] = inside ? 1.0f : 0.0f;
-    weights[1] = inside ? 0.0f : 1.0f;
+    bool in_dot = is_in_dot(mapping2_eval(&b->mapping, hit).st);
+    weights[0] = in_dot ? 0.0f : 1.0f;
+    weights[1] = in_dot ? 1.0f : 0.0f;
 }
 
 static void *dots_create(const build_context *context, bool is_spectrum, const params *p,
