@@ -19,15 +19,16 @@ static const usage how = {
     .entries = entries};
 
 /* What the row accepts; a bar must not end the table's cell. */
-static char *range_text(const NephSettingInfo *row)
+static char *range_text(const NephSettingInfo *row, const char *initial)
 {
     if (row->type == NEPH_SETTING_BOOL)
         return g_strdup("true, false");
     if (row->type == NEPH_SETTING_CHOICE)
         return g_strjoinv(", ", (char **)row->words);
+    const char *apart = row->initial < row->low ? initial : "";
     if (row->type == NEPH_SETTING_COUNT)
-        return g_strdup_printf("%s%.0f … %.0f", row->initial < row->low ? "0, " : "",
-                               row->low, row->high);
+        return g_strdup_printf("%s%s%.0f … %.0f", apart, *apart ? ", " : "", row->low,
+                               row->high);
     return g_strdup_printf("%.10g … %.10g", row->low, row->high);
 }
 
@@ -40,7 +41,7 @@ static char *markdown(void)
     const NephSettingInfo *rows = neph_settings_table(&n);
     for (size_t i = 0; i < n; i++) {
         g_autofree char *initial = neph_settings_get(defaults, rows[i].name);
-        g_autofree char *range = range_text(&rows[i]);
+        g_autofree char *range = range_text(&rows[i], initial);
         g_string_append_printf(out, "| `%s` | %s | %s | %s | %s | %s | %s |\n",
                                rows[i].name, initial, rows[i].unit, range,
                                rows[i].aliases, rows[i].users, rows[i].doc);

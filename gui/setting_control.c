@@ -31,13 +31,20 @@ static char *number_text(double value)
     return g_strdup(g_ascii_formatd(text, sizeof text, "%.15g", value));
 }
 
+/* What stands apart from the numbers may have a name. */
+static char *written(const NephSettingInfo *info, double value)
+{
+    return info->words && value < info->low ? g_strdup(info->words[0])
+                                            : number_text(value);
+}
+
 static char *default_text(const NephSettingInfo *info)
 {
     if (info->type == NEPH_SETTING_CHOICE)
         return g_strdup(info->words[(int)info->initial]);
     if (info->type == NEPH_SETTING_BOOL)
         return g_strdup(info->initial > 0.5 ? "true" : "false");
-    return number_text(info->initial);
+    return written(info, info->initial);
 }
 
 /* The least value, which may stand apart from the others. */
@@ -92,7 +99,7 @@ static char *value_text(const setting_control *c)
                             ? gtk_range_get_adjustment(GTK_RANGE(c->input))
                             : gtk_spin_button_get_adjustment(GTK_SPIN_BUTTON(c->input));
     double value = gtk_adjustment_get_value(at);
-    return number_text(c->info->type == NEPH_SETTING_COUNT ? rint(value) : value);
+    return written(c->info, c->info->type == NEPH_SETTING_COUNT ? rint(value) : value);
 }
 
 static void show_reset(setting_control *c)
@@ -137,6 +144,12 @@ static unsigned word_index(const NephSettingInfo *info, const char *value)
     return info->words[i] ? i : 0;
 }
 
+static double number_of(const NephSettingInfo *info, const char *value)
+{
+    bool apart = info->words && strcmp(info->words[0], value) == 0;
+    return apart ? info->initial : g_ascii_strtod(value, NULL);
+}
+
 static void put_value(setting_control *c, const char *value)
 {
     if (c->info->type == NEPH_SETTING_BOOL)
@@ -144,9 +157,9 @@ static void put_value(setting_control *c, const char *value)
     else if (c->info->type == NEPH_SETTING_CHOICE)
         gtk_drop_down_set_selected(GTK_DROP_DOWN(c->input), word_index(c->info, value));
     else if (GTK_IS_RANGE(c->input))
-        gtk_range_set_value(GTK_RANGE(c->input), g_ascii_strtod(value, NULL));
+        gtk_range_set_value(GTK_RANGE(c->input), number_of(c->info, value));
     else
-        gtk_spin_button_set_value(GTK_SPIN_BUTTON(c->input), g_ascii_strtod(value, NULL));
+        gtk_spin_button_set_value(GTK_SPIN_BUTTON(c->input), number_of(c->info, value));
 }
 
 void setting_control_show(setting_control *c, const char *value)
@@ -178,7 +191,10 @@ static GtkWidget *number_make(const NephSettingInfo *info)
     bool whole = info->type == NEPH_SETTING_COUNT;
     if (!whole && info->high - info->low <= SLIDER_RANGE)
         return slider_make(info->low, info->high, 0.01, 3);
-    return spin_make(least_of(info), info->high, step_of(info), whole);
+    GtkWidget *spin = spin_make(least_of(info), info->high, step_of(info), whole);
+    if (info->words)
+        spin_name_lowest(spin, info->words[0]);
+    return spin;
 }
 
 /* Words behind that of `high` name presets and are no values. */
@@ -216,14 +232,14 @@ static char *tooltip_text(const NephSettingInfo *info)
 {
     g_autofree char *initial = default_text(info);
     g_autofree char *low = number_text(info->low), *high = number_text(info->high);
-    const char *none = info->initial < info->low ? "0, or " : "";
+    const char *none = info->initial < info->low ? initial : "";
     bool number = info->type == NEPH_SETTING_COUNT || info->type == NEPH_SETTING_REAL;
     const char *space = *info->unit ? " " : "";
     GString *out = g_string_new(info->doc);
     g_string_append_printf(out, "\n\nDefault: %s%s%s", initial, space, info->unit);
     if (number)
-        g_string_append_printf(out, "\nRange: %s%s to %s%s%s", none, low, high, space,
-                               info->unit);
+        g_string_append_printf(out, "\nRange: %s%s%s to %s%s%s", none,
+                               *none ? ", or " : "", low, high, space, info->unit);
     g_string_append_printf(out, "\nName: %s", info->name);
     return g_string_free(out, FALSE);
 }

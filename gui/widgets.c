@@ -189,11 +189,23 @@ GtkWidget *value_row_add(GtkWidget *list, const char *title)
 
 /* ---- Numbers, in any locale ---- */
 
+/* The lowest value's name in spin_name_lowest. */
+#define LOWEST "neph-lowest"
+
+static double lowest_of(GtkSpinButton *spin)
+{
+    return gtk_adjustment_get_lower(gtk_spin_button_get_adjustment(spin));
+}
+
 static int read_number(GtkSpinButton *spin, double *value, void *data)
 {
     (void)data;
     const char *text = gtk_editable_get_text(GTK_EDITABLE(spin));
     char *end = NULL;
+    if (g_strcmp0(text, g_object_get_data(G_OBJECT(spin), LOWEST)) == 0) {
+        *value = lowest_of(spin);
+        return TRUE;
+    }
     *value = g_ascii_strtod(text, &end);
     while (end && g_ascii_isspace(*end))
         end++;
@@ -206,9 +218,11 @@ static gboolean write_number(GtkSpinButton *spin, void *data)
     char text[G_ASCII_DTOSTR_BUF_SIZE];
     double value = gtk_spin_button_get_value(spin);
     bool whole = fabs(value - rint(value)) <= 0.0 && fabs(value) < 1e15;
+    const char *lowest = g_object_get_data(G_OBJECT(spin), LOWEST);
+    const char *shown = lowest && value <= lowest_of(spin) ? lowest : text;
     g_ascii_formatd(text, sizeof text, whole ? "%.0f" : "%.6g", value);
-    if (g_strcmp0(text, gtk_editable_get_text(GTK_EDITABLE(spin))) != 0)
-        gtk_editable_set_text(GTK_EDITABLE(spin), text);
+    if (g_strcmp0(shown, gtk_editable_get_text(GTK_EDITABLE(spin))) != 0)
+        gtk_editable_set_text(GTK_EDITABLE(spin), shown);
     return TRUE;
 }
 
@@ -257,6 +271,12 @@ GtkWidget *spin_make(double low, double high, double step, bool whole)
     gtk_spin_button_update(GTK_SPIN_BUTTON(spin));
     wheel_needs_focus(spin);
     return spin;
+}
+
+void spin_name_lowest(GtkWidget *spin, const char *word)
+{
+    g_object_set_data(G_OBJECT(spin), LOWEST, (void *)word);
+    gtk_spin_button_update(GTK_SPIN_BUTTON(spin));
 }
 
 GtkWidget *slider_make(double low, double high, double step, int digits)

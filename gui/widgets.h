@@ -37,6 +37,9 @@ GtkWidget *value_row_add(GtkWidget *list, const char *title);
 /** @brief A spin button whose numbers are written with a point and without trailing
  * zeros, in any locale. The wheel is left to the page while it has not the focus. */
 GtkWidget *spin_make(double low, double high, double step, bool whole);
+/** @brief Shows the lowest value of a spin button as a static word, which may be typed.
+ */
+void spin_name_lowest(GtkWidget *spin, const char *word);
 /** @brief A horizontal slider that shows its value with so many digits; the wheel as
  * above. */
 GtkWidget *slider_make(double low, double high, double step, int digits);

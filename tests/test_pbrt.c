@@ -291,6 +291,14 @@ static void test_photonmap_takes_settings(void)
     s = settings_of("Integrator \"photonmap\" \"integer spp\" 2\n"
                     "Sampler \"sobol\" \"integer pixelsamples\" 9\n");
     g_assert_cmpint(s.spp, ==, 2);
+    s = settings_of("Integrator \"auto\" \"integer max_backward_bounces\" 3\n"
+                    "  \"integer max_forward_bounces\" -1\n");
+    g_assert_cmpint(s.max_backward_bounces, ==, 3);
+    g_assert_cmpint(s.max_forward_bounces, ==, -1);
+    s = settings_of("Integrator \"vcm\" \"integer max_forward_bounces\" 0\n"
+                    "  \"string max_backward_bounces\" \"unlimited\"\n");
+    g_assert_cmpint(s.max_backward_bounces, ==, -1);
+    g_assert_cmpint(s.max_forward_bounces, ==, 0);
 }
 
 static void test_sppm_becomes_photonmap(void)

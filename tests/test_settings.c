@@ -31,13 +31,15 @@ static void test_rows_are_whole(void)
     size_t n;
     const setting_row *rows = settings_table(&n);
     for (size_t i = 0; i < n; i++) {
-        if (rows[i].low > rows[i].initial) /* it stands apart: none */
+        if (rows[i].low > rows[i].initial && !rows[i].words) /* it stands apart: none */
             g_assert_cmpfloat(fabs(rows[i].initial), <=, 0.0);
         g_assert_cmpfloat(rows[i].initial, <=, rows[i].high);
         g_assert_true(g_str_has_suffix(rows[i].doc, "."));
         g_assert_cmpint((int)strlen(rows[i].users), >, 0);
-        g_assert_true((rows[i].type == SETTING_CHOICE) == (rows[i].words != NULL));
-        if (rows[i].words)
+        bool chosen = rows[i].type == SETTING_CHOICE;
+        bool named = rows[i].type == SETTING_COUNT && rows[i].initial < rows[i].low;
+        g_assert_true(rows[i].words ? chosen || named : !chosen);
+        if (chosen)
             g_assert_cmpuint(g_strv_length((char **)rows[i].words), >=,
                              (guint)rows[i].high + 1);
     }
@@ -73,7 +75,7 @@ static void test_text_round_trip(void)
         double values[] = {rows[i].low, rows[i].high, rows[i].initial};
         for (size_t k = 0; k < 3; k++) {
             char number[G_ASCII_DTOSTR_BUF_SIZE];
-            const char *given = rows[i].words
+            const char *given = rows[i].type == SETTING_CHOICE
                                     ? rows[i].words[(int)values[k]]
                                     : g_ascii_dtostr(number, sizeof number, values[k]);
             settings a = settings_default(), b = settings_default();
@@ -148,6 +150,35 @@ static void test_names_of_the_seeds(void)
     g_assert_false(s.multiple_samples);
     set(&s, "MAX_PHOTON_BOUNCES", "9");
     g_assert_cmpint(s.max_forward_bounces, ==, 9);
+}
+
+/* What stands apart from the numbers may have a name, which is what is written. */
+static void test_words_of_counts(void)
+{
+    static const char *const names[] = {"max_backward_bounces", "max_forward_bounces"};
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        settings s = settings_default(), expected = s;
+        g_autofree char *initial = settings_get(&s, settings_find(names[i]));
+        g_assert_cmpstr(initial, ==, "unlimited");
+        set(&s, names[i], "0");
+        g_autofree char *none = settings_get(&s, settings_find(names[i]));
+        g_assert_cmpstr(none, ==, "0");
+        set(&s, names[i], " unlimited ");
+        g_assert_cmpmem(&s, sizeof s, &expected, sizeof expected);
+        set(&s, names[i], "7");
+        set(&s, names[i], "-1");
+        g_assert_cmpmem(&s, sizeof s, &expected, sizeof expected);
+    }
+    g_assert_cmpint(settings_default().max_backward_bounces, ==, -1);
+    refuse("max_forward_bounces", "-2",
+           "setting 'max_forward_bounces': expected unlimited or a whole number from 0 "
+           "to 1000000, found '-2'");
+    refuse("maxdepth", "unlimited",
+           "setting 'maxdepth': expected a whole number from 0 to 1000000, found "
+           "'unlimited'");
+    refuse("passes", "unlimited",
+           "setting 'passes': expected a whole number from 0 to 1000000000, found "
+           "'unlimited'");
 }
 
 static void test_cone_alias_chooses_the_kernel(void)
@@ -271,6 +302,7 @@ int main(int argc, char **argv)
     g_test_add_func("/settings/default-is-the-table", test_default_is_the_table);
     g_test_add_func("/settings/values", test_values);
     g_test_add_func("/settings/names-of-the-seeds", test_names_of_the_seeds);
+    g_test_add_func("/settings/words-of-counts", test_words_of_counts);
     g_test_add_func("/settings/cone-alias", test_cone_alias_chooses_the_kernel);
     g_test_add_func("/settings/maxdepth", test_maxdepth_bounds_both_ways);
     g_test_add_func("/settings/refusals", test_refusals);

@@ -224,6 +224,26 @@ static void test_each_setting(void)
     view_close(w);
 }
 
+/* What has a name below all numbers shows it, and it may be typed. */
+static void test_unlimited(void)
+{
+    g_autofree char *path = view_write("unlimited.pbrt", view_scene);
+    window *w = open_scene(path);
+    view_wait(view_is_done, w);
+    setting_control *c = settings_panel_find(w->settings, "max_backward_bounces");
+    GtkWidget *input = setting_control_input(c);
+    g_assert_cmpstr(gtk_editable_get_text(GTK_EDITABLE(input)), ==, "unlimited");
+    turn(input, setting_control_info(c), "3");
+    assert_setting(settings_panel_values(w->settings), "max_backward_bounces", "3");
+    turn(input, setting_control_info(c), "unlimited");
+    assert_setting(settings_panel_values(w->settings), "max_backward_bounces",
+                   "unlimited");
+    turn(input, setting_control_info(c), "4");
+    turn(input, setting_control_info(c), "-1");
+    g_assert_cmpstr(gtk_editable_get_text(GTK_EDITABLE(input)), ==, "unlimited");
+    view_close(w);
+}
+
 /* Settings that the integrator does not read are dimmed. */
 static void test_unused_settings(void)
 {
@@ -484,6 +504,7 @@ int main(int argc, char **argv)
     view_add_test("/view/reload", test_reload);
     view_add_test("/view/reload-included", test_reload_included);
     view_add_test("/view/each-setting", test_each_setting);
+    view_add_test("/view/unlimited", test_unlimited);
     view_add_test("/view/unused-settings", test_unused_settings);
     view_add_test("/view/search", test_search);
     view_add_test("/view/pause-and-stop", test_pause_and_stop);

@@ -77,7 +77,8 @@ typedef struct NephSettingInfo {
     const char *unit;          /**< "" if none */
     double low, high, initial; /**< inclusive; index for a choice. An initial value below
                                   low is allowed too, and means none. */
-    const char *const *words;  /**< of a choice, NULL-terminated; NULL otherwise */
+    const char *const *words;  /**< NULL-terminated: those of a choice; of a number how
+                                  the value below low is written; NULL: none */
     const char *aliases;       /**< other accepted names, blank-separated */
     const char *users;         /**< the integrators that read it */
     const char *doc;           /**< one sentence */

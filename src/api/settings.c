@@ -69,6 +69,16 @@ bool neph_settings_load(NephSettings *s, const char *path, GError **error)
     return settings_load(&s->values, path, error);
 }
 
+static void describe_words_json(json *j, const setting_row *row)
+{
+    if (!row->words)
+        return;
+    json_array_begin(j, "words");
+    for (size_t i = 0; row->words[i]; i++)
+        json_string(j, NULL, row->words[i]);
+    json_array_end(j);
+}
+
 static void describe_row_json(json *j, const setting_row *row, const char *initial)
 {
     static const char *const types[] = {"bool", "count", "real", "choice"};
@@ -80,6 +90,7 @@ static void describe_row_json(json *j, const setting_row *row, const char *initi
         json_integer(j, "low", (int64_t)row->low);
         json_integer(j, "high", (int64_t)row->high);
         json_integer(j, "default", (int64_t)row->initial);
+        describe_words_json(j, row);
     } else if (row->type == SETTING_REAL) {
         json_number(j, "low", row->low);
         json_number(j, "high", row->high);
@@ -88,10 +99,7 @@ static void describe_row_json(json *j, const setting_row *row, const char *initi
         json_bool(j, "default", row->initial > 0.5);
     } else {
         json_string(j, "default", initial);
-        json_array_begin(j, "words");
-        for (size_t i = 0; row->words[i]; i++)
-            json_string(j, NULL, row->words[i]);
-        json_array_end(j);
+        describe_words_json(j, row);
     }
     json_string(j, "aliases", row->aliases);
     json_string(j, "users", row->users);
@@ -107,9 +115,9 @@ static void describe_row(GString *out, const setting_row *row, const char *initi
         g_autofree char *words = g_strjoinv(" | ", (char **)row->words);
         g_string_append_printf(out, "   (%s)", words);
     } else if (row->type == SETTING_COUNT) {
-        g_string_append_printf(out, "   (%s%.0f .. %.0f)",
-                               row->initial < row->low ? "0 or " : "", row->low,
-                               row->high);
+        const char *apart = row->initial < row->low ? initial : "";
+        g_string_append_printf(out, "   (%s%s%.0f .. %.0f)", apart, *apart ? " or " : "",
+                               row->low, row->high);
     } else if (row->type == SETTING_REAL) {
         char low[G_ASCII_DTOSTR_BUF_SIZE], high[G_ASCII_DTOSTR_BUF_SIZE];
         g_string_append_printf(out, "   (%s .. %s)", number_text(row->low, low),

@@ -4,10 +4,8 @@
 
 void convert_append_settings(GString *out, const settings *s)
 {
-    static const char *const types[] = {[SETTING_BOOL] = "bool",
-                                        [SETTING_COUNT] = "integer",
-                                        [SETTING_REAL] = "float",
-                                        [SETTING_CHOICE] = "string"};
+    static const char *const types[] = {
+        [SETTING_BOOL] = "bool", [SETTING_COUNT] = "integer", [SETTING_REAL] = "float"};
     size_t n;
     const setting_row *rows = settings_table(&n);
     const settings defaults = settings_default();
@@ -15,10 +13,12 @@ void convert_append_settings(GString *out, const settings *s)
     for (size_t i = 0; i < n; i++) {
         g_autofree char *value = settings_get(s, &rows[i]);
         g_autofree char *initial = settings_get(&defaults, &rows[i]);
-        const char *quote = rows[i].type == SETTING_CHOICE ? "\"" : "";
+        bool word = rows[i].words && g_strv_contains(rows[i].words, value);
+        const char *quote = word ? "\"" : "";
         if (strcmp(value, initial) != 0)
-            g_string_append_printf(out, " \"%s %s\" %s%s%s", types[rows[i].type],
-                                   rows[i].name, quote, value, quote);
+            g_string_append_printf(out, " \"%s %s\" %s%s%s",
+                                   word ? "string" : types[rows[i].type], rows[i].name,
+                                   quote, value, quote);
     }
     g_string_append_c(out, '\n');
 }

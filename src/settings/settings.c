@@ -77,6 +77,14 @@ static bool is_depth(const char *name)
     return g_ascii_strcasecmp(name, "maxdepth") == 0;
 }
 
+/** Owned by the caller. */
+static char *count_text(const setting_row *row, int64_t value)
+{
+    if (row->words && (double)value < row->low)
+        return g_strdup(row->words[0]);
+    return g_strdup_printf("%" G_GINT64_FORMAT, value);
+}
+
 /** What the row accepts, in words; owned by the caller. */
 static char *expected(const setting_row *row, const char *name)
 {
@@ -86,12 +94,12 @@ static char *expected(const setting_row *row, const char *name)
         g_autofree char *words = g_strjoinv(", ", (char **)row->words);
         return g_strdup_printf("one of %s", words);
     }
-    double low = is_depth(name) ? 0.0 : row->low;
-    g_autofree char *none =
-        row->initial < low ? g_strdup_printf("%.16g or ", row->initial) : g_strdup("");
-    return g_strdup_printf("%s%s from %.16g to %.16g%s%s", none,
+    g_autofree char *apart = count_text(row, (int64_t)row->initial);
+    bool stands = row->initial < row->low && !is_depth(name);
+    return g_strdup_printf("%s%s%s from %.16g to %.16g%s%s", stands ? apart : "",
+                           stands ? " or " : "",
                            row->type == SETTING_COUNT ? "a whole number" : "a number",
-                           low, row->high, *row->unit ? " " : "", row->unit);
+                           row->low, row->high, *row->unit ? " " : "", row->unit);
 }
 
 static bool read_bool(const char *text, double *out)
@@ -114,6 +122,13 @@ static bool read_choice(const char *const *words, const char *text, double *out)
             return true;
         }
     return false;
+}
+
+/** The name of what stands apart from numbers. */
+static bool read_apart(const setting_row *row, const char *text, double *out)
+{
+    *out = row->initial;
+    return row->words && strcmp(row->words[0], text) == 0;
 }
 
 /** Decimal numbers only: no hexadecimal, infinity or nan. */
@@ -140,8 +155,9 @@ static bool read_value(const setting_row *row, const char *text, double *out)
     case SETTING_CHOICE:
         return read_choice(row->words, text, out);
     case SETTING_COUNT:
-        return read_number(text, out) && is_in_range(row, *out) &&
-               fabs(*out - rint(*out)) <= 0.0;
+        return read_apart(row, text, out) ||
+               (read_number(text, out) && is_in_range(row, *out) &&
+                fabs(*out - rint(*out)) <= 0.0);
     case SETTING_REAL:
         return read_number(text, out) && is_in_range(row, *out);
     }
@@ -239,7 +255,7 @@ char *settings_get(const settings *s, const setting_row *row)
     case SETTING_BOOL:
         return g_strdup(*(const bool *)field ? "true" : "false");
     case SETTING_COUNT:
-        return g_strdup_printf("%" G_GINT64_FORMAT, *(const int64_t *)field);
+        return count_text(row, *(const int64_t *)field);
     case SETTING_CHOICE:
         return g_strdup(row->words[*(const int *)field]);
     case SETTING_REAL:

@@ -93,8 +93,9 @@ typedef struct setting_row {
     const char *unit;          /**< "" if none */
     double low, high, initial; /**< inclusive; index for a choice, 0/1 for a bool. An
                                   initial value below low is allowed too: none */
-    const char *const *words;  /**< of a choice, NULL-terminated; behind that of `high`
-                                  come names of presets */
+    const char *const *words;  /**< NULL-terminated: those of a choice, behind that of
+                                  `high` names of presets; of a number one, how its value
+                                  below low is written; NULL: none */
     const char *aliases;       /**< other accepted names, blank-separated, "" if none */
     const char *users;         /**< which integrators read it */
     const char *doc;           /**< one sentence */

@@ -25,6 +25,7 @@ static const char *const map_words[] = {
 static const char *const roulette_words[] = {"mean", "max", NULL};
 static const char *const emission_words[] = {"uniform", "specular-area", "guided", NULL};
 static const char *const vcm_words[] = {"all", "bpt", "bpm", "ppm", "light", NULL};
+static const char *const unlimited[] = {"unlimited", NULL};
 
 #define AT(field) offsetof(settings, field)
 
@@ -49,14 +50,15 @@ static const setting_row table[] = {
      "those are not known, or what there is time for."},
     {"spp", SETTING_COUNT, AT(spp), "samples/pixel", 1, 65536, 4, NULL,
      "pixelsamples samples_per_pixel", "all", "Camera rays a pixel in each pass."},
-    {"max_backward_bounces", SETTING_COUNT, AT(max_backward_bounces), "", -1, 1e6, 32,
-     NULL, "maxBackwardBounces maxdepth", "all",
-     "Specular scattering events followed back from the eye; -1 is unlimited. The alias "
+    {"max_backward_bounces", SETTING_COUNT, AT(max_backward_bounces), "", 0, 1e6, -1,
+     unlimited, "maxBackwardBounces maxdepth", "all",
+     "Scattering events of a path from the eye, in photonmap those at mirrors, glass and "
+     "gloss; interfaces are none. Unlimited (-1): chance alone ends paths. The alias "
      "maxdepth d bounds photons too, by d - 1."},
-    {"max_forward_bounces", SETTING_COUNT, AT(max_forward_bounces), "", -1, 1e6, -1, NULL,
-     "maxForwardBounces MAX_PHOTON_BOUNCES", "photonmap auto",
-     "Scattering events of a photon; 0 stores it at its first hit only, -1 is unlimited "
-     "(roulette ends it)."},
+    {"max_forward_bounces", SETTING_COUNT, AT(max_forward_bounces), "", 0, 1e6, -1,
+     unlimited, "maxForwardBounces MAX_PHOTON_BOUNCES", "photonmap auto",
+     "Scattering events of a photon; 0 stores it at its first hit only. Unlimited (-1): "
+     "chance alone ends it."},
     {"final_gather", SETTING_BOOL, AT(final_gather), "", 0, 1, 0, NULL, "finalgather",
      "photonmap",
      "Gathers indirect light by rays to the surroundings instead of straight from the "

@@ -242,6 +242,8 @@ static bool survives(camera_tree *tree, camera_branch *branch)
     if (branch->n_followed < ROULETTE_BOUNCES)
         return true;
     float p = minf(1.0f, spectrum_mean(branch->beta) * branch->eta2);
+    if (branch->n_followed >= LONG_WAY)
+        p *= LONG_WAY_SURVIVAL;
     if (!(sampler_1d(tree->random) < p))
         return false;
     branch->beta /= p;

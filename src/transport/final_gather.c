@@ -202,6 +202,7 @@ typedef struct gather_path {
     ray ray;
     spectrum beta;
     int lane;
+    int64_t bounces; /* since it left the point that gathers */
 } gather_path;
 
 /* Adds parts by light groups to scratch->gathered; parts may be NULL: none. */
@@ -265,7 +266,7 @@ static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
     return radiance;
 }
 
-/* Goes on by a specular or glossy lobe; roulette ends weak paths. */
+/* Goes on by a specular or glossy lobe; roulette ends weak paths and long ones. */
 static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b,
                       sampler *random)
 {
@@ -276,11 +277,14 @@ static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b,
                                LOBE_FOLLOWED, TRANSPORT_RADIANCE, &next))
         return false;
     float p = minf(1.0f, spectrum_mean(next.weight) * next.eta * next.eta);
+    if (path->bounces >= LONG_WAY)
+        p *= LONG_WAY_SURVIVAL;
     if (!(u.roulette < p))
         return false;
     path->beta *= next.weight / p;
     path->lane = next.lane;
     path->ray = hit_ray(hit, next.wi);
+    path->bounces++;
     return true;
 }
 
@@ -311,7 +315,7 @@ static spectrum gather_along(const photonmap_pass *pass, gather_path path,
 {
     spectrum sum = {0};
     int64_t limit = pass->how->max_backward_bounces;
-    for (int64_t bounces = 0; limit < 0 || bounces <= limit; bounces++) {
+    while (limit < 0 || path.bounces <= limit) {
         surface_hit hit;
         scratch->camera_rays++;
         bool met = scene_intersect(pass->scene, &path.ray, &hit);
@@ -356,7 +360,8 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
         if (!bsdf_sample_direction(at->bsdf, at->wo, u_lobe, u, LOBE_GATHERED,
                                    TRANSPORT_RADIANCE, &first))
             continue;
-        gather_path path = {hit_ray(at->hit, first.wi), first.weight, first.lane};
+        gather_path path = {
+            .ray = hit_ray(at->hit, first.wi), .beta = first.weight, .lane = first.lane};
         sum += gather_along(pass, path, &stream, scratch);
     }
     for (int i = 0; i < n_groups; i++)

@@ -20,28 +20,31 @@ typedef struct lookout {
 static bool find_one(const lookout *from, ray r, sampler *random, visible_point *out)
 {
     float way = 0.0f;
-    for (int bounces = 0; bounces < MAX_BOUNCES; bounces++) {
+    for (int bounces = 0; bounces < MAX_BOUNCES;) {
         surface_hit hit;
         bsdf b;
-        bsdf_sample next = {.wi = r.direction};
+        bsdf_sample next;
         bool met = bounces == 0 ? scene_see(from->scene, &r, &hit)
                                 : scene_intersect(from->scene, &r, &hit);
         if (!met)
             return false;
         way += hit.t;
-        bool surface =
-            scene_bsdf(from->scene, &hit, &from->w, ALL_LANES, &from->options, &b);
-        if (surface && (b.lobes & LOBE_DIFFUSE)) {
+        if (!scene_bsdf(from->scene, &hit, &from->w, ALL_LANES, &from->options, &b)) {
+            r = hit_ray(&hit, r.direction);
+            continue;
+        }
+        if (b.lobes & LOBE_DIFFUSE) {
             float area = camera_pixel_area(&from->scene->camera, way);
             *out = (visible_point){hit.p, sqrtf(area)};
             return true;
         }
         float u_lobe = sampler_1d(random);
         vec2 u = sampler_2d(random);
-        if (surface && !bsdf_sample_direction(&b, -r.direction, u_lobe, u, LOBE_FOLLOWED,
-                                              TRANSPORT_RADIANCE, &next))
+        if (!bsdf_sample_direction(&b, -r.direction, u_lobe, u, LOBE_FOLLOWED,
+                                   TRANSPORT_RADIANCE, &next))
             return false;
         r = hit_ray(&hit, next.wi);
+        bounces++;
     }
     return false;
 }
