@@ -37,11 +37,12 @@ static const usage how = {
     .operands = "SCENE",
     .n_operands = 1,
     .summary = "Traces the photons of one pass without rendering, and says how long that "
-               "took and what\nwas emitted and stored.",
+               "took and what\nwas emitted and stored: those that a render with these "
+               "settings sends.",
     .entries = entries,
     .loads_scene = true};
 
-static int print_counts(const NephPhotons *photons)
+static int print_counts(const NephPhotons *photons, const char *integrator)
 {
     static const char *const names[] = {"direct", "indirect", "caustic"};
     NephStatistics s;
@@ -53,10 +54,15 @@ static int print_counts(const NephPhotons *photons)
         g_string_append_printf(out, "   %.3f M/s",
                                1e-6 * (double)s.photon_rays / s.time_trace);
     g_string_append_printf(out, "\n%-11s %14s %14s\n", "", "emitted", "stored");
-    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
-        g_string_append_printf(out,
-                               "%-11s %14" G_GUINT64_FORMAT " %14" G_GUINT64_FORMAT "\n",
-                               names[c], s.emitted[c], s.stored[c]);
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
+        if (s.emitted[c] > 0)
+            g_string_append_printf(
+                out, "%-11s %14" G_GUINT64_FORMAT " %14" G_GUINT64_FORMAT "\n", names[c],
+                s.emitted[c], s.stored[c]);
+        else
+            g_string_append_printf(out, "%-11s not sent by integrator %s here\n",
+                                   names[c], integrator);
+    }
     g_autofree char *text = g_string_free(out, FALSE);
     return print_result("%s", text);
 }
@@ -67,7 +73,8 @@ static int trace(const NephScene *scene, const NephSettings *settings)
     g_autoptr(NephPhotons) photons = neph_photons_trace(scene, settings, &error);
     if (!photons)
         return report_error(error);
-    int result = given.quiet ? EXIT_DONE : print_counts(photons);
+    g_autofree char *integrator = neph_settings_get(settings, "integrator");
+    int result = given.quiet ? EXIT_DONE : print_counts(photons, integrator);
     if (given.output && !neph_photons_write_ply(photons, given.output, &error))
         result = report_error(error);
     else if (given.output && !given.quiet)

@@ -10,7 +10,7 @@ static const char *const map_names[NEPH_N_PHOTON_CLASSES] = {"Direct", "Indirect
 struct photon_panel {
     GtkWidget *root, *content, *trace, *spinner, *follows;
     GtkWidget *time, *rays, *emitted, *stored, *memory, *of_map[NEPH_N_PHOTON_CLASSES];
-    GtkWidget *frame, *legend;
+    GtkWidget *unsent, *frame, *legend;
     GtkWidget *maps[NEPH_N_PHOTON_CLASSES], *coloring, *point_size, *wireframe, *radius;
     GtkWidget *hint, *picked, *picked_list, *path;
     photon_panel_events events;
@@ -103,6 +103,11 @@ static void add_tracing(photon_panel *p, GtkAdjustment *number)
     gtk_box_append(GTK_BOX(box), p->trace);
     gtk_box_append(GTK_BOX(box), p->spinner);
     gtk_box_append(GTK_BOX(group), box);
+    p->unsent = text_make("A render with these settings sends no photons. The integrator "
+                          "photonmap, on the page Settings, sends all that there are.",
+                          "dim-label");
+    gtk_widget_set_visible(p->unsent, FALSE);
+    gtk_box_append(GTK_BOX(group), p->unsent);
     gtk_box_append(GTK_BOX(p->content), group);
 }
 
@@ -243,7 +248,7 @@ char *photon_share_text(const NephStatistics *s, int c)
     g_autofree char *stored = count_text(s->stored[c]);
     g_autofree char *emitted = count_text(s->emitted[c]);
     if (s->emitted[c] == 0)
-        return g_strdup("none");
+        return g_strdup("not sent by this render");
     return g_strdup_printf("%s of %s · r %.3g m", stored, emitted, s->radius[c]);
 }
 
@@ -272,7 +277,9 @@ void photon_panel_show_numbers(photon_panel *p, const NephStatistics *s)
         stored += s->stored[c];
         g_autofree char *share = photon_share_text(s, c);
         set_value(p->of_map[c], "%s", share);
+        gtk_widget_set_sensitive(p->maps[c], s->emitted[c] > 0);
     }
+    gtk_widget_set_visible(p->unsent, emitted == 0);
     g_autofree char *memory =
         g_format_size_full(s->memory_photons, G_FORMAT_SIZE_IEC_UNITS);
     set_value(p->time, "%.3f s", s->time_trace);

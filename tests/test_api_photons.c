@@ -4,9 +4,18 @@
  */
 #include "api_scene.h"
 
+/* Settings of a render that sends photons of all classes. */
+static NephSettings *sending_all(const NephScene *scene)
+{
+    NephSettings *settings = neph_scene_settings(scene);
+    neph_settings_set(settings, "integrator", "photonmap", NULL);
+    neph_settings_set(settings, "direct_illumination", "off", NULL);
+    return settings;
+}
+
 static NephPhotons *trace(const NephScene *scene, const char *photons)
 {
-    g_autoptr(NephSettings) settings = neph_scene_settings(scene);
+    g_autoptr(NephSettings) settings = sending_all(scene);
     g_autoptr(GError) error = NULL;
     neph_settings_set(settings, "photons", photons, NULL);
     NephPhotons *traced = neph_photons_trace(scene, settings, &error);
@@ -44,6 +53,29 @@ static void test_photon_paths(void)
         g_assert_cmpuint(per_class[c], >, 0);
 }
 
+/* What is not there is told to be so. */
+static void test_beyond_the_last(void)
+{
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    g_autoptr(NephPhotons) photons = trace(scene, "600");
+    g_assert_true(neph_photons_follow(photons, NULL, NULL, NULL));
+    size_t n = neph_photons_count(photons);
+    const size_t beyond[] = {n, n + 1, 2 * n, SIZE_MAX};
+    NephPhotonEvent events[4];
+    for (size_t k = 0; k < G_N_ELEMENTS(beyond); k++) {
+        NephPhoton p = {.bounces = 7}, none = {.bounces = 0};
+        g_assert_false(neph_photons_get(photons, beyond[k], &p));
+        g_assert_cmpmem(&p, sizeof p, &none, sizeof none);
+        g_assert_cmpstr(neph_photons_medium(photons, beyond[k]), ==, "");
+        g_assert_cmpuint(neph_photons_path(photons, beyond[k], events, 4), ==, 0);
+        g_assert_null(neph_scene_material_name(scene, beyond[k]));
+        g_assert_null(neph_scene_material_kind(scene, beyond[k]));
+        g_assert_null(neph_bsdf_plot(scene, beyond[k], 30.0, 8, NULL));
+    }
+    NephPhoton last;
+    g_assert_true(neph_photons_get(photons, n - 1, &last));
+}
+
 static bool never(void *data)
 {
     ++*(int *)data;
@@ -68,7 +100,7 @@ static void test_photons_cancelled(void)
 
 /* Inside a sphere of radius 3 around a lamp of 10 W/sr, E = I / r² everywhere. About 400
    photons weigh in, so that the tolerance is more than five standard deviations. */
-static void test_estimate(void)
+static NephScene *make_bright_sphere(const char *more)
 {
     g_autofree char *head = g_strdup("Camera \"perspective\"\n");
     g_autofree char *path = write_scene("scene.pbrt", head);
@@ -76,21 +108,50 @@ static void test_estimate(void)
     g_assert_true(g_file_get_contents(path, &text, NULL, NULL));
     memcpy(strstr(text, "0 1.8 0"), "0 0.0 0", 7);
     *strstr(text, "NamedMaterial \"glass\"\n") = '\0';
-    g_assert_true(g_file_set_contents(path, text, -1, NULL));
-    g_autoptr(NephScene) scene = load(path);
+    g_autofree char *all = g_strconcat(text, more, NULL);
+    g_assert_true(g_file_set_contents(path, all, -1, NULL));
+    return load(path);
+}
+
+static double luminance(const double rgb[3])
+{
+    return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+}
+
+static void test_estimate(void)
+{
+    g_autoptr(NephScene) scene = make_bright_sphere("");
     g_autoptr(NephPhotons) photons = trace(scene, "120000");
     const double at[3] = {0, -3, 0}, up[3] = {0, 1, 0}, down[3] = {0, -1, 0};
     NephEstimate e;
     neph_photons_estimate(photons, at, up, 0.5, &e);
     g_assert_cmpuint(e.n[NEPH_PHOTON_DIRECT], >, 100);
-    double y = 0.2126 * e.irradiance[0][0] + 0.7152 * e.irradiance[0][1] +
-               0.0722 * e.irradiance[0][2];
-    g_assert_cmpfloat_with_epsilon(y, 10.0 / 9.0, 0.33);
+    g_assert_cmpfloat_with_epsilon(luminance(e.irradiance[0]), 10.0 / 9.0, 0.33);
     neph_photons_estimate(photons, at, down, 0.5, &e);
     g_assert_cmpuint(e.n[NEPH_PHOTON_DIRECT], ==, 0);
     g_assert_true(neph_photons_follow(photons, NULL, NULL, NULL));
     neph_photons_estimate(photons, at, up, 0.0, &e);
     g_assert_cmpfloat(e.radius[NEPH_PHOTON_DIRECT], >, 0.0);
+}
+
+/* Where a speck moves there are photons of eight slices of time, each with all light: it
+   is no brighter for it, nor if the nearest are asked for. */
+static void test_estimate_of_slices(void)
+{
+    g_autoptr(NephScene) scene = make_bright_sphere(
+        "ActiveTransform EndTime Translate .2 0 0 ActiveTransform All Shape \"sphere\" "
+        "\"float radius\" .001\n");
+    g_autoptr(NephSettings) settings = sending_all(scene);
+    const double at[3] = {0, -3, 0}, up[3] = {0, 1, 0};
+    neph_settings_set(settings, "photons", "120000", NULL);
+    for (int k = 0; k < 2; k++) {
+        g_autoptr(NephPhotons) photons = neph_photons_trace(scene, settings, NULL);
+        NephEstimate e;
+        neph_photons_estimate(photons, at, up, k == 0 ? 0.5 : 0.0, &e);
+        g_assert_cmpuint(e.n[NEPH_PHOTON_DIRECT], >, 100);
+        g_assert_cmpfloat_with_epsilon(luminance(e.irradiance[0]), 10.0 / 9.0, 0.33);
+        neph_settings_set(settings, "direct_nearest", "50", NULL);
+    }
 }
 
 static double distance_to(const NephPhotons *photons, size_t i, const double at[3])
@@ -286,8 +347,10 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     open_folder();
     g_test_add_func("/api-photons/paths", test_photon_paths);
+    g_test_add_func("/api-photons/beyond", test_beyond_the_last);
     g_test_add_func("/api-photons/cancelled", test_photons_cancelled);
     g_test_add_func("/api-photons/estimate", test_estimate);
+    g_test_add_func("/api-photons/estimate-slices", test_estimate_of_slices);
     g_test_add_func("/api-photons/neighbours", test_neighbours);
     g_test_add_func("/api-photons/fog-paths", test_fog_paths);
     g_test_add_func("/api-photons/fog-flux", test_fog_flux);

@@ -391,7 +391,12 @@ typedef struct NephPhoton {
 } NephPhoton;
 
 typedef struct NephPhotons NephPhotons;
-/** @brief Traces the photons of pass 0 without rendering. The scene must outlive them. */
+/** @brief Traces the photons that pass 0 of a render with these settings stores, as it
+ * plans and sends them, without rendering. Classes that such a render does not send have
+ * none, and `emitted` 0 in the statistics: of integrator path all, of auto all but
+ * caustics; the light vertices of vcm are counted as indirect. Where something moves,
+ * each slice of the shutter's time has the flux of the lamps. The scene must outlive
+ * them. */
 NEPH_API NephPhotons *neph_photons_trace(const NephScene *scene,
                                          const NephSettings *settings, GError **error);
 /** @brief The same, as long as go_on says so; else NULL with NEPH_ERROR_CANCELLED. */
@@ -399,16 +404,16 @@ NEPH_API NephPhotons *neph_photons_trace_while(const NephScene *scene,
                                                const NephSettings *settings,
                                                NephGoOnFunc go_on, void *data,
                                                GError **error);
-/** @brief Finds every photon's path, which bounces and neph_photons_path tell, and the
- * radii that a render would gather within (in the statistics). Takes about as long as
- * tracing did. go_on may be NULL. */
+/** @brief Finds every photon's path, which bounces and neph_photons_path tell. Takes
+ * about as long as tracing did. go_on may be NULL. */
 NEPH_API bool neph_photons_follow(NephPhotons *photons, NephGoOnFunc go_on, void *data,
                                   GError **error);
 NEPH_API void neph_photons_free(NephPhotons *photons);
 NEPH_API size_t neph_photons_count(const NephPhotons *photons);
-NEPH_API void neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out);
-/** @brief The medium in which photon i was scattered, "" if it landed on a surface; the
- * scene's. Those count for no estimate on a surface. */
+/** @brief @return false if there are fewer; out is then zero */
+NEPH_API bool neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out);
+/** @brief The medium in which photon i was scattered, "" if it landed on a surface or is
+ * none; the scene's. Those count for no estimate on a surface. */
 NEPH_API const char *neph_photons_medium(const NephPhotons *photons, size_t i);
 NEPH_API void neph_photons_statistics(const NephPhotons *photons, NephStatistics *out);
 /** @brief Binary PLY: x y z, nx ny nz (direction), red green blue (float flux), class. */
@@ -442,7 +447,7 @@ typedef struct NephPhotonEvent {
 } NephPhotonEvent;
 
 /** @brief The life of the emitted photon that left photon i: at most capacity events go
- * to events. @return how many there are; 0 until neph_photons_follow */
+ * to events. @return how many there are; 0 until neph_photons_follow, and of no photon */
 NEPH_API size_t neph_photons_path(const NephPhotons *photons, size_t i,
                                   NephPhotonEvent *events, size_t capacity);
 

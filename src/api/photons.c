@@ -51,13 +51,16 @@ size_t neph_photons_count(const NephPhotons *photons)
     return n;
 }
 
-photon_class photons_locate(const NephPhotons *photons, size_t *i)
+bool photons_locate(const NephPhotons *photons, size_t *i, photon_class *c)
 {
     const render_photons *traced = photons->traced;
-    photon_class c = 0;
-    while (c < N_PHOTON_CLASSES - 1 && *i >= render_photons_count(traced, c))
-        *i -= render_photons_count(traced, c++);
-    return c;
+    for (*c = 0; *c < N_PHOTON_CLASSES; (*c)++) {
+        size_t n = render_photons_count(traced, *c);
+        if (*i < n)
+            return true;
+        *i -= n;
+    }
+    return false;
 }
 
 void photons_rgb(const NephPhotons *photons, spectrum flux, float rgb[3])
@@ -67,10 +70,13 @@ void photons_rgb(const NephPhotons *photons, spectrum flux, float rgb[3])
     color_space_from_xyz(color_space_srgb(), xyz, rgb);
 }
 
-void neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out)
+bool neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out)
 {
     const render_photons *traced = photons->traced;
-    photon_class c = photons_locate(photons, &i);
+    photon_class c;
+    *out = (NephPhoton){0};
+    if (!photons_locate(photons, &i, &c))
+        return false;
     const photon found = render_photons_get(traced, c, i);
     photons_rgb(photons, found.flux, out->rgb);
     for (int axis = 0; axis < 3; axis++) {
@@ -79,15 +85,16 @@ void neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out)
     }
     out->photon_class = (NephPhotonClass)c;
     out->bounces = traced->origins[c] ? traced->origins[c][i].bounces : 0;
+    return true;
 }
 
 const char *neph_photons_medium(const NephPhotons *photons, size_t i)
 {
     const render_photons *traced = photons->traced;
-    photon_class c = photons_locate(photons, &i);
-    size_t n = traced->stores[c].n;
-    if (i < n)
+    photon_class c;
+    if (!photons_locate(photons, &i, &c) || i < traced->stores[c].n)
         return "";
+    size_t n = traced->stores[c].n;
     const GPtrArray *media = traced->plan.scene->media;
     const medium *in = media->pdata[medium_of_home(traced->in_media[c].home[i - n])];
     return in->name;

@@ -6,7 +6,8 @@
  *                                       on the normal's side
  *
  * What counts as near is asked of the renders' own probe, so that it is seen here as
- * there.
+ * there. Where something moves all light is in the photons of each slice of time, and
+ * this is the mean over slices.
  */
 #include "api/photons.h"
 
@@ -66,7 +67,7 @@ static float radius2_of(const NephPhotons *photons, int c, double radius,
 {
     double own = photons->traced->statistics.radius[c];
     const settings *how = &photons->traced->plan.how;
-    size_t nearest = (size_t)how->class_nearest[c];
+    size_t nearest = (size_t)how->class_nearest[c] * (size_t)photons->traced->n_wholes;
     if (radius > 0.0)
         return square((float)radius);
     if (nearest == 0 || probe->store->n == 0)
@@ -92,7 +93,8 @@ static void estimate_class(const NephPhotons *photons, int c, const photon_probe
         sum += kernel_eval(&k, distance2, r2) * photon_store_get(store, i).flux;
         out->n[c]++;
     }
-    photons_rgb(photons, sum / kernel_area(&k, r2), rgb);
+    photons_rgb(photons, sum / (kernel_area(&k, r2) * (float)photons->traced->n_wholes),
+                rgb);
     for (int axis = 0; axis < 3; axis++)
         out->irradiance[c][axis] = (double)rgb[axis];
 }

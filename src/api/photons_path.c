@@ -76,10 +76,10 @@ size_t neph_photons_path(const NephPhotons *photons, size_t i, NephPhotonEvent *
                          size_t capacity)
 {
     path_teller teller = {photons, events, 0, capacity};
-    photon_class c = photons_locate(photons, &i);
-    if (!photons->traced->origins[c])
+    photon_class c;
+    if (!photons_locate(photons, &i, &c) || !photons->traced->origins[c])
         return 0;
-    trace_task task = render_photons_task(photons->traced, c);
-    photon_tell(&task, photons->traced->origins[c][i].path, tell, &teller);
+    render_photons_tell(photons->traced, c, photons->traced->origins[c][i].path, tell,
+                        &teller);
     return teller.n;
 }

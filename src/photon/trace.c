@@ -422,8 +422,8 @@ static void trace_one(photon_path *path)
     follow(path);
 }
 
-void photon_tell(const trace_task *task, uint64_t index,
-                 void (*tell_event)(const photon_event *event, void *data), void *data)
+void photon_tell(const trace_task *task, uint64_t index, photon_listener tell_event,
+                 void *data)
 {
     photon_path path = {
         .task = task, .index = index, .tell = tell_event, .tell_data = data};

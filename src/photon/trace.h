@@ -101,6 +101,12 @@ typedef struct photon_event {
  * flux is multiplied by this instead, with a probability of their ratio. */
 #define PHOTON_LEAST_SHARE 0.25f
 
+/** @brief Hears of each event. */
+typedef void (*photon_listener)(const photon_event *event, void *data);
+
 /** @brief Traces photon `index` of the task alone and tells each event. */
-void photon_tell(const trace_task *task, uint64_t index,
-                 void (*tell)(const photon_event *event, void *data), void *data);
+void photon_tell(const trace_task *task, uint64_t index, photon_listener tell,
+                 void *data);
+
+/** @brief Puts photons behind others of the same sort, which they leave. */
+bool trace_result_append(trace_result *to, trace_result *from, GError **error);

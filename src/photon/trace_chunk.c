@@ -74,3 +74,24 @@ void trace_chunks_clear(trace_chunk *chunks, size_t n)
         g_clear_error(&chunks[i].error);
     }
 }
+
+static bool append(photon_store *to, photon_store *from, GError **error)
+{
+    size_t n = to->n;
+    if (from->n == 0)
+        return true;
+    if (!photon_store_reserve(to, n + from->n, error))
+        return false;
+    photon_store_copy(to, n, from);
+    to->n = n + from->n;
+    photon_store_clear(from);
+    return true;
+}
+
+bool trace_result_append(trace_result *to, trace_result *from, GError **error)
+{
+    to->n_rays += from->n_rays;
+    to->n_not_finite += from->n_not_finite;
+    return append(&to->photons, &from->photons, error) &&
+           append(&to->in_media, &from->in_media, error);
+}

@@ -37,6 +37,11 @@ void volume_map_free(volume_map *map)
     g_free(map);
 }
 
+const photon_store *volume_map_store(const volume_map *map)
+{
+    return &map->store;
+}
+
 size_t volume_map_bytes(const volume_map *map)
 {
     return photon_store_bytes(&map->store) + map->store.n * sizeof *map->discs;

@@ -28,6 +28,7 @@ volume_map *volume_map_build(photon_store *store, const float *radii, unsigned t
                              GError **error);
 void volume_map_free(volume_map *map);
 size_t volume_map_bytes(const volume_map *map); /**< memory kept, Embree's apart */
+const photon_store *volume_map_store(const volume_map *map);
 
 /** @brief What to ask for. */
 typedef struct volume_query {

@@ -136,7 +136,7 @@ static bool measure(transport_plan *trial, trial_look *look, double budget,
 {
     double n_pixels = (double)look->film->width * (double)look->film->height;
     double share = shrink(trial, n_pixels);
-    if (!look->transport->prepare(trial, cancel, error))
+    if (!transport_plan_prepare(trial, cancel, error))
         return false;
     *out = (pace_costs){(double)INFINITY, (double)INFINITY, (double)INFINITY};
     for (uint32_t i = 0; i < TRIAL_PASSES; i++) {
@@ -160,8 +160,7 @@ bool pace_measure(const transport_plan *plan, const film *f, double left,
                   const cancel_flag *cancel, pace_costs *out, GError **error)
 {
     transport_plan *trial = g_aligned_alloc0(1, sizeof *trial, 64);
-    trial->scene = plan->scene;
-    trial->how = plan->how;
+    *trial = transport_plan_of(plan->scene, &plan->how);
     trial_look look = {
         .transport = transport_find(plan->how.integrator), .plan = trial, .film = f};
     double budget = fmin(TRIAL_SHARE * fmax(left, LEAST_LEFT), TRIAL_SECONDS);

@@ -1,103 +1,66 @@
 #include "render/photons.h"
 
 #include "base/memory.h"
-#include "transport/aim.h"
-#include "transport/photonmap.h"
 
 static const char *const class_names[N_PHOTON_CLASSES] = {"direct", "indirect",
                                                           "caustic"};
 
-static double seconds(void)
+/* What a render with these settings plans, and its pass 0. */
+static bool plan_photons(render_photons *p, const scene *s, const settings *how,
+                         const cancel_flag *cancel, GError **error)
 {
-    return (double)g_get_monotonic_time() * 1e-6;
-}
-
-static bool is_possible(const scene *s, photon_class c)
-{
-    return c != PHOTON_CAUSTIC || scene_may_cast_caustics(s);
-}
-
-/* The classes that can be there, sharing `photons` where they have no budget of their
- * own.
- */
-static uint64_t budget(const scene *s, const settings *how, photon_class c)
-{
-    int n_sharing = 1; /* c itself */
-    if (!is_possible(s, c))
-        return 0;
-    if (how->class_photons[c] > 0)
-        return (uint64_t)how->class_photons[c];
-    for (int i = 0; i < N_PHOTON_CLASSES; i++)
-        n_sharing +=
-            i != (int)c && is_possible(s, (photon_class)i) && how->class_photons[i] == 0;
-    return (uint64_t)MAX(settings_photons(how) / n_sharing, 1);
-}
-
-/* What a render would plan, without the radii. */
-static bool make_plan(transport_plan *plan, const scene *s, const settings *how,
-                      const cancel_flag *cancel, GError **error)
-{
-    *plan = (transport_plan){.scene = s, .how = *how};
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        plan->n_photons[c] = budget(s, how, (photon_class)c);
-    return aim_caustics(plan, NULL, NULL, cancel, error);
-}
-
-static trace_task task_for(const transport_plan *plan, photon_class c)
-{
-    return (trace_task){
-        .scene = plan->scene,
-        .how = &plan->how,
-        .w = scene_wavelengths(plan->scene, &plan->how, 0),
-        .photon_class = c,
-        .guide = plan->guide,
-        .n_photons = plan->n_photons[c],
-    };
-}
-
-trace_task render_photons_task(const render_photons *p, photon_class c)
-{
-    return task_for(&p->plan, c);
-}
-
-static bool trace_class(render_photons *p, photon_class c, const cancel_flag *cancel,
-                        GError **error)
-{
-    double start = seconds();
-    trace_task task = task_for(&p->plan, c);
-    task.cancel = cancel;
-    trace_result result = {0};
-    if (!photon_trace(&task, false, &result, error))
+    p->plan = transport_plan_of(s, how);
+    p->sender = transport_find(how->integrator)->photons;
+    p->w = scene_wavelengths(s, how, 0);
+    if (!transport_plan_prepare(&p->plan, cancel, error))
         return false;
-    render_statistics *st = &p->statistics;
-    st->time_trace += seconds() - start;
-    st->photon_rays += result.n_rays;
-    st->n_not_finite += result.n_not_finite;
-    st->emitted[c] = task.n_photons;
-    st->stored[c] = result.photons.n + result.in_media.n;
+    p->pass = p->sender ? p->sender->open(&p->plan, 0) : NULL;
+    p->n_wholes = p->sender ? p->sender->n_wholes(p->pass) : 1;
+    return true;
+}
+
+static uint64_t n_emitted(const render_photons *p, photon_class c)
+{
+    return p->sender ? p->sender->count(p->pass, c) : 0;
+}
+
+static bool trace_class(render_photons *p, photon_class c, transport_counts *counts,
+                        const cancel_flag *cancel, GError **error)
+{
+    trace_result result = {0};
+    bool ok = n_emitted(p, c) == 0 ||
+              p->sender->trace(p->pass, c, cancel, counts, &result, error);
     p->stores[c] = result.photons;
     p->in_media[c] = result.in_media;
-    result.photons = result.in_media = (photon_store){0};
-    trace_result_clear(&result);
-    return true;
+    return ok;
+}
+
+static void note(render_photons *p, const transport_counts *counts)
+{
+    render_statistics *st = &p->statistics;
+    st->time_trace = st->time_total = counts->time_trace;
+    st->photon_rays = counts->photon_rays;
+    st->n_not_finite = counts->n_not_finite;
+    st->memory_peak = memory_peak();
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        st->emitted[c] = counts->emitted[c];
+        st->stored[c] = counts->stored[c];
+        st->radius[c] = counts->radius[c];
+        st->memory_photons +=
+            photon_store_bytes(&p->stores[c]) + photon_store_bytes(&p->in_media[c]);
+    }
 }
 
 render_photons *render_trace_photons(const scene *s, const settings *how,
                                      const cancel_flag *cancel, GError **error)
 {
     g_autoptr(render_photons) p = g_aligned_alloc0(1, sizeof *p, 64);
-    p->w = scene_wavelengths(s, how, 0);
-    bool ok = make_plan(&p->plan, s, how, cancel, error);
+    transport_counts counts = {0};
+    bool ok = plan_photons(p, s, how, cancel, error);
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++)
-        ok = trace_class(p, (photon_class)c, cancel, error);
-    if (!ok)
-        return NULL;
-    p->statistics.time_total = p->statistics.time_trace;
-    p->statistics.memory_peak = memory_peak();
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        p->statistics.memory_photons +=
-            photon_store_bytes(&p->stores[c]) + photon_store_bytes(&p->in_media[c]);
-    return g_steal_pointer(&p);
+        ok = trace_class(p, (photon_class)c, &counts, cancel, error);
+    note(p, &counts);
+    return ok ? g_steal_pointer(&p) : NULL;
 }
 
 size_t render_photons_count(const render_photons *p, photon_class c)
@@ -112,6 +75,12 @@ photon render_photons_get(const render_photons *p, photon_class c, size_t i)
                  : photon_store_get(&p->in_media[c], i - n);
 }
 
+void render_photons_tell(const render_photons *p, photon_class c, uint64_t i,
+                         photon_listener tell, void *data)
+{
+    p->sender->tell(p->pass, c, i, tell, data);
+}
+
 void render_photons_free(render_photons *p)
 {
     if (!p)
@@ -121,6 +90,8 @@ void render_photons_free(render_photons *p)
         photon_store_clear(&p->in_media[c]);
         big_free(p->origins[c]);
     }
+    if (p->pass)
+        p->sender->close(p->pass);
     transport_plan_clear(&p->plan);
     g_aligned_free(p);
 }
@@ -135,7 +106,8 @@ typedef struct origin_lists {
 } origin_lists;
 
 typedef struct follow_loop {
-    trace_task task;
+    const render_photons *photons;
+    photon_class c;
     origin_lists *found; /* one a chunk; of NULL where it was not begun */
 } follow_loop;
 
@@ -166,7 +138,7 @@ static void follow_chunk(size_t begin, size_t end, unsigned thread, void *data)
                           g_array_new(FALSE, FALSE, sizeof(photon_origin))};
     for (size_t i = begin; i < end; i++) {
         followed f = {found, 0};
-        photon_tell(&loop->task, i, note_origin, &f);
+        render_photons_tell(loop->photons, loop->c, i, note_origin, &f);
     }
     loop->found[begin / FOLLOW_CHUNK] = found;
 }
@@ -199,15 +171,15 @@ static void join_origins(const render_photons *p, photon_class c, origin_lists *
 static bool follow_class(render_photons *p, photon_class c, const cancel_flag *cancel,
                          GError **error)
 {
-    size_t n = render_photons_count(p, c);
-    follow_loop loop = {.task = task_for(&p->plan, c)};
-    size_t n_chunks = ((size_t)loop.task.n_photons + FOLLOW_CHUNK - 1) / FOLLOW_CHUNK;
+    size_t n = render_photons_count(p, c), n_paths = (size_t)n_emitted(p, c);
+    follow_loop loop = {.photons = p, .c = c};
+    size_t n_chunks = (n_paths + FOLLOW_CHUNK - 1) / FOLLOW_CHUNK;
     p->origins[c] = big_alloc(MAX(n, 1), sizeof(photon_origin), "photon origins", error);
     if (!p->origins[c])
         return false;
     loop.found = g_new0(origin_lists, n_chunks);
-    bool done = parallel_for((size_t)loop.task.n_photons, FOLLOW_CHUNK,
-                             (unsigned)p->plan.how.threads, cancel, follow_chunk, &loop);
+    bool done = parallel_for(n_paths, FOLLOW_CHUNK, (unsigned)p->plan.how.threads, cancel,
+                             follow_chunk, &loop);
     join_origins(p, c, loop.found, n_chunks);
     g_free(loop.found);
     if (!done) {
@@ -220,13 +192,10 @@ static bool follow_class(render_photons *p, photon_class c, const cancel_flag *c
 
 bool render_photons_follow(render_photons *p, const cancel_flag *cancel, GError **error)
 {
-    bool ok = p->has_radii || photonmap_choose_radii(&p->plan, cancel, error);
-    p->has_radii = ok;
-    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
-        p->statistics.radius[c] = p->plan.radius[c];
+    bool ok = true;
+    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++)
         if (!p->origins[c])
             ok = follow_class(p, (photon_class)c, cancel, error);
-    }
     return ok;
 }
 
@@ -300,14 +269,13 @@ bool render_photon_story(const scene *s, const settings *how, size_t n,
                          void (*write)(const char *line, void *data), void *data,
                          GError **error)
 {
-    transport_plan plan;
-    bool ok = make_plan(&plan, s, how, NULL, error);
-    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
-        trace_task task = task_for(&plan, (photon_class)c);
-        story st = {s, &task.w, (photon_class)c, write, data};
-        for (size_t i = 0; i < MIN(n, task.n_photons); i++)
-            photon_tell(&task, i, tell_event, &st);
+    g_autoptr(render_photons) p = g_aligned_alloc0(1, sizeof *p, 64);
+    if (!plan_photons(p, s, how, NULL, error))
+        return false;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        story st = {s, &p->w, (photon_class)c, write, data};
+        for (size_t i = 0; i < MIN(n, n_emitted(p, (photon_class)c)); i++)
+            render_photons_tell(p, (photon_class)c, i, tell_event, &st);
     }
-    transport_plan_clear(&plan);
-    return ok;
+    return true;
 }

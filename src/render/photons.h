@@ -1,5 +1,6 @@
 /*
- * Photons alone: traced and shown without a picture, or told event by event.
+ * Photons alone: traced and shown without a picture, or told event by event. They are
+ * those that pass 0 of a render with the same settings stores, by its own plan.
  */
 #pragma once
 
@@ -19,15 +20,16 @@ typedef struct render_photons {
     photon_store stores[N_PHOTON_CLASSES];   /**< on surfaces */
     photon_store in_media[N_PHOTON_CLASSES]; /**< scattered in media */
     wavelengths w;
-    render_statistics statistics; /**< radius: only once followed */
+    render_statistics statistics; /**< emitted: 0 of a class that this render sends not */
     transport_plan plan;
+    const photon_sender *sender; /**< NULL: the integrator sends no photons */
+    void *pass;                  /**< the sender's */
+    int n_wholes;                /**< how often all light is in them, see photon_sender */
     photon_origin *origins[N_PHOTON_CLASSES]; /**< one a photon, those in media last; NULL
                                                  until followed */
-    bool has_radii;
 } render_photons;
 
-/** @brief Traces what a render with these settings would, with the direct class also
- * where the render itself would not need it. Owned by the caller.
+/** @brief Traces what a render with these settings would. Owned by the caller.
  * @param cancel may be NULL */
 render_photons *render_trace_photons(const scene *s, const settings *how,
                                      const cancel_flag *cancel, GError **error);
@@ -35,11 +37,12 @@ render_photons *render_trace_photons(const scene *s, const settings *how,
 size_t render_photons_count(const render_photons *p, photon_class c);
 /** @brief Photon i of a class: those on surfaces come first. */
 photon render_photons_get(const render_photons *p, photon_class c, size_t i);
-/** @brief Finds the origin of every photon, and the radius of each class that a render
- * would gather within. Costs about what tracing did. */
+/** @brief Finds the origin of every photon. Costs about what tracing did; where it was
+ * cancelled another call goes on. */
 bool render_photons_follow(render_photons *p, const cancel_flag *cancel, GError **error);
-/** @brief The task that the photons of a class came from; borrows from p. */
-trace_task render_photons_task(const render_photons *p, photon_class c);
+/** @brief Tells each event of the i-th emitted photon of a class that is sent. */
+void render_photons_tell(const render_photons *p, photon_class c, uint64_t i,
+                         photon_listener tell, void *data);
 void render_photons_free(render_photons *p);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(render_photons, render_photons_free)
 

@@ -54,11 +54,9 @@ static double seconds(void)
 render *render_new(const scene *s, const settings *how, GError **error)
 {
     render *r = g_aligned_alloc0(1, sizeof *r, 64);
-    r->plan.scene = s;
-    r->plan.how = *how;
+    r->plan = transport_plan_of(s, how);
     r->transport = transport_find(how->integrator);
-    r->n_threads = parallel_threads((unsigned)how->threads);
-    r->plan.how.threads = r->n_threads;
+    r->n_threads = (unsigned)r->plan.how.threads;
     r->asked = r->plan.how;
     r->statistics.noise = (double)INFINITY;
     bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
@@ -470,9 +468,8 @@ static bool prepare(render *r, GError **error)
     double start = seconds();
     if (r->prepared)
         return true;
-    transport_plan_clear(&r->plan);
     r->prepared =
-        set_pace(r, error) && r->transport->prepare(&r->plan, &r->cancel, error);
+        set_pace(r, error) && transport_plan_prepare(&r->plan, &r->cancel, error);
     r->statistics.time_prepare += seconds() - start;
     return r->prepared;
 }

@@ -157,4 +157,5 @@ const transport_kind transport_auto = {
     .radiance = path_radiance,
     .pass_wavelengths = pass_wavelengths,
     .end_pass = end_pass,
+    .photons = &photonmap_photons,
 };

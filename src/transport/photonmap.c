@@ -80,22 +80,31 @@ static double seconds(void)
 
 /* What one slice of a pass does for one class. */
 typedef struct slice_task {
-    photonmap_pass *pass;
-    uint32_t index; /* of the pass */
+    const photonmap_pass *pass;
     int slice;
     photon_class c;
 } slice_task;
 
+static double radius_of(const transport_plan *plan, photon_class c, uint32_t index)
+{
+    return photonmap_radius(plan->radius[c], plan->how.alpha, index);
+}
+
+static uint64_t n_in_slice(const photonmap_pass *pass, photon_class c)
+{
+    uint64_t n = pass->plan->n_photons[c];
+    return n > 0 ? MAX(n / (uint64_t)pass->n_slices, 1) : 0;
+}
+
 static trace_task trace_task_for(const slice_task *s, const cancel_flag *cancel)
 {
     const photonmap_pass *pass = s->pass;
-    uint64_t each = pass->plan->n_photons[s->c] / (uint64_t)pass->n_slices;
-    each = MAX(each, 1);
+    uint64_t each = n_in_slice(pass, s->c);
     return (trace_task){
         .scene = pass->scene,
         .how = pass->how,
         .w = pass->w,
-        .pass = s->index,
+        .pass = pass->index,
         .photon_class = s->c,
         .guide = pass->plan->guide,
         .share = pass->plan->shares ? &pass->share : NULL,
@@ -112,11 +121,13 @@ static bool keeps_irradiance(const photonmap_pass *pass)
     return pass->how->final_gather && pass->how->precompute_radiance;
 }
 
+/* What a pass stores, and what it shows of itself where there is no picture. */
 static bool trace_class(const slice_task *s, const cancel_flag *cancel,
                         trace_result *result, transport_counts *counts, GError **error)
 {
     double start = seconds();
     trace_task task = trace_task_for(s, cancel);
+    counts->radius[s->c] = radius_of(s->pass->plan, s->c, s->pass->index);
     bool oriented = s->pass->how->edges || keeps_irradiance(s->pass);
     if (!photon_trace(&task, oriented, result, error))
         return false;
@@ -128,11 +139,10 @@ static bool trace_class(const slice_task *s, const cancel_flag *cancel,
     return true;
 }
 
-static bool build_class(const slice_task *s, trace_result *result,
+static bool build_class(photonmap_pass *pass, const slice_task *s, trace_result *result,
                         transport_counts *counts, GError **error)
 {
     double start = seconds();
-    photonmap_pass *pass = s->pass;
     photon_map **map = &pass->maps[s->slice][s->c];
     float radius = pass->estimates[s->c].radius;
     photon_store store = result->photons;
@@ -178,29 +188,28 @@ static bool set_points_apart(trace_result *from, trace_result *points, GError **
     return true;
 }
 
-static bool make_map(const slice_task *s, const cancel_flag *cancel, trace_result *points,
-                     transport_counts *counts, GError **error)
+static bool make_map(photonmap_pass *pass, const slice_task *s, const cancel_flag *cancel,
+                     trace_result *points, transport_counts *counts, GError **error)
 {
     trace_result result = {0};
     bool ok = trace_class(s, cancel, &result, counts, error);
-    if (ok && keeps_irradiance(s->pass) && s->c != PHOTON_CAUSTIC)
+    if (ok && keeps_irradiance(pass) && s->c != PHOTON_CAUSTIC)
         ok = set_points_apart(&result, points, error);
-    ok = ok && build_class(s, &result, counts, error);
+    ok = ok && build_class(pass, s, &result, counts, error);
     trace_result_clear(&result);
     return ok;
 }
 
 /* The maps of one slice, and the irradiance at places that were photons of it. */
-static bool make_slice(photonmap_pass *pass, uint32_t index, int slice,
-                       const cancel_flag *cancel, transport_counts *counts,
-                       GError **error)
+static bool make_slice(photonmap_pass *pass, int slice, const cancel_flag *cancel,
+                       transport_counts *counts, GError **error)
 {
     trace_result points[N_PHOTON_CLASSES] = {0};
     bool ok = true;
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
-        const slice_task s = {pass, index, slice, (photon_class)c};
+        const slice_task s = {pass, slice, (photon_class)c};
         if (pass->plan->n_photons[c] > 0)
-            ok = make_map(&s, cancel, &points[c], counts, error);
+            ok = make_map(pass, &s, cancel, &points[c], counts, error);
     }
     double start = seconds();
     if (ok && keeps_irradiance(pass))
@@ -211,12 +220,12 @@ static bool make_slice(photonmap_pass *pass, uint32_t index, int slice,
     return ok;
 }
 
-static bool make_maps(photonmap_pass *pass, uint32_t index, const cancel_flag *cancel,
+static bool make_maps(photonmap_pass *pass, const cancel_flag *cancel,
                       transport_counts *counts, GError **error)
 {
     bool ok = true;
     for (int slice = 0; slice < pass->n_slices && ok; slice++)
-        ok = make_slice(pass, index, slice, cancel, counts, error);
+        ok = make_slice(pass, slice, cancel, counts, error);
     return ok;
 }
 
@@ -240,9 +249,8 @@ float caustic_discs(const transport_plan *plan, double radius)
                    (double)plan->how.spp);
 }
 
-static void *begin_pass(const transport_plan *plan, uint32_t index,
-                        const cancel_flag *cancel, transport_counts *counts,
-                        GError **error)
+/* A pass without its photons. */
+static void *open_pass(const transport_plan *plan, uint32_t index)
 {
     photonmap_pass *pass = g_aligned_alloc0(1, sizeof *pass, 64);
     pass->plan = plan;
@@ -253,21 +261,67 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
     pass->options.deterministic = !plan->how.multiple_samples;
     pass->has_unmet_lights = scene_has_unmet_lights(plan->scene);
     pass->n_slices = scene_time_slices(plan->scene, &plan->how);
-    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        double radius = photonmap_radius(plan->radius[c], plan->how.alpha, index);
-        pass->estimates[c] =
-            photonmap_estimate_options(&plan->how, (photon_class)c, radius);
-        counts->radius[c] = radius;
-    }
-    double r = photonmap_radius(plan->radius[PHOTON_CAUSTIC], plan->how.alpha, index);
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        pass->estimates[c] = photonmap_estimate_options(
+            &plan->how, (photon_class)c, radius_of(plan, (photon_class)c, index));
     pass->share = plan->share;
-    pass->share.discs = caustic_discs(plan, r);
-    if (!make_maps(pass, index, cancel, counts, error)) {
-        end_pass(pass);
-        return NULL;
-    }
+    pass->share.discs = caustic_discs(plan, radius_of(plan, PHOTON_CAUSTIC, index));
     return pass;
 }
+
+static void *begin_pass(const transport_plan *plan, uint32_t index,
+                        const cancel_flag *cancel, transport_counts *counts,
+                        GError **error)
+{
+    photonmap_pass *pass = open_pass(plan, index);
+    if (make_maps(pass, cancel, counts, error))
+        return pass;
+    end_pass(pass);
+    return NULL;
+}
+
+/* ---- The photons of a pass alone ---- */
+
+static int n_slices(const void *pass)
+{
+    return ((const photonmap_pass *)pass)->n_slices;
+}
+
+static uint64_t count_photons(const void *pass, photon_class c)
+{
+    return n_in_slice(pass, c) * (uint64_t)n_slices(pass);
+}
+
+static bool trace_photons(const void *pass, photon_class c, const cancel_flag *cancel,
+                          transport_counts *counts, trace_result *result, GError **error)
+{
+    bool ok = true;
+    for (int slice = 0; slice < n_slices(pass) && ok; slice++) {
+        const slice_task s = {pass, slice, c};
+        trace_result more = {0};
+        ok = trace_class(&s, cancel, slice == 0 ? result : &more, counts, error) &&
+             trace_result_append(result, &more, error);
+        trace_result_clear(&more);
+    }
+    return ok;
+}
+
+static void tell_photon(const void *pass, photon_class c, uint64_t i,
+                        photon_listener tell, void *data)
+{
+    const slice_task s = {pass, (int)(i / n_in_slice(pass, c)), c};
+    const trace_task task = trace_task_for(&s, NULL);
+    photon_tell(&task, i, tell, data);
+}
+
+const photon_sender photonmap_photons = {
+    .open = open_pass,
+    .count = count_photons,
+    .trace = trace_photons,
+    .tell = tell_photon,
+    .n_wholes = n_slices,
+    .close = end_pass,
+};
 
 static const wavelengths *pass_wavelengths(const void *pass)
 {
@@ -373,4 +427,5 @@ const transport_kind transport_photonmap = {
     .radiance = photonmap_radiance,
     .pass_wavelengths = pass_wavelengths,
     .end_pass = end_pass,
+    .photons = &photonmap_photons,
 };

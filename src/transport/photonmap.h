@@ -10,6 +10,7 @@
 #include "photon/volume_map.h"
 #include "transport/transport.h"
 
+extern const photon_sender photonmap_photons;
 
 /** @brief One pass: photons traced, maps built. Const while the camera looks. */
 typedef struct photonmap_pass {

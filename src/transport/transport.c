@@ -41,6 +41,21 @@ void transport_scratch_clear(transport_scratch *scratch)
     scratch->gathered = NULL;
 }
 
+transport_plan transport_plan_of(const scene *s, const settings *how)
+{
+    transport_plan plan = {.scene = s, .how = *how};
+    plan.how.threads = parallel_threads((unsigned)how->threads);
+    return plan;
+}
+
+bool transport_plan_prepare(transport_plan *plan, const cancel_flag *cancel,
+                            GError **error)
+{
+    transport_plan_clear(plan);
+    *plan = transport_plan_of(plan->scene, &plan->how);
+    return transport_find(plan->how.integrator)->prepare(plan, cancel, error);
+}
+
 void transport_plan_clear(transport_plan *plan)
 {
     emission_guide_free(plan->guide);

@@ -105,6 +105,12 @@ typedef struct transport_plan {
                                  one such a path */
 } transport_plan;
 
+/** @brief A plan in which nothing is decided yet. */
+transport_plan transport_plan_of(const scene *s, const settings *how);
+/** @brief Decides all that a render with these settings does alike in every pass; what
+ * was decided before is forgotten. Deterministic. */
+bool transport_plan_prepare(transport_plan *plan, const cancel_flag *cancel,
+                            GError **error);
 /** @brief Frees what the plan owns. */
 void transport_plan_clear(transport_plan *plan);
 
@@ -121,6 +127,24 @@ typedef struct transport_scratch {
 bool transport_scratch_init(transport_scratch *scratch, size_t n_groups, GError **error);
 void transport_scratch_clear(transport_scratch *scratch);
 
+/** @brief The photons of a pass without its picture: sent by what begin_pass sends them
+ * with. */
+typedef struct photon_sender {
+    /** A pass that has sent nothing. */
+    void *(*open)(const transport_plan *plan, uint32_t index);
+    /** How many are emitted of a class. */
+    uint64_t (*count)(const void *pass, photon_class c);
+    /** Those of one class, in order of emission; counts are added to. */
+    bool (*trace)(const void *pass, photon_class c, const cancel_flag *cancel,
+                  transport_counts *counts, trace_result *result, GError **error);
+    /** Tells each event of photon i of a class. Thread-safe. */
+    void (*tell)(const void *pass, photon_class c, uint64_t i, photon_listener tell,
+                 void *data);
+    /** How often all light is in them: once, or in each slice of the shutter's time. */
+    int (*n_wholes)(const void *pass);
+    void (*close)(void *pass);
+} photon_sender;
+
 typedef struct transport_kind {
     const char *name; /**< as the setting `integrator` says it */
     /** Fills the plan's budgets and radii. */
@@ -136,6 +160,7 @@ typedef struct transport_kind {
     /** What is added to the radiance of camera rays; NULL: nothing. */
     splat_list (*splats)(const void *pass);
     void (*end_pass)(void *pass);
+    const photon_sender *photons; /**< NULL: it sends none */
 } transport_kind;
 
 #define INTEGRATOR(choice, word) extern const transport_kind transport_##word;

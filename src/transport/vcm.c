@@ -84,6 +84,26 @@ static double seconds(void)
     return (double)g_get_monotonic_time() * 1e-6;
 }
 
+/* What moves is kept where it is in the middle of its slice of time. */
+photon vcm_photon(const vcm_pass *pass, const light_vertex *v)
+{
+    bool behind = dot3(v->wi, v->hit.n_geom) < 0.0f;
+    photon p = {.p = scene_hit_place(pass->scene, &v->hit),
+                .wi = v->wi,
+                .flux = v->flux / (float)pass->light.n,
+                .flags = behind ? PHOTON_BEHIND : 0,
+                .n = face_forward(v->hit.n_geom, v->wi),
+                .tag = (uint32_t)scene_light_group(pass->scene, v->light),
+                .home = scene_curve_of(pass->scene, &v->hit)};
+    if (scene_hit_moves(pass->scene, &v->hit)) {
+        transform by = vcm_motion_to_map(pass, &v->hit);
+        p.p = transform_point(&by, p.p);
+        p.wi = normalize3(transform_vector(&by, p.wi));
+        p.n = normalize3(transform_normal(&by, p.n));
+    }
+    return p;
+}
+
 static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
 {
     const settings *how = &pass->plan->how;
@@ -93,21 +113,8 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
     if (!photon_store_reserve(&store, paths->n_vertices, error))
         return false;
     for (size_t i = 0; i < paths->n_vertices; i++) {
-        const light_vertex *v = &paths->vertices[i];
-        vec3 n = face_forward(v->hit.n_geom, v->wi);
-        bool behind = dot3(v->wi, v->hit.n_geom) < 0.0f;
-        photon p = {.p = scene_hit_place(pass->scene, &v->hit),
-                    .wi = v->wi,
-                    .flux = vcm_payload(i),
-                    .flags = behind ? PHOTON_BEHIND : 0,
-                    .n = n,
-                    .home = scene_curve_of(pass->scene, &v->hit)};
-        if (scene_hit_moves(pass->scene, &v->hit)) {
-            transform by = vcm_motion_to_map(pass, &v->hit);
-            p.p = transform_point(&by, p.p);
-            p.wi = normalize3(transform_vector(&by, p.wi));
-            p.n = normalize3(transform_normal(&by, p.n));
-        }
+        photon p = vcm_photon(pass, &paths->vertices[i]);
+        p.flux = vcm_payload(i);
         photon_store_put(&store, &p);
     }
     pass->map = photon_map_build(photon_map_chosen((map_choice)how->photon_map, false),
@@ -118,8 +125,8 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
     return pass->map != NULL;
 }
 
-static bool make_light(vcm_pass *pass, const cancel_flag *cancel,
-                       transport_counts *counts, GError **error)
+static bool trace_light(vcm_pass *pass, const cancel_flag *cancel,
+                        transport_counts *counts, GError **error)
 {
     double start = seconds();
     if (!vcm_trace_light(pass, cancel, counts, error))
@@ -128,6 +135,14 @@ static bool make_light(vcm_pass *pass, const cancel_flag *cancel,
     counts->emitted[PHOTON_INDIRECT] += pass->light.n;
     counts->stored[PHOTON_INDIRECT] += pass->light.n_vertices;
     counts->radius[PHOTON_INDIRECT] = (double)pass->radius;
+    return true;
+}
+
+static bool make_light(vcm_pass *pass, const cancel_flag *cancel,
+                       transport_counts *counts, GError **error)
+{
+    if (!trace_light(pass, cancel, counts, error))
+        return false;
     counts->memory_photons += pass->light.n_vertices * sizeof *pass->light.vertices +
                               pass->light.n_splats * sizeof *pass->light.splats;
     return !pass->strategies.merge || build_map(pass, counts, error);
@@ -141,9 +156,8 @@ static void end_pass(void *data)
     g_aligned_free(pass);
 }
 
-static void *begin_pass(const transport_plan *plan, uint32_t index,
-                        const cancel_flag *cancel, transport_counts *counts,
-                        GError **error)
+/* A pass without its light subpaths. */
+static void *open_pass(const transport_plan *plan, uint32_t index)
 {
     vcm_pass *pass = g_aligned_alloc0(1, sizeof *pass, 64);
     const settings *how = &plan->how;
@@ -171,11 +185,74 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
         pass->ratios.merge = (float)discs;
     if (pass->strategies.connect && pass->strategies.merge)
         pass->ratios.connect = (float)(1.0 / discs);
+    return pass;
+}
+
+static void *begin_pass(const transport_plan *plan, uint32_t index,
+                        const cancel_flag *cancel, transport_counts *counts,
+                        GError **error)
+{
+    vcm_pass *pass = open_pass(plan, index);
     if (make_light(pass, cancel, counts, error))
         return pass;
     end_pass(pass);
     return NULL;
 }
+
+/* ---- Its light vertices alone, as photons ---- */
+
+/* They are all of one class, whatever they met before. */
+static uint64_t count_photons(const void *data, photon_class c)
+{
+    return c == PHOTON_INDIRECT ? ((const vcm_pass *)data)->light.n : 0;
+}
+
+static bool keep_photons(const vcm_pass *pass, trace_result *result, GError **error)
+{
+    const light_paths *paths = &pass->light;
+    result->photons = (photon_store){.tagged = pass->scene->n_light_groups > 0,
+                                     .homed = pass->scene->turns};
+    if (!photon_store_reserve(&result->photons, paths->n_vertices, error))
+        return false;
+    for (size_t i = 0; i < paths->n_vertices; i++) {
+        photon p = vcm_photon(pass, &paths->vertices[i]);
+        photon_store_put(&result->photons, &p);
+    }
+    return true;
+}
+
+static bool trace_photons(const void *data, photon_class c, const cancel_flag *cancel,
+                          transport_counts *counts, trace_result *result, GError **error)
+{
+    vcm_pass pass = *(const vcm_pass *)data;
+    *result = (trace_result){0};
+    bool ok = count_photons(data, c) == 0 || (trace_light(&pass, cancel, counts, error) &&
+                                              keep_photons(&pass, result, error));
+    light_paths_clear(&pass.light);
+    return ok;
+}
+
+static void tell_photon(const void *data, photon_class c, uint64_t i,
+                        photon_listener tell, void *told)
+{
+    (void)c;
+    vcm_tell_light(data, i, tell, told);
+}
+
+static int once(const void *pass)
+{
+    (void)pass;
+    return 1;
+}
+
+static const photon_sender vertices = {
+    .open = open_pass,
+    .count = count_photons,
+    .trace = trace_photons,
+    .tell = tell_photon,
+    .n_wholes = once,
+    .close = end_pass,
+};
 
 static const wavelengths *pass_wavelengths(const void *pass)
 {
@@ -196,4 +273,5 @@ const transport_kind transport_vcm = {
     .pass_wavelengths = pass_wavelengths,
     .splats = splats,
     .end_pass = end_pass,
+    .photons = &vertices,
 };

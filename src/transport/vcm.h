@@ -121,6 +121,12 @@ float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, photon_hits *hi
 /** @brief The strategies of a vcm_choice. */
 vcm_strategies vcm_strategies_of(int choice);
 
+/** @brief A light vertex as a photon; its flux, one of N, is its share of the lamps'. */
+photon vcm_photon(const vcm_pass *pass, const light_vertex *v);
+
+/** @brief Tells each event of light subpath i (photon_sender.tell). */
+void vcm_tell_light(const vcm_pass *pass, uint64_t i, photon_listener tell, void *data);
+
 /** @brief Traces pass->light and connects it to the eye. */
 bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts *counts,
                      GError **error);
@@ -189,6 +195,7 @@ typedef struct vcm_walk {
     float eta2; /**< takes refraction's scale of radiance out of roulette */
     partial_weights weights;
     scattering_counts counts;
+    unsigned lobe;     /**< that it left its last vertex by */
     bool mirrors_only; /**< no lobe but SPECULAR so far */
     transport_mode mode;
 } vcm_walk;

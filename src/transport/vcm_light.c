@@ -34,11 +34,32 @@ typedef struct light_walk {
     const vcm_pass *pass;
     sampler random;
     light_chunk *out;
-    float time;         /* of the shutter */
-    light_start start;  /* of the first vertex, which is still to be found */
-    int light;          /* that it left */
-    uint32_t primitive; /* of its mesh */
+    float time;           /* of the shutter */
+    light_start start;    /* of the first vertex, which is still to be found */
+    int light;            /* that it left */
+    uint32_t primitive;   /* of its mesh */
+    uint64_t index;       /* of the subpath */
+    photon_listener tell; /* NULL: nobody listens */
+    void *tell_data;
 } light_walk;
+
+static void tell(const light_walk *l, photon_event_kind kind, const surface_hit *hit)
+{
+    if (!l->tell)
+        return;
+    const photon_event event = {
+        .kind = kind,
+        .index = l->index,
+        .p = hit ? hit->p : l->walk.ray.origin,
+        .direction = l->walk.ray.direction,
+        .hit = hit,
+        .light = l->light,
+        .lobe = l->walk.lobe,
+        .flux = l->walk.carried / (float)l->pass->light.n,
+        .share = 1.0f,
+    };
+    l->tell(&event, l->tell_data);
+}
 
 /* ---- What is kept ---- */
 
@@ -259,21 +280,41 @@ static void land(light_walk *l, const vcm_vertex *v)
         !vcm_length_allowed(l->pass, l->walk.counts.n + 1))
         return;
     bool ends = vcm_ends_light(l->pass, v->hit);
-    if ((l->pass->strategies.connect && !ends) || l->pass->strategies.merge)
+    if ((l->pass->strategies.connect && !ends) || l->pass->strategies.merge) {
         keep(l, v);
+        tell(l, PHOTON_STORED, v->hit);
+    }
     if (l->pass->strategies.splat && !ends)
         connect_to_eye(l, v);
+}
+
+/* Goes on from v. @return false: the subpath ends there */
+static bool go_on(light_walk *l, const vcm_vertex *v)
+{
+    const vcm_pass *pass = l->pass;
+    spectrum before = l->walk.carried;
+    if (vcm_ends_light(pass, v->hit) || !vcm_length_allowed(pass, l->walk.counts.n + 2)) {
+        tell(l, PHOTON_ENDED, v->hit);
+        return false;
+    }
+    bool scattered =
+        vcm_bounce(pass, &l->walk, v, LOBE_ALL, &l->random) && survives(l, before);
+    tell(l, scattered ? PHOTON_SCATTERED : PHOTON_ABSORBED, v->hit);
+    return scattered;
 }
 
 static void follow(light_walk *l)
 {
     static const bsdf_options options = {0};
     const vcm_pass *pass = l->pass;
+    tell(l, PHOTON_EMITTED, NULL);
     while (!l->out->error) {
         surface_hit hit;
         l->out->n_rays++;
-        if (!scene_intersect(pass->scene, &l->walk.ray, &hit))
+        if (!scene_intersect(pass->scene, &l->walk.ray, &hit)) {
+            tell(l, PHOTON_LEFT, NULL);
             return;
+        }
         l->walk.carried *= hit_transmittance(&hit, &pass->w);
         vcm_vertex v = {.hit = &hit, .wo = -l->walk.ray.direction};
         if (!scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf)) {
@@ -285,12 +326,17 @@ static void follow(light_walk *l)
         arrive(l, &hit);
         v.alone = vcm_alone_at(pass, &hit, &l->out->hits);
         land(l, &v);
-        spectrum before = l->walk.carried;
-        if (vcm_ends_light(pass, &hit) ||
-            !vcm_length_allowed(pass, l->walk.counts.n + 2) ||
-            !vcm_bounce(pass, &l->walk, &v, LOBE_ALL, &l->random) || !survives(l, before))
+        if (!go_on(l, &v))
             return;
     }
+}
+
+static light_walk walk_of(const vcm_pass *pass, size_t i)
+{
+    return (light_walk){.pass = pass,
+                        .random = sampler_make(stream_key(pass), i),
+                        .time = time_of(pass, i),
+                        .index = i};
 }
 
 /* ---- All of them ---- */
@@ -306,10 +352,8 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
     light_loop *loop = data;
     light_chunk *out = &loop->chunks[begin / CHUNK];
     for (size_t i = begin; i < end && !out->error; i++) {
-        light_walk l = {.pass = loop->pass,
-                        .random = sampler_make(stream_key(loop->pass), i),
-                        .time = time_of(loop->pass, i),
-                        .out = out};
+        light_walk l = walk_of(loop->pass, i);
+        l.out = out;
         if (emit(&l))
             follow(&l);
         loop->pass->light.end[i] = out->n_vertices;
@@ -363,6 +407,20 @@ static bool join(light_paths *to, light_chunk *chunks, size_t n, transport_count
         chunk_clear(&chunks[c]);
     }
     return true;
+}
+
+void vcm_tell_light(const vcm_pass *pass, uint64_t i, photon_listener listener,
+                    void *data)
+{
+    light_chunk unused = {0};
+    light_walk l = walk_of(pass, (size_t)i);
+    l.out = &unused;
+    l.tell = listener;
+    l.tell_data = data;
+    if (emit(&l))
+        follow(&l);
+    photon_hits_clear(&unused.hits);
+    chunk_clear(&unused);
 }
 
 bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts *counts,

@@ -74,6 +74,7 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
                        vcm_pdf_reverse(v, next.wi, walk->mode), &pass->ratios, v->alone);
     walk->carried *= next.weight;
     walk->lane = next.lane;
+    walk->lobe = next.lobe;
     walk->mirrors_only &= (next.lobe & LOBE_SPECULAR) != 0;
     walk->eta2 *= next.eta * next.eta;
     walk->from = v->hit->p;
