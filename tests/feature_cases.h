@@ -144,6 +144,8 @@ static const feature_case feature_cases[] = {
     {"Option", "pixelstats", "'bool pixelstats' true"},
     {"Option", "rendercoordsys", "'string rendercoordsys' 'camera'"},
     {"Option", "wavefront", "'bool wavefront' true"},
+    {"Option", "msereferenceimage", "'string msereferenceimage' 'a.exr'"},
+    {"Option", "msereferenceout", "'string msereferenceout' 'a.txt'"},
     {"Option", "disablepixeljitter", "'bool disablepixeljitter' true"},
     {"Option", "disabletexturefiltering", "'bool disabletexturefiltering' true"},
     {"Option", "disablewavelengthjitter", "'bool disablewavelengthjitter' true"},

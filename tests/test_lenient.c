@@ -125,11 +125,28 @@ static void test_textures(void)
     }
 }
 
+static void test_shapes(void)
+{
+    static const char *const kinds[] = {"cone", "hyperboloid", "paraboloid"};
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {
+        g_autofree char *text =
+            g_strdup_printf(HEAD "Shape \"%s\" \"float radius\" 2\n", kinds[i]);
+        g_autofree char *refused = g_strdup_printf(
+            "scene.pbrt:5:1: shape \"%s\" is not supported; --lenient leaves it out",
+            kinds[i]);
+        g_autofree char *said =
+            g_strdup_printf("5:1: shape \"%s\" is left out", kinds[i]);
+        g_autoptr(scene) s = refused_or_replaced(text, refused, said);
+        g_assert_cmpuint(s->shapes->len, ==, 0);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/lenient/materials", test_materials);
     g_test_add_func("/lenient/textures", test_textures);
+    g_test_add_func("/lenient/shapes", test_shapes);
     g_test_add_func("/lenient/media", test_media);
     g_test_add_func("/lenient/wrong-media", test_wrong_media);
     return g_test_run();

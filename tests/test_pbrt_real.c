@@ -190,6 +190,50 @@ static void test_crops(void)
     }
 }
 
+/* ---- Cameras ---- */
+
+static void test_no_camera(void)
+{
+    g_autoptr(scene) s = read_saying(
+        "Translate 1 2 3\nWorldBegin\nLightSource \"point\"\n",
+        "note:2:1: there is no Camera; pbrt's own looks from the origin along z\n");
+    vec3 eye = transform_point(&s->camera.to_world, vec3_make(0, 0, 0));
+    vec3 ahead = transform_vector(&s->camera.to_world, vec3_make(0, 0, 1));
+    g_assert_cmpfloat(length3(eye), <, 1e-6f);
+    g_assert_cmpfloat(length3(ahead - vec3_make(0, 0, 1)), <, 1e-6f);
+}
+
+/* A thick lens of radii 50 and -50 mm, 10 mm of index 1.5, has by the lensmaker's
+ * equation 1/f = (n - 1) (1/R1 - 1/R2 + (n - 1) d / (n R1 R2)), f = 51.724 mm. On a film
+ * of 24 x 18 mm (a diagonal of 30) its shorter side sees 2 atan(9 / f). Its aperture lets
+ * the share π/4 (D/f)² through. */
+static void test_realistic_camera(void)
+{
+    scene_folder f = folder_new(
+        "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6 \"float "
+        "diagonal\" 30\nCamera \"realistic\" \"string lensfile\" \"lens.dat\" \"float "
+        "aperturediameter\" 10 \"float focusdistance\" 4\nWorldBegin\nLightSource "
+        "\"point\"\n");
+    folder_write(&f, "lens.dat", "# one lens\n50 10 1.5 20\n-50 40 1 20\n", -1);
+    g_autoptr(GString) lines = g_string_new(NULL);
+    g_autoptr(GError) error = NULL;
+    const log_sink sink = {keep_line, lines};
+    g_autoptr(scene) s = format_load(f.main, 1, &sink, &error);
+    g_assert_no_error(error);
+    const double focal = 1.0 / (0.5 * (1.0 / 50 + 1.0 / 50 - 0.5 * 10 / (1.5 * 2500)));
+    g_assert_cmpfloat(fabs(focal - 51.724), <, 1e-3);
+    ray middle = camera_ray(&s->camera, (vec2){4, 3}, (vec2){0.5f, 0.5f}, 0.5f);
+    ray edge = camera_ray(&s->camera, (vec2){4, 0}, (vec2){0.5f, 0.5f}, 0.5f);
+    double angle =
+        acos((double)dot3(normalize3(middle.direction), normalize3(edge.direction)));
+    g_assert_cmpfloat(fabs(tan(angle) - 9 / focal), <, 1e-3);
+    g_assert_cmpfloat(fabs((double)s->film.iso - 100 * G_PI / 4 * 100 / (focal * focal)),
+                      <, 1e-3);
+    g_assert_nonnull(strstr(lines->str, "warning:2:8: camera \"realistic\" becomes"));
+    s->build.log = (log_sink){0};
+    folder_remove(&f);
+}
+
 /* ---- Names that come later ---- */
 
 static const char *material_of(const scene *s, guint i)
@@ -308,6 +352,8 @@ int main(int argc, char **argv)
     g_test_add_func("/pbrt-real/warm-white", test_warm_white);
     g_test_add_func("/pbrt-real/spectral-film", test_spectral_film);
     g_test_add_func("/pbrt-real/crops", test_crops);
+    g_test_add_func("/pbrt-real/no-camera", test_no_camera);
+    g_test_add_func("/pbrt-real/realistic-camera", test_realistic_camera);
     g_test_add_func("/pbrt-real/names-given-later", test_names_given_later);
     g_test_add_func("/pbrt-real/later-is-the-same", test_later_is_the_same);
     g_test_add_func("/pbrt-real/bad-normals", test_bad_normals);

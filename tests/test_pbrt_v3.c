@@ -337,6 +337,64 @@ static void test_disney(void)
         check_alike(&pairs[i]);
 }
 
+/* What else pbrt-v3 takes, in pbrt-v4's words. */
+static void test_rest_of_v3(void)
+{
+    static const pair pairs[] = {
+        {"leaves",
+         WORLD3(COLOR3("t",
+                       ".6 .8 .4") "Material \"translucent\" \"texture Kd\" \"t\" " BALL),
+         WORLD4("Material \"diffusetransmission\" \"rgb reflectance\" [.6 .8 .4] \"rgb "
+                "transmittance\" [.6 .8 .4] \"float scale\" .5 " BALL)},
+        {"type",
+         WORLD3("Material \"matte\" \"rgb Kd\" [.9 .1 .1] Shape \"sphere\" \"integer "
+                "radius\" 3\n"),
+         WORLD4(MATTE4(".9 .1 .1") "Shape \"sphere\"\n")},
+        {"open", WORLD3("AttributeBegin " MATTE4(".9 .1 .1") BALL),
+         WORLD4(MATTE4(".9 .1 .1") BALL)},
+        {"heightfield",
+         WORLD3(
+             MATTE4(".9 .1 .1") "Shape \"heightfield\" \"integer nu\" 3 \"integer nv\" 2 "
+                                "\"float Pz\" [0 1 .5 .2 0 .7]\n"),
+         WORLD4(MATTE4(
+             ".9 .1 .1") "Shape \"trianglemesh\" \"point3 P\" [0 0 0 .5 0 1 1 0 .5 "
+                         "0 1 .2 .5 1 0 1 1 .7] \"integer indices\" [0 1 4 0 4 3 1 2 "
+                         "5 1 5 4] \"point2 uv\" [0 0 .5 0 1 0 0 1 .5 1 1 1]\n")},
+        {"accelerator",
+         "Accelerator \"grid\" " LOOK FILM3 "WorldBegin\n" LAMP FLOOR "WorldEnd\n",
+         LOOK FILM4 "WorldBegin\n" LAMP FLOOR},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
+        check_alike(&pairs[i]);
+}
+
+/* v3 multiplies the picture of a sky by "L", too. */
+static void test_tinted_pictures(void)
+{
+    const float texels[] = {0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f};
+    g_autoptr(GString) pfm = g_string_new("PF\n2 1\n-1.0\n");
+    g_string_append_len(pfm, (const char *)texels, sizeof texels);
+    static const char *const lights[] = {
+        "LightSource \"infinite\" \"string mapname\" \"a.pfm\" \"rgb L\" [2 2 2] \"rgb "
+        "scale\" [3 3 3]\n",
+        "LightSource \"infinite\" \"string mapname\" \"a.pfm\" \"rgb scale\" [6 6 6]\n"};
+    double means[2];
+    for (int i = 0; i < 2; i++) {
+        g_autofree char *text =
+            g_strconcat(LOOK FILM3 "WorldBegin\n", lights[i], FLOOR "WorldEnd\n", NULL);
+        scene_folder f = folder_new(text);
+        folder_write(&f, "a.pfm", pfm->str, (gssize)pfm->len);
+        g_autoptr(GError) error = NULL;
+        g_autoptr(scene) s = format_load(f.main, 1, NULL, &error);
+        g_assert_no_error(error);
+        g_autoptr(image) img = render_with(s, HOW);
+        means[i] = mean_of(img, "");
+        folder_remove(&f);
+    }
+    g_assert_cmpfloat(means[0], >, 0.1);
+    g_assert_cmpfloat(fabs(means[0] - means[1]), <, 1e-4 * means[0]);
+}
+
 /* pbrt-v3 warns of parameters that it does not know, and goes on. */
 static void test_unknown_parameters(void)
 {
@@ -437,6 +495,8 @@ int main(int argc, char **argv)
     g_test_add_func("/pbrt-v3/what-is-not-there", test_what_is_not_there);
     g_test_add_func("/pbrt-v3/include-among-parameters", test_include_among_parameters);
     g_test_add_func("/pbrt-v3/disney", test_disney);
+    g_test_add_func("/pbrt-v3/rest-of-it", test_rest_of_v3);
+    g_test_add_func("/pbrt-v3/tinted-pictures", test_tinted_pictures);
     g_test_add_func("/pbrt-v3/unknown-parameters", test_unknown_parameters);
     g_test_add_func("/pbrt-v3/texture-before-value", test_texture_before_value);
     g_test_add_func("/pbrt-v3/recognised", test_recognised);

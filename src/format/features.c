@@ -49,10 +49,16 @@ static directive_kind shape_at(size_t i)
                             NULL};
 }
 
+/* Behind the scene's own kinds, what the reader makes one of them of. */
 static directive_kind camera_kind_of(size_t i)
 {
-    return (directive_kind){camera_kind_at(i), camera_kind_parameters(i), NULL, NULL,
-                            NULL};
+    static const directive_kind lens = {
+        "realistic", "", "", "approximated",
+        "becomes `perspective`, by `lensfile`, `aperturediameter` and `focusdistance`"};
+    if (camera_kind_at(i))
+        return (directive_kind){camera_kind_at(i), camera_kind_parameters(i), NULL, NULL,
+                                NULL};
+    return i == 0 || camera_kind_at(i - 1) ? lens : (directive_kind){0};
 }
 
 static directive_kind film_at(size_t i)

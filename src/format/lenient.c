@@ -96,6 +96,21 @@ bool lenient_medium(const build_context *context, const char *name, const char *
                             name, kind);
 }
 
+/* ---- Shapes ---- */
+
+bool lenient_shape(const build_context *context, const char *kind, const params *p,
+                   GError **error)
+{
+    static const char *const kinds[] = {"cone", "hyperboloid", "paraboloid", "nurbs",
+                                        NULL};
+    if (!g_strv_contains(kinds, kind))
+        return false;
+    if (!context->lenient)
+        error_at(error, p->place,
+                 "shape \"%s\" is not supported; --lenient leaves it out", kind);
+    return build_is_lenient(context, p->place, "shape \"%s\" is left out", kind);
+}
+
 /* ---- Textures ---- */
 
 params *lenient_texture(const build_context *context, const char **kind, bool is_spectrum,

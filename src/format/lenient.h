@@ -20,6 +20,10 @@ params *lenient_material(const build_context *context, const char **kind, const 
  * nothing is if the kind is another. */
 bool lenient_medium(const build_context *context, const char *name, const char *kind,
                     const params *p, GError **error);
+/** @brief True if a shape of one of v3's kinds that can not be rendered is left out; as
+ * lenient_medium. */
+bool lenient_shape(const build_context *context, const char *kind, const params *p,
+                   GError **error);
 /** @brief The same as lenient_material for textures: ptex. */
 params *lenient_texture(const build_context *context, const char **kind, bool is_spectrum,
                         const params *p, GError **error);

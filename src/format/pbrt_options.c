@@ -93,7 +93,10 @@ bool pbrt_accelerator(pbrt_parser *parser, source_place place)
     const directive_kind *kind =
         find_kind(accelerators, G_N_ELEMENTS(accelerators), name);
     g_autofree char *what = g_strdup_printf("accelerator '%s'", name);
-    if (!kind)
+    if (!kind && parser->is_v3)
+        pbrt_warning(parser, at,
+                     "accelerator \"%s\" is unknown; rays are traced by Embree", name);
+    else if (!kind)
         pbrt_error(parser, at, "expected Accelerator \"bvh\" or \"kdtree\", found \"%s\"",
                    name);
     else if (!params_known(p, what, kind->idle, NULL, &error))
@@ -121,8 +124,8 @@ static const directive_kind options[] = {
     {"disabletexturefiltering", "disabletexturefiltering", "", NULL, NULL},
     {"disablewavelengthjitter", "disablewavelengthjitter", "", NULL, NULL},
     {"forcediffuse", "", "", "refused", "`false` is accepted"},
-    {"msereferenceimage", "", "", "refused", NULL},
-    {"msereferenceout", "", "", "refused", NULL},
+    {"msereferenceimage", "", "msereferenceimage", "accepted", NULL},
+    {"msereferenceout", "", "msereferenceout", "accepted", NULL},
 };
 
 directive_kind pbrt_option_kind(size_t i)
@@ -299,11 +302,15 @@ static void move_camera(pbrt_parser *parser, const pending *c)
 static void finish_camera(pbrt_parser *parser, source_place place)
 {
     GError *error = NULL;
-    const pending *c = &parser->camera;
+    pending *c = &parser->camera;
     pbrt_use_media(parser, &(medium_name){0}, &parser->around_camera);
-    if (!c->kind)
-        pbrt_error(parser, place, "expected a Camera before WorldBegin, found none");
-    else if (scene_set_camera(parser->scene, c->kind, c->p, &c->ctm, &error))
+    if (!c->kind) {
+        log_at(&parser->scene->build.log, LOG_NOTE, place,
+               "there is no Camera; pbrt's own looks from the origin along z");
+        c->ctm = c->ctm_end = transform_identity();
+        given_or_default(parser, c, "perspective", place);
+    }
+    if (scene_set_camera(parser->scene, c->kind, c->p, &c->ctm, &error))
         move_camera(parser, c);
     else
         pbrt_report(parser, error);
@@ -312,6 +319,7 @@ static void finish_camera(pbrt_parser *parser, source_place place)
 bool pbrt_world_begin(pbrt_parser *parser, source_place place)
 {
     guint n_errors = parser->errors->len;
+    pbrt_flatten_lens(parser);
     finish_film(parser, place);
     finish_filter(parser, place);
     if (parser->errors->len == n_errors)

@@ -8,6 +8,7 @@
  *   pbrt_medium.c     participating media, and which of them are around
  *   pbrt_options.c    what stands before WorldBegin, kept until then
  *   pbrt_integrator.c integrators and samplers as settings
+ *   pbrt_lens.c       realistic cameras
  *   pbrt_late.c       what is named before it is made
  *   pbrt_v3_names.c   what is named again, in pbrt-v3
  *   pbrt_world.c      materials, textures, lights and shapes, given to the scene
@@ -286,6 +287,8 @@ bool pbrt_camera(pbrt_parser *parser, source_place place);
 bool pbrt_accelerator(pbrt_parser *parser, source_place place);
 bool pbrt_option(pbrt_parser *parser, source_place place);
 bool pbrt_world_begin(pbrt_parser *parser, source_place place);
+/** @brief Turns a realistic camera that was kept into a perspective one (pbrt_lens.c). */
+void pbrt_flatten_lens(pbrt_parser *parser);
 /** @brief pbrt-v3 ends a world explicitly. */
 bool pbrt_world_end(pbrt_parser *parser, source_place place);
 /** @brief Turns the integrator and sampler that were kept into settings. */

@@ -45,9 +45,12 @@ void pbrt_close_attributes(pbrt_parser *parser, guint depth)
     while (parser->saved->len > depth && !pbrt_should_stop(parser)) {
         guint last = parser->saved->len - 1;
         source_place place = g_array_index(parser->saved, saved_state, last).place;
-        pbrt_error(parser, place,
-                   "expected AttributeEnd for this AttributeBegin, found the end of the "
-                   "file");
+        if (parser->is_v3)
+            pbrt_warning(parser, place, "this AttributeBegin has no AttributeEnd");
+        else
+            pbrt_error(parser, place,
+                       "expected AttributeEnd for this AttributeBegin, found the end of "
+                       "the file");
         pbrt_attribute_end(parser, place);
     }
 }

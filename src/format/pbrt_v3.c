@@ -119,15 +119,35 @@ static void translate_emission(const translation *t, const char *name)
     drop(t, "samples");
 }
 
+/* v3 multiplies a picture by a colour, v4 by a number. */
+static double take_tint(const translation *t, const char *name)
+{
+    const param *q = find(t, name);
+    if (!is_rgb(q)) {
+        drop_noted(t, name, "a spectrum beside a picture is left out");
+        return 1.0;
+    }
+    const float *c = q->numbers;
+    double mean = ((double)c[0] + (double)c[1] + (double)c[2]) / 3.0;
+    if (fabsf(c[0] - c[1]) > 0.0f || fabsf(c[1] - c[2]) > 0.0f)
+        note(t, q, "a picture is multiplied by the mean of the colour beside it");
+    drop(t, name);
+    return mean;
+}
+
 static void translate_light(const translation *t)
 {
     bool parallel = strcmp(*t->kind, "distant") == 0 || strcmp(*t->kind, "infinite") == 0;
     if (strcmp(*t->kind, "exinfinite") == 0)
         set_kind(t, "infinite");
     rename_to(t, "mapname", "filename");
-    if (find(t, "filename")) /* it shows the picture's own colours */
-        drop_noted(t, "L", "'L' beside a picture is left out");
-    translate_emission(t, parallel ? "L" : "I");
+    const char *name = parallel ? "L" : "I";
+    bool has_own = strcmp(*t->kind, "goniometric") == 0;
+    bool is_tinted = find(t, "filename") && !has_own && find(t, name);
+    double tint = is_tinted ? take_tint(t, name) : 1.0;
+    translate_emission(t, name);
+    if (is_tinted)
+        set_number(t, "scale", number(t, "scale", 1.0) * tint);
 }
 
 static void translate_area_light(const translation *t)
@@ -139,6 +159,51 @@ static void translate_area_light(const translation *t)
 
 /* ---- Shapes ---- */
 
+/* Over the unit square, two triangles a cell. */
+static void add_grid(const translation *t, int nu, int nv, const float *z)
+{
+    size_t n = (size_t)nu * (size_t)nv;
+    g_autofree float *points = g_new(float, 3 * n);
+    g_autofree float *uv = g_new(float, 2 * n);
+    g_autoptr(GArray) indices = g_array_new(FALSE, FALSE, sizeof(int));
+    for (int y = 0; y < nv; y++)
+        for (int x = 0; x < nu; x++) {
+            int i = y * nu + x;
+            points[3 * i] = uv[2 * i] = (float)x / (float)(nu - 1);
+            points[3 * i + 1] = uv[2 * i + 1] = (float)y / (float)(nv - 1);
+            points[3 * i + 2] = z[i];
+            const int cell[] = {i, i + 1, i + nu + 1, i, i + nu + 1, i + nu};
+            if (x + 1 < nu && y + 1 < nv)
+                g_array_append_vals(indices, cell, 6);
+        }
+    params_add_numbers(t->p, t->p->place, PARAM_POINT3, "P", points, 3 * n, NULL);
+    params_add_numbers(t->p, t->p->place, PARAM_POINT2, "uv", uv, 2 * n, NULL);
+    params_add_integers(t->p, t->p->place, PARAM_INTEGER, "indices",
+                        (const int *)(const void *)indices->data, indices->len, NULL);
+}
+
+static int count_of(const translation *t, const char *name)
+{
+    const param *q = find(t, name);
+    return q && q->type == PARAM_INTEGER && q->n == 1 ? q->integers[0] : 0;
+}
+
+/* What does not fit stays as it is, to be refused. */
+static void translate_heightfield(const translation *t)
+{
+    enum { MOST = 32768 };
+    const param *z = find(t, "Pz");
+    int nu = count_of(t, "nu"), nv = count_of(t, "nv");
+    if (nu < 2 || nv < 2 || nu > MOST || nv > MOST || !z || z->type != PARAM_FLOAT ||
+        z->n != (size_t)nu * (size_t)nv)
+        return;
+    set_kind(t, "trianglemesh");
+    add_grid(t, nu, nv, z->numbers);
+    drop(t, "nu");
+    drop(t, "nv");
+    drop(t, "Pz");
+}
+
 static void translate_shape(const translation *t)
 {
     param *uv = find(t, "uv");
@@ -148,6 +213,8 @@ static void translate_shape(const translation *t)
         uv->name = intern("uv");
         uv->type = PARAM_POINT2;
     }
+    if (strcmp(*t->kind, "heightfield") == 0)
+        translate_heightfield(t);
     if (strcmp(*t->kind, "loopsubdiv") == 0)
         rename_to(t, "nlevels", "levels");
     drop(t, "discarddegenerateUVs");
@@ -194,7 +261,6 @@ static void translate_film(const translation *t)
         give_integer(t->p, "yresolution", 480);
     drop(t, "scale");
     drop(t, "maxsampleluminance");
-    drop(t, "diagonal");
     if (fabs(scale - 1.0) > 1e-9)
         give_float(t->p, "iso", 100.0 * scale);
 }

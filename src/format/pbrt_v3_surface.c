@@ -104,6 +104,11 @@ static void to_metal(const translation *t)
     translate_roughness(t, 0.01);
 }
 
+static double mean_of(const double a[3], const double b[3])
+{
+    return (a[0] + a[1] + a[2] + b[0] + b[1] + b[2]) / 6.0;
+}
+
 static void to_translucent(const translation *t)
 {
     double reflect[3] = {0.5, 0.5, 0.5}, transmit[3] = {0.5, 0.5, 0.5};
@@ -115,9 +120,13 @@ static void to_translucent(const translation *t)
     set_kind(t, "diffusetransmission");
     default_rgb(t, "Kd", 0.25);
     const param *kd = find(t, "Kd");
-    if (is_rgb(kd))
+    if (is_rgb(kd)) {
         params_add_numbers(t->p, kd->place, PARAM_RGB, "transmittance", kd->numbers, 3,
                            NULL);
+    } else if (kd->type == PARAM_TEXTURE && kd->n == 1) {
+        give_text(t->p, PARAM_TEXTURE, "transmittance", kd->strings[0]);
+        give_float(t->p, "scale", mean_of(reflect, transmit));
+    }
     rename_to(t, "Kd", "reflectance");
     scale_rgb(t, "reflectance", reflect);
     scale_rgb(t, "transmittance", transmit);

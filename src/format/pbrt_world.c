@@ -357,6 +357,12 @@ static void make_shape(pbrt_parser *parser, const char *name, const arguments *a
                       .material = current_material(parser, a->at),
                       .area_light = parser->state.area_light};
     GError *error = NULL;
+    if (lenient_shape(&parser->scene->build, a->kind, a->p, &error))
+        return;
+    if (error) {
+        pbrt_report(parser, error);
+        return;
+    }
     bool seen = true;
     float_input alpha;
     if (!params_bool(a->p, "camera_visible", &seen, &error) ||

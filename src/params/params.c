@@ -175,8 +175,16 @@ bool params_has(const params *p, const char *name)
     return look_up(p, name) != NULL;
 }
 
-static bool wrong_type(const param *q, const char *expected, GError **error)
+/* In pbrt-v3 the type belongs to the name: what has another is not known. */
+static bool wrong_type(const params *p, const param *q, const char *expected,
+                       GError **error)
 {
+    if (p->lets_unknown) {
+        log_at(p->log, LOG_NOTE, q->place,
+               "parameter '%s' is left out: expected %s, found %s", q->name, expected,
+               type_names[q->type]);
+        return true;
+    }
     error_at(error, q->place, "parameter '%s': expected %s, found %s", q->name, expected,
              type_names[q->type]);
     return false;
@@ -208,7 +216,7 @@ bool params_float(const params *p, const char *name, float *out, GError **error)
     if (!q)
         return true;
     if (q->type != PARAM_FLOAT)
-        return wrong_type(q, "float", error);
+        return wrong_type(p, q, "float", error);
     if (!check_count(q, 1, error) || !check_finite(q, error))
         return false;
     *out = q->numbers[0];
@@ -221,7 +229,7 @@ bool params_integer(const params *p, const char *name, int *out, GError **error)
     if (!q)
         return true;
     if (q->type != PARAM_INTEGER)
-        return wrong_type(q, "integer", error);
+        return wrong_type(p, q, "integer", error);
     if (!check_count(q, 1, error))
         return false;
     *out = q->integers[0];
@@ -234,7 +242,7 @@ bool params_bool(const params *p, const char *name, bool *out, GError **error)
     if (!q)
         return true;
     if (q->type != PARAM_BOOL)
-        return wrong_type(q, "bool", error);
+        return wrong_type(p, q, "bool", error);
     if (!check_count(q, 1, error))
         return false;
     *out = q->integers[0] != 0;
@@ -247,7 +255,7 @@ bool params_string(const params *p, const char *name, const char **out, GError *
     if (!q)
         return true;
     if (q->type != PARAM_STRING)
-        return wrong_type(q, "string", error);
+        return wrong_type(p, q, "string", error);
     if (!check_count(q, 1, error))
         return false;
     *out = q->strings[0];
@@ -260,7 +268,7 @@ bool params_point3(const params *p, const char *name, vec3 *out, GError **error)
     if (!q)
         return true;
     if (q->type != PARAM_POINT3 && q->type != PARAM_VECTOR3 && q->type != PARAM_NORMAL)
-        return wrong_type(q, "point3", error);
+        return wrong_type(p, q, "point3", error);
     if (!check_count(q, 3, error) || !check_finite(q, error))
         return false;
     *out = vec3_make(q->numbers[0], q->numbers[1], q->numbers[2]);
