@@ -28,6 +28,69 @@ static GOptionContext *context_new(const usage *how)
     return context;
 }
 
+/* ---- "-j4" ---- */
+
+/* Of a command line's option, by its letter or its name; NULL: there is none. */
+static const GOptionEntry *find_option(const usage *how, char letter, const char *name)
+{
+    const GOptionEntry *const lists[] = {
+        how->entries, how->loads_scene ? loading_entries : common_entries,
+        common_entries};
+    for (size_t i = 0; i < G_N_ELEMENTS(lists); i++)
+        for (const GOptionEntry *e = lists[i]; e->long_name; e++)
+            if (name ? strcmp(e->long_name, name) == 0 : e->short_name == letter)
+                return e;
+    return NULL;
+}
+
+static bool takes_value(const GOptionEntry *e)
+{
+    return e && e->arg != G_OPTION_ARG_NONE;
+}
+
+/* Where in "-qj4" the value of the last option begins; 0: there is none in it. */
+static size_t value_in(const usage *how, const char *argument)
+{
+    for (size_t i = 1; argument[i]; i++) {
+        const GOptionEntry *e = find_option(how, argument[i], NULL);
+        if (!e || takes_value(e))
+            return e && argument[i + 1] ? i + 1 : 0;
+    }
+    return 0;
+}
+
+/* Whether the next argument is the value of this one. */
+static bool awaits_value(const usage *how, const char *argument)
+{
+    size_t length = strlen(argument);
+    if (g_str_has_prefix(argument, "--"))
+        return takes_value(find_option(how, 0, argument + 2));
+    return argument[0] == '-' && length > 1 &&
+           takes_value(find_option(how, argument[length - 1], NULL));
+}
+
+/* GLib wants a blank between a letter and its value. The strings stay as long as the
+   program runs, as those of main do. */
+static void detach_values(const usage *how, int *argc, char ***argv)
+{
+    GPtrArray *apart = g_ptr_array_new();
+    bool options = true, is_value = false;
+    for (int i = 0; i < *argc; i++) {
+        char *argument = (*argv)[i];
+        options &= is_value || strcmp(argument, "--") != 0;
+        bool may =
+            i > 0 && options && !is_value && argument[0] == '-' && argument[1] != '-';
+        size_t at = may ? value_in(how, argument) : 0;
+        g_ptr_array_add(apart, at ? g_strndup(argument, at) : argument);
+        if (at)
+            g_ptr_array_add(apart, argument + at);
+        is_value = options && !is_value && !at && i > 0 && awaits_value(how, argument);
+    }
+    *argc = (int)apart->len;
+    g_ptr_array_add(apart, NULL);
+    *argv = (char **)g_ptr_array_free(apart, FALSE);
+}
+
 /* GLib leaves "--" in place when an operand follows that begins with a dash. */
 static void drop_separator(int *argc, char **argv)
 {
@@ -55,6 +118,7 @@ bool arguments_parse(const usage *how, int *argc, char ***argv, int *exit_code)
     g_set_prgname(name);
     g_autoptr(GOptionContext) context = context_new(how);
     g_autoptr(GError) error = NULL;
+    detach_values(how, argc, argv);
     if (!g_option_context_parse(context, argc, argv, &error)) {
         *exit_code = report_error(error);
         return false;

@@ -1,5 +1,7 @@
 #include "overrides.h"
 
+#include "message.h"
+
 #include <string.h>
 
 static bool apply_pair(NephSettings *settings, const char *pair, GError **error)
@@ -36,6 +38,16 @@ bool overrides_apply(const overrides *o, NephSettings *settings, GError **error)
            apply_flag(settings, "spp", o->spp, error) &&
            apply_flag(settings, "threads", o->threads, error) &&
            apply_flag(settings, "seed", o->seed, error);
+}
+
+void overrides_tell_unread(const overrides *o, const NephSettings *settings)
+{
+    g_autoptr(NephSettings) given = neph_settings_new();
+    if (!overrides_apply(o, given, NULL))
+        return;
+    g_auto(GStrv) unread = neph_settings_unread(settings, given);
+    for (char **line = unread; *line; line++)
+        tell("note", "%s", *line);
 }
 
 bool overrides_check(const overrides *o, unsigned *threads, GError **error)

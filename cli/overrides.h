@@ -19,6 +19,9 @@ typedef struct overrides {
 
 /** @brief Puts them over the settings. Errors name the option. */
 bool overrides_apply(const overrides *o, NephSettings *settings, GError **error);
+/** @brief Says which of them the integrator of the settings, which hold them, does not
+ * read. */
+void overrides_tell_unread(const overrides *o, const NephSettings *settings);
 /** @brief Threads to load a scene with, before its own settings are known: 0 = all.
  *  Refuses what overrides_apply would refuse, so that no scene is loaded in vain. */
 bool overrides_check(const overrides *o, unsigned *threads, GError **error);

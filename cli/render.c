@@ -34,7 +34,7 @@ static const GOptionEntry entries[] = {
     {"passes", 0, 0, G_OPTION_ARG_STRING, &given.settings.passes, "Number of passes",
      "N"},
     {"time", 0, 0, G_OPTION_ARG_STRING, &given.settings.time,
-     "End after so many seconds, with a picture", "SECONDS"},
+     "End after so many seconds (30s or 30), with a picture", "SECONDS"},
     {"noise", 0, 0, G_OPTION_ARG_STRING, &given.settings.noise,
      "Stop when the estimated relative error is below this", "X"},
     {"every", 0, 0, G_OPTION_ARG_STRING, &given.every,
@@ -158,6 +158,8 @@ static NephRender *prepare(job *j, NephScene *scene, GError **error)
         (!j->width || neph_scene_resize(scene, j->width, j->height, error)) &&
         choose_outputs(j, scene, error))
         render = neph_render_new(scene, settings, error);
+    if (render && !given.quiet)
+        overrides_tell_unread(&given.settings, settings);
     return render;
 }
 
@@ -179,10 +181,24 @@ static int write_images(const job *j, const NephRender *render, bool is_snapshot
     return result;
 }
 
+static void report_photons(const NephStatistics *s)
+{
+    uint64_t sent = 0;
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
+        sent += s->emitted[c];
+    if (s->photons_wanted > 0 && s->passes > 0)
+        tell("note",
+             "of photons = %" G_GINT64_FORMAT " a pass %" G_GUINT64_FORMAT
+             " were sent: more would not be worth their time here",
+             s->photons_wanted, sent / (uint64_t)s->passes);
+}
+
 static int write_statistics(const NephRender *render)
 {
     NephStatistics statistics;
     neph_render_statistics(render, &statistics);
+    if (!given.quiet)
+        report_photons(&statistics);
     g_autofree char *table = neph_statistics_text(&statistics, false);
     g_autofree char *json = neph_statistics_text(&statistics, true);
     g_autoptr(GError) error = NULL;

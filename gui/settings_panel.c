@@ -86,10 +86,7 @@ static void show_used(settings_panel *p)
     for (guint i = 0; i < p->controls->len; i++) {
         setting_control *c = p->controls->pdata[i];
         const NephSettingInfo *info = setting_control_info(c);
-        g_auto(GStrv) users = g_strsplit(info->users, " ", -1);
-        bool used = g_strv_contains((const char *const *)users, "all") ||
-                    g_strv_contains((const char *const *)users, integrator);
-        setting_control_set_used(c, used);
+        setting_control_set_used(c, neph_settings_reads(p->values, info->name));
     }
     gtk_widget_set_visible(p->switch_over, strcmp(integrator, "photonmap") != 0);
 }

@@ -182,6 +182,87 @@ static void test_order_of_settings(folder *f, gconstpointer data)
     }
 }
 
+/* Settings that do nothing are said, wherever they are set; those that act are not. */
+static void test_unread_settings(folder *f, gconstpointer data)
+{
+    (void)data;
+    static const struct {
+        const char *arguments;
+        unsigned notes;
+    } cases[] = {
+        {"--integrator auto --set final_gather=true", 1},
+        {"--integrator auto --set final_gather=false --set gather_rays=4", 2},
+        {"--integrator path --settings two.ini --set spp=1", 2},
+        {"--set final_gather=true --integrator photonmap", 0},
+        {"--integrator vcm --set photons=100 --passes 1 --seed 2 -j1", 0},
+    };
+    folder_write(f, "two.ini", "final_gather = true\nphotons = 100\n");
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autofree char *line =
+            g_strdup_printf("render box.pbrt --size 4x4 %s", cases[i].arguments);
+        g_auto(result) r = run(f, line);
+        g_assert_cmpint(r.code, ==, 0);
+        g_assert_cmpuint(count_parts(r.err, "is not read by"), ==, cases[i].notes);
+    }
+    g_auto(result) one = run(f, "render box.pbrt --size 4x4 --integrator auto "
+                                "--set final_gather=true");
+    contains(one.err, "note: final_gather is not read by auto, only by photonmap\n");
+    g_autofree char *scene = g_strconcat(
+        scene_head, "Integrator \"auto\" \"bool final_gather\" true\n", scene_body, NULL);
+    folder_write(f, "idle.pbrt", scene);
+    g_auto(result) in_file = run(f, "render idle.pbrt --size 4x4");
+    contains(in_file.err, "idle.pbrt:5:");
+    contains(in_file.err, "final_gather is not read by auto, only by photonmap\n");
+}
+
+/* auto sends no more photons than pay, also where more are asked for, and says so. */
+static void test_photons_capped(folder *f, gconstpointer data)
+{
+    (void)data;
+    g_auto(result) capped =
+        run(f, "render box.pbrt --integrator auto --set photons=100000000000");
+    g_assert_cmpint(capped.code, ==, 0);
+    contains(capped.err, "note: of photons = 100000000000 a pass ");
+    g_auto(result) all = run(f, "render box.pbrt --set photons=1000");
+    g_assert_null(strstr(all.err, "of photons"));
+}
+
+/* A letter may have its value at once, numbers their unit. */
+static void test_ways_to_say_it(folder *f, gconstpointer data)
+{
+    (void)data;
+    static const char *const same[] = {
+        "render box.pbrt -q -oa.pfm -sspp=2 -j1",
+        "render box.pbrt -qoa.pfm -s spp=2 -j 1",
+        "render -qj1 -oa.pfm --set spp=2 box.pbrt",
+        "render -q -j1 -o a.pfm --time 1000s --set 'spp = 2 samples/pixel' --passes 2 "
+        "-- box.pbrt",
+    };
+    g_autofree char *path = g_build_filename(f->path, "a.pfm", NULL);
+    g_autofree char *first = NULL;
+    gsize size = 0;
+    for (size_t i = 0; i < G_N_ELEMENTS(same); i++) {
+        run_well(f, same[i]);
+        g_autofree char *bytes = NULL;
+        gsize n = 0;
+        g_assert_true(g_file_get_contents(path, &bytes, &n, NULL));
+        g_assert_cmpint(g_remove(path), ==, 0);
+        if (first)
+            g_assert_cmpmem(bytes, n, first, size);
+        else
+            first = g_steal_pointer(&bytes), size = n;
+    }
+    static const char *const wrong[] = {"-jx", "-k1", "--time 30m", "--time s",
+                                        "--exposure -x"};
+    for (size_t i = 0; i < G_N_ELEMENTS(wrong); i++) {
+        g_autofree char *line = g_strdup_printf("render box.pbrt %s", wrong[i]);
+        g_auto(result) r = run(f, line);
+        g_assert_cmpint(r.code, ==, 2);
+    }
+    run_well(f, "render box.pbrt -q -o -j1.pfm"); /* a value that looks like an option */
+    g_assert_true(folder_has(f, "-j1.pfm"));
+}
+
 /* ---- When it ends ---- */
 
 static void test_stops_by_rules(folder *f, gconstpointer data)
@@ -408,6 +489,9 @@ int main(int argc, char **argv)
     folder_add_test("/cli/render/exposure-of-gltf", test_exposure_of_gltf);
     folder_add_test("/cli/render/exposure-of-pbrt", test_exposure_of_pbrt);
     folder_add_test("/cli/order", test_order_of_settings);
+    folder_add_test("/cli/render/unread", test_unread_settings);
+    folder_add_test("/cli/render/photons-capped", test_photons_capped);
+    folder_add_test("/cli/render/ways", test_ways_to_say_it);
     folder_add_test("/cli/render/stops-by-rules", test_stops_by_rules);
     folder_add_test("/cli/render/time-is-short", test_time_is_short);
     folder_add_test("/cli/render/every", test_every);

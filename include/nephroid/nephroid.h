@@ -99,6 +99,13 @@ NEPH_API bool neph_settings_set(NephSettings *settings, const char *name,
 /** @brief The value as text, owned by the caller (g_free); NULL if the name is unknown.
  */
 NEPH_API char *neph_settings_get(const NephSettings *settings, const char *name);
+/** @brief Whether the integrator of the settings reads one of that name. */
+NEPH_API bool neph_settings_reads(const NephSettings *settings, const char *name);
+/** @brief "NAME is not read by INTEGRATOR, only by ..." for each setting that `given` was
+ * told (neph_settings_set, neph_settings_load) and that the integrator of `settings` does
+ * not read. NULL-terminated, freed with g_strfreev. */
+NEPH_API char **neph_settings_unread(const NephSettings *settings,
+                                     const NephSettings *given);
 /** @brief Reads "name = value" lines; '#' begins a comment. NEPH_ERROR_INPUT with the
  * place of the first mistake; the settings are as they were. */
 NEPH_API bool neph_settings_load(NephSettings *settings, const char *path,
@@ -333,10 +340,12 @@ typedef struct NephStatistics {
     double radius[NEPH_N_PHOTON_CLASSES]; /**< m, of the last pass */
     uint64_t memory_peak, memory_photons; /**< bytes */
     uint64_t n_not_finite; /**< samples dropped since they were not finite */
-    double noise;  /**< relative error of the image, estimated from the scatter of its
-                      passes; INFINITY while there are too few. While rendering it is only
-                      kept if the setting `noise` asks for it. */
-    bool can_look; /**< neph_render_image may be called now */
+    double noise; /**< relative error of the image, estimated from the scatter of its
+                     passes; INFINITY while there are too few. While rendering it is only
+                     kept if the setting `noise` asks for it. */
+    int64_t photons_wanted; /**< a pass by the settings, if fewer are sent since that is
+                               worth more; else 0 */
+    bool can_look;          /**< neph_render_image may be called now */
     int grid; /**< while no pass is done: every so manieth pixel is, in both directions;
                  0: none yet */
     NephStop stopped_by;

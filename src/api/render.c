@@ -31,6 +31,7 @@ NephStatistics statistics_export(const render_statistics *from)
                           .memory_photons = from->memory_photons,
                           .n_not_finite = from->n_not_finite,
                           .noise = from->noise,
+                          .photons_wanted = from->photons_wanted,
                           .can_look = from->can_look,
                           .grid = from->grid,
                           .stopped_by = (NephStop)from->stopped_by};

@@ -64,6 +64,17 @@ char *neph_settings_get(const NephSettings *s, const char *name)
     return row ? settings_get(&s->values, row) : NULL;
 }
 
+bool neph_settings_reads(const NephSettings *s, const char *name)
+{
+    const setting_row *row = settings_find(name);
+    return row && settings_reads(&s->values, row);
+}
+
+char **neph_settings_unread(const NephSettings *s, const NephSettings *given)
+{
+    return settings_unread(&s->values, &given->values);
+}
+
 bool neph_settings_load(NephSettings *s, const char *path, GError **error)
 {
     return settings_load(&s->values, path, error);

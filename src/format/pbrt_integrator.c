@@ -250,8 +250,13 @@ static void apply_own(pbrt_parser *parser, const sampling *samples)
         set_count(parser, samples->where->place, "spp", samples->pixel_samples);
     for (guint i = 0; i < p->list->len; i++) {
         const param *q = p->list->pdata[i];
-        if (settings_find(q->name))
-            set_from_param(parser, params_find(p, q->name));
+        const setting_row *row = settings_find(q->name);
+        if (!row)
+            continue;
+        set_from_param(parser, params_find(p, q->name));
+        g_autofree char *unread = settings_unread_note(&parser->scene->settings, row);
+        if (unread)
+            note(parser, q->place, "%s", unread);
     }
 }
 

@@ -463,6 +463,18 @@ static bool set_pace(render *r, GError **error)
     return r->paced = true;
 }
 
+/* Says so where the plan has clearly fewer photons than were asked for. */
+static void note_photons(render *r)
+{
+    const settings *how = &r->plan.how;
+    double planned = 0.0;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        planned += (double)r->plan.n_photons[c];
+    bool fewer = planned + N_PHOTON_CLASSES < (double)how->photons;
+    r->statistics.photons_wanted =
+        fewer && settings_reads(how, settings_find("photons")) ? how->photons : 0;
+}
+
 static bool prepare(render *r, GError **error)
 {
     double start = seconds();
@@ -471,6 +483,7 @@ static bool prepare(render *r, GError **error)
     r->prepared =
         set_pace(r, error) && transport_plan_prepare(&r->plan, &r->cancel, error);
     r->statistics.time_prepare += seconds() - start;
+    note_photons(r);
     return r->prepared;
 }
 

@@ -28,8 +28,9 @@ typedef struct render_statistics {
     double radius[N_PHOTON_CLASSES]; /**< m, of the last pass */
     uint64_t memory_peak, memory_photons;
     uint64_t n_not_finite;
-    double noise;  /**< relative error of the picture (film_noise), INFINITY if unknown */
-    bool can_look; /**< render_image may be called now */
+    double noise; /**< relative error of the picture (film_noise), INFINITY if unknown */
+    int64_t photons_wanted; /**< a pass by the settings, if the plan has fewer; else 0 */
+    bool can_look;          /**< render_image may be called now */
     int grid; /**< of the first pass every so manieth pixel is done in both directions;
                  0: none yet */
     render_stop stopped_by;

@@ -53,6 +53,31 @@ bool settings_reads(const settings *s, const setting_row *row)
            g_strv_contains((const char *const *)users, integrator);
 }
 
+char *settings_unread_note(const settings *s, const setting_row *row)
+{
+    const char *integrator = settings_find("integrator")->words[s->integrator];
+    if (settings_reads(s, row))
+        return NULL;
+    g_auto(GStrv) users = g_strsplit(row->users, " ", -1);
+    g_autofree char *only = g_strjoinv(", ", users);
+    return g_strdup_printf("%s is not read by %s, only by %s", row->name, integrator,
+                           only);
+}
+
+GStrv settings_unread(const settings *s, const settings *given)
+{
+    g_autoptr(GStrvBuilder) builder = g_strv_builder_new();
+    size_t n;
+    const setting_row *rows = settings_table(&n);
+    for (size_t i = 0; i < n; i++) {
+        bool was_given = given->given >> i & 1;
+        g_autofree char *line = was_given ? settings_unread_note(s, &rows[i]) : NULL;
+        if (line)
+            g_strv_builder_add(builder, line);
+    }
+    return g_strv_builder_end(builder);
+}
+
 int64_t settings_most_passes(const settings *s)
 {
     bool other_rule = s->time > 0.0 || s->noise > 0.0;
@@ -147,6 +172,17 @@ static bool is_in_range(const setting_row *row, double x)
     return (x >= row->low && x <= row->high) || is_none;
 }
 
+/** The row's unit may stand behind a number, as in "30s" or "0.5 m". */
+static bool read_quantity(const setting_row *row, const char *text, double *out)
+{
+    g_autofree char *number = g_strdup(text);
+    if (*row->unit && g_str_has_suffix(number, row->unit)) {
+        number[strlen(number) - strlen(row->unit)] = '\0';
+        g_strchomp(number);
+    }
+    return read_number(number, out) && is_in_range(row, *out);
+}
+
 static bool read_value(const setting_row *row, const char *text, double *out)
 {
     switch (row->type) {
@@ -156,10 +192,9 @@ static bool read_value(const setting_row *row, const char *text, double *out)
         return read_choice(row->words, text, out);
     case SETTING_COUNT:
         return read_apart(row, text, out) ||
-               (read_number(text, out) && is_in_range(row, *out) &&
-                fabs(*out - rint(*out)) <= 0.0);
+               (read_quantity(row, text, out) && fabs(*out - rint(*out)) <= 0.0);
     case SETTING_REAL:
-        return read_number(text, out) && is_in_range(row, *out);
+        return read_quantity(row, text, out);
     }
     return false;
 }
@@ -240,8 +275,11 @@ bool settings_set(settings *s, const char *name, const char *value, GError **err
         return false;
     }
     g_autofree char *text = g_strstrip(g_strdup(value));
-    if (set_row(s, row, name, text))
+    if (set_row(s, row, name, text)) {
+        size_t n;
+        s->given |= (uint64_t)1 << (row - settings_table(&n));
         return true;
+    }
     g_autofree char *words = expected(row, name);
     error_set(error, ERROR_USAGE, "setting '%s': expected %s, found '%s'", name, words,
               text);

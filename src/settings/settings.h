@@ -76,6 +76,7 @@ typedef struct settings {
     double alpha;       /**< Knaus & Zwicker 2011 */
     int64_t seed;
     int64_t threads; /**< 0: one per processor */
+    uint64_t given;  /**< bit i: row i of the table was set, by whatever name */
 } settings;
 
 typedef enum setting_type {
@@ -107,6 +108,12 @@ const setting_row *settings_table(size_t *n);
 const setting_row *settings_find(const char *name);
 /** @brief Whether the integrator that is set reads the row. */
 bool settings_reads(const settings *s, const setting_row *row);
+/** @brief "NAME is not read by INTEGRATOR, only by ...", owned by the caller; NULL: it
+ * is.
+ */
+char *settings_unread_note(const settings *s, const setting_row *row);
+/** @brief That of each row that was set in `given`; owned by the caller. */
+GStrv settings_unread(const settings *s, const settings *given);
 settings settings_default(void);
 /** @brief Passes after which a render ends at the latest. */
 int64_t settings_most_passes(const settings *s);

@@ -174,6 +174,7 @@ static const setting_row table[] = {
 };
 
 enum { N_ROWS = sizeof table / sizeof *table };
+_Static_assert(N_ROWS <= 64, "settings.given has a bit for each");
 
 const setting_row *settings_table(size_t *n)
 {
