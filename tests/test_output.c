@@ -138,6 +138,54 @@ static void test_output_keeps_links_and_umask(void)
     g_remove(path);
 }
 
+static mode_t mode_of(const char *path)
+{
+    struct stat info;
+    g_assert_cmpint(stat(path, &info), ==, 0);
+    return info.st_mode & 07777;
+}
+
+/* Also while it is being written. */
+static void test_output_keeps_permissions(void)
+{
+    static const mode_t modes[] = {0600, 0640, 0400, 0644, 0666, 0755};
+    g_autofree char *path = g_build_filename(folder, "private.txt", NULL);
+    mode_t old = umask(022);
+    for (size_t i = 0; i < G_N_ELEMENTS(modes); i++) {
+        g_assert_true(output_write_text(path, "one", NULL));
+        g_assert_cmpint(mode_of(path), ==, i == 0 ? 0644 : modes[i - 1]);
+        g_assert_cmpint(chmod(path, modes[i]), ==, 0);
+        output *out = output_open(path, NULL);
+        g_assert_nonnull(out);
+        struct stat info;
+        g_assert_cmpint(fstat(fileno(output_stream(out)), &info), ==, 0);
+        g_assert_cmpint(info.st_mode & 07777, ==, modes[i]);
+        fputs("two", output_stream(out));
+        g_assert_true(output_commit(out, NULL));
+        g_assert_cmpint(mode_of(path), ==, modes[i]);
+    }
+    umask(old);
+    g_remove(path);
+}
+
+/* Only root may give files away; others keep their own. */
+static void test_output_keeps_owner(void)
+{
+    if (geteuid() != 0) {
+        g_test_skip("needs root");
+        return;
+    }
+    g_autofree char *path = g_build_filename(folder, "owned.txt", NULL);
+    g_assert_true(output_write_text(path, "one", NULL));
+    g_assert_cmpint(chown(path, 65534, 65534), ==, 0);
+    g_assert_true(output_write_text(path, "two", NULL));
+    struct stat info;
+    g_assert_cmpint(stat(path, &info), ==, 0);
+    g_assert_cmpuint(info.st_uid, ==, 65534);
+    g_assert_cmpuint(info.st_gid, ==, 65534);
+    g_remove(path);
+}
+
 static void test_output_refuses(void)
 {
     const char *const bad[] = {"/nowhere/at/all.txt", folder, ""};
@@ -225,6 +273,8 @@ int main(int argc, char **argv)
     g_test_add_func("/json/numbers", test_numbers_come_back);
     g_test_add_func("/output/whole", test_output_is_whole_or_absent);
     g_test_add_func("/output/links", test_output_keeps_links_and_umask);
+    g_test_add_func("/output/permissions", test_output_keeps_permissions);
+    g_test_add_func("/output/owner", test_output_keeps_owner);
     g_test_add_func("/output/refuses", test_output_refuses);
     g_test_add_func("/output/abandons", test_output_abandons);
     g_test_add_func("/output/spares", test_output_spares);

@@ -66,8 +66,20 @@ static char *resolve(const char *path)
     return copy;
 }
 
-/* Not mkstemp: the file is to have the permissions that the user's umask gives. */
-static FILE *open_temporary(output *out)
+/* The new file takes the old one's place with its owner and its permissions, but where it
+ * cannot be given to that group, the group loses them. */
+static bool take_over(int fd, const struct stat *old)
+{
+    mode_t mode = old->st_mode & 0777;
+    if (fchown(fd, old->st_uid, old->st_gid) != 0 &&
+        fchown(fd, (uid_t)-1, old->st_gid) != 0)
+        mode &= ~(mode_t)S_IRWXG;
+    return fchmod(fd, mode) == 0;
+}
+
+/* Not mkstemp: a new file is to have the permissions that the user's umask gives, and one
+ * that replaces another is nobody else's before it has those of the old one. */
+static FILE *open_temporary(output *out, const struct stat *old)
 {
     g_autofree char *folder = g_path_get_dirname(out->path);
     g_autofree char *name = g_path_get_basename(out->path);
@@ -77,7 +89,15 @@ static FILE *open_temporary(output *out)
         if (out->node)
             g_free(atomic_exchange(&out->node->path, NULL));
         out->node = note_unfinished(out->temporary);
-        int fd = open(out->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        int fd = open(out->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
+                      old ? 0600 : 0666);
+        if (fd >= 0 && old && !take_over(fd, old)) {
+            int reason = errno;
+            close(fd);
+            unlink(out->temporary);
+            errno = reason;
+            break;
+        }
         if (fd >= 0)
             return fdopen(fd, "wb");
         if (errno != EEXIST)
@@ -99,7 +119,7 @@ output *output_open(const char *path, GError **error)
     else if (exists && !S_ISREG(info.st_mode))
         out->stream = fopen(out->path, "wb");
     else
-        out->stream = open_temporary(out);
+        out->stream = open_temporary(out, exists ? &info : NULL);
     if (!out->stream) {
         error_set(error, ERROR_INPUT, "cannot write %s: %s", path, g_strerror(errno));
         output_free(out);

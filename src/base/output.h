@@ -4,7 +4,8 @@
  *
  *   output_open ─► write to output_stream ─► output_commit   or   output_discard
  *
- * What is not a regular file (/dev/stdout, a pipe) is written directly.
+ * A file that was there keeps its owner and permissions; a new one has those that the umask
+ * leaves. What is not a regular file (/dev/stdout, a pipe) is written directly.
  */
 #pragma once
 

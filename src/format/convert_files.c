@@ -1,5 +1,6 @@
 #include "format/convert_files.h"
 
+#include "base/output.h"
 #include "scene/scene.h"
 
 #include <errno.h>
