@@ -446,7 +446,7 @@ static void test_read_refuses(void)
     assert_refused(error, ERROR_INPUT, "/no/such/file.png");
     error = NULL;
     g_assert_null(image_read(folder, NULL, &error));
-    assert_refused(error, ERROR_INPUT, "not a file");
+    assert_refused(error, ERROR_INPUT, "which is none");
     error = NULL;
     g_assert_null(read_bytes("GIF89a", 6, &error));
     assert_refused(error, ERROR_INPUT, "not an image");

@@ -14,6 +14,7 @@
  */
 #include "api/objects.h"
 
+#include "base/input.h"
 #include "base/output.h"
 
 #include <string.h>
@@ -198,12 +199,10 @@ static char *changed_text(const NephCamera *c, const char *text, const char *dir
 
 bool neph_camera_save(const NephCamera *c, const char *path, GError **error)
 {
-    g_autofree char *text = NULL;
-    g_autoptr(GError) inner = NULL;
-    if (!g_file_get_contents(path, &text, NULL, &inner)) {
-        error_set(error, ERROR_INPUT, "%s: %s", path, inner->message);
+    g_autoptr(GBytes) bytes = input_bytes(path, error);
+    if (!bytes)
         return false;
-    }
+    const char *text = g_bytes_get_data(bytes, NULL);
     const char *directive = find_directive(text, "Camera");
     if (!directive) {
         error_set(error, ERROR_INPUT,

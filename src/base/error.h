@@ -38,6 +38,10 @@ char *source_place_text(source_place place);
 void error_at(GError **error, source_place place, const char *format, ...)
     G_GNUC_PRINTF(3, 4);
 
+/** @brief Sets an error with the code of `inner` and the place before its message; frees
+ * inner. */
+void error_move_at(GError **error, source_place place, GError *inner);
+
 /** @brief Sets an error with the given code. */
 void error_set(GError **error, error_code code, const char *format, ...)
     G_GNUC_PRINTF(3, 4);

@@ -1,6 +1,6 @@
 #include "format/convert_files.h"
 
-#include "base/output.h"
+#include "base/input.h"
 #include "scene/scene.h"
 
 #include <errno.h>
@@ -87,13 +87,10 @@ static char *free_name(converted_files *f, const char *path)
 
 static GBytes *bytes_of(converted_files *f, const char *path)
 {
-    char *data;
-    gsize size;
     GBytes *inside = g_hash_table_lookup(f->scene->build.files, path);
     if (inside)
         return g_bytes_ref(inside);
-    return g_file_get_contents(path, &data, &size, NULL) ? g_bytes_new_take(data, size)
-                                                         : NULL;
+    return input_bytes(path, NULL);
 }
 
 const char *converted_files_copy(converted_files *f, const char *path)

@@ -3,10 +3,10 @@
  */
 #include "format/format.h"
 
+#include "base/input.h"
 #include "base/intern.h"
 #include "format/reader.h"
 
-#include <glib/gstdio.h>
 #include <string.h>
 
 static const format_reader *const readers[] = {&pbrt_reader, &gltf_reader, &ply_reader,
@@ -18,11 +18,7 @@ static const format_reader *recognise(const char *path)
 {
     char bytes[512];
     const format_reader *found = NULL;
-    FILE *file = g_file_test(path, G_FILE_TEST_IS_REGULAR) ? g_fopen(path, "rbe") : NULL;
-    if (!file)
-        return NULL;
-    size_t size = fread(bytes, 1, sizeof bytes, file);
-    fclose(file);
+    size_t size = input_peek(path, bytes, sizeof bytes);
     for (size_t i = 0; i < G_N_ELEMENTS(readers) && !found; i++)
         if (readers[i]->recognises && readers[i]->recognises(bytes, size))
             found = readers[i];

@@ -5,11 +5,11 @@
  */
 #include "format/gltf.h"
 
+#include "base/input.h"
 #include "base/intern.h"
 #include "base/memory.h"
 #include "format/defaults.h"
 #include "format/gltf_extensions.h"
-#include "format/input.h"
 #include "format/reader.h"
 
 #include <string.h>
@@ -345,7 +345,7 @@ static bool read_gltf(scene *s, const char *path, GError **error)
     input in;
     g_autoptr(GError) inner = NULL;
     if (!input_open(&in, path, &inner)) {
-        error_at(error, (source_place){intern(path), 0, 0}, "%s", inner->message);
+        error_move_at(error, (source_place){intern(path), 0, 0}, g_steal_pointer(&inner));
         return false;
     }
     g_autofree char *absolute = g_canonicalize_filename(path, NULL);

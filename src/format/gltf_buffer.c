@@ -10,6 +10,7 @@
  */
 #include "format/gltf.h"
 
+#include "base/input.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -64,13 +65,9 @@ GBytes *gltf_uri_bytes(gltf *g, const json_value *at, const char *uri)
         return NULL;
     g_autoptr(GError) error = NULL;
     scene_sources_add(g->scene->build.sources, path);
-    GMappedFile *map = g_mapped_file_new(path, FALSE, &error);
-    if (!map) {
-        json_fail(at, "%s", error->message);
-        return NULL;
-    }
-    GBytes *bytes = g_mapped_file_get_bytes(map);
-    g_mapped_file_unref(map);
+    GBytes *bytes = input_bytes(path, &error);
+    if (!bytes)
+        gltf_take_error(g, at, g_steal_pointer(&error));
     return bytes;
 }
 

@@ -4,9 +4,9 @@
  */
 #include "format/pbrt_parser.h"
 
+#include "base/input.h"
 #include "base/intern.h"
 #include "base/memory.h"
-#include "format/input.h"
 #include "format/reader.h"
 
 #include <string.h>
@@ -203,10 +203,11 @@ static void include_with(pbrt_parser *parser, const char *name, source_place pla
         return;
     }
     input in;
-    g_autoptr(GError) error = NULL;
+    GError *inner = NULL, *error = NULL;
     scene_sources_add(parser->scene->build.sources, path);
-    if (!input_open(&in, path, &error)) {
-        pbrt_error(parser, place, "%s", error->message);
+    if (!input_open(&in, path, &inner)) {
+        error_move_at(&error, place, inner);
+        pbrt_report(parser, error);
         return;
     }
     lexer words = lexer_new(path, in.data, in.size);
@@ -392,9 +393,9 @@ static void read_main(pbrt_parser *parser, const char *path, const input *in)
 static bool read_pbrt(scene *s, const char *path, GError **error)
 {
     input in;
-    g_autoptr(GError) inner = NULL;
+    GError *inner = NULL;
     if (!input_open(&in, path, &inner)) {
-        error_at(error, (source_place){intern(path), 0, 0}, "%s", inner->message);
+        error_move_at(error, (source_place){intern(path), 0, 0}, inner);
         return false;
     }
     pbrt_parser parser;

@@ -303,10 +303,7 @@ static bool add_ply(pbrt_parser *parser, const params *p, const shape_place *at,
     scene_sources_add(parser->scene->build.sources, path);
     if (ply_read(path, &m, &inner))
         return scene_add_mesh(parser->scene, &m, at, named, error);
-    if (g_error_matches(inner, NEPH_ERROR, ERROR_FAILED))
-        g_propagate_error(error, g_steal_pointer(&inner));
-    else
-        error_at(error, named, "%s", inner->message);
+    error_move_at(error, named, g_steal_pointer(&inner));
     return false;
 }
 

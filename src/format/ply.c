@@ -9,7 +9,7 @@
 
 #include "base/intern.h"
 #include "base/memory.h"
-#include "format/input.h"
+#include "base/input.h"
 #include "format/ply_values.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
  */
 #include "format/spectrum_file.h"
 
-#include "format/input.h"
+#include "base/input.h"
 #include "format/lexer.h"
 #include "format/number.h"
 
@@ -27,9 +27,9 @@ static bool read_pairs(lexer *words, GArray *numbers, GError **error)
 GArray *spectrum_file_read(const char *path, source_place place, GError **error)
 {
     input in;
-    g_autoptr(GError) inner = NULL;
+    GError *inner = NULL;
     if (!input_open(&in, path, &inner)) {
-        error_at(error, place, "%s", inner->message);
+        error_move_at(error, place, inner);
         return NULL;
     }
     lexer words = lexer_new(path, in.data, in.size);

@@ -1,5 +1,7 @@
 #include "image/codec.h"
 
+#include "base/input.h"
+#include "base/memory.h"
 #include "base/output.h"
 
 #include <limits.h>
@@ -91,18 +93,6 @@ static const image_codec *codec_of_content(const image_source *source)
     return NULL;
 }
 
-static char *read_whole_file(const char *path, size_t *size, GError **error)
-{
-    char *bytes = NULL;
-    g_autoptr(GError) why = NULL;
-    if (g_file_test(path, G_FILE_TEST_EXISTS) &&
-        !g_file_test(path, G_FILE_TEST_IS_REGULAR))
-        error_set(error, ERROR_INPUT, "%s: not a file", path);
-    else if (!g_file_get_contents(path, &bytes, size, &why))
-        error_set(error, ERROR_INPUT, "%s: cannot be read: %s", path, why->message);
-    return bytes;
-}
-
 /* The message of a failure that did not name the file (memory) is made to name it. */
 static void name_file(const char *path, GError **error)
 {
@@ -129,12 +119,13 @@ static image *read_source(const image_source *source, const image_read_options *
 
 image *image_read(const char *path, const image_read_options *options, GError **error)
 {
-    size_t size = 0;
-    g_autofree char *bytes = read_whole_file(path, &size, error);
-    if (!bytes)
+    input in;
+    if (!input_read(&in, path, error))
         return NULL;
-    image_source source = {path, (const uint8_t *)bytes, size};
-    return read_source(&source, options, error);
+    image_source source = {path, (const uint8_t *)in.data, in.size};
+    image *img = read_source(&source, options, error);
+    input_close(&in);
+    return img;
 }
 
 /* Codecs may read the zero behind the bytes. */
@@ -143,12 +134,15 @@ image *image_read_bytes(const char *name, GBytes *bytes,
 {
     gsize size;
     const uint8_t *data = g_bytes_get_data(bytes, &size);
-    g_autofree uint8_t *copy = g_malloc(size + 1);
+    uint8_t *copy = big_alloc(size + 1, 1, name, error);
+    if (!copy)
+        return NULL;
     if (size)
         memcpy(copy, data, size);
-    copy[size] = 0;
     image_source source = {name, copy, size};
-    return read_source(&source, options, error);
+    image *img = read_source(&source, options, error);
+    big_free(copy);
+    return img;
 }
 
 /* ---- writing ---- */

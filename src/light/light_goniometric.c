@@ -8,6 +8,7 @@
  * own efficacy: ∫ ȳ I dλ is candela / 683. The table is resampled to half degrees and
  * scaled so that its integral, the lumens, stays exactly.
  */
+#include "base/input.h"
 #include "light/ies.h"
 #include "light/light_kinds.h"
 #include "params/build_context.h"
@@ -65,15 +66,17 @@ static bool take_profile(goniometric_light *l, const ies_profile *ies, source_pl
 static bool read_profile(goniometric_light *l, const char *path, source_place place,
                          GError **error)
 {
-    g_autofree char *text = NULL;
-    g_autoptr(GError) inner = NULL;
+    GError *inner = NULL;
     ies_profile ies = {0};
-    if (!g_file_get_contents(path, &text, NULL, &inner) ||
-        !ies_read(&ies, text, &inner)) {
-        error_at(error, place, "%s: %s", path, inner->message);
-        return false;
-    }
-    bool done = take_profile(l, &ies, place, error);
+    input in;
+    bool done = input_read(&in, path, &inner);
+    if (done && !(done = ies_read(&ies, in.data, &inner)))
+        g_prefix_error(&inner, "%s: ", path);
+    input_close(&in);
+    if (done)
+        done = take_profile(l, &ies, place, error);
+    else
+        error_move_at(error, place, inner);
     ies_clear(&ies);
     return done;
 }

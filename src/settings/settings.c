@@ -6,6 +6,7 @@
  */
 #include "settings/settings.h"
 
+#include "base/input.h"
 #include "base/intern.h"
 #include "base/json.h"
 #include "settings/settings_table.h"
@@ -329,16 +330,8 @@ static bool load_line(settings *s, char *line, source_place place, GError **erro
     return false;
 }
 
-bool settings_load(settings *s, const char *path, GError **error)
+static bool load_lines(settings *s, char *text, source_place place, GError **error)
 {
-    g_autofree char *text = NULL;
-    g_autoptr(GError) inner = NULL;
-    source_place place = {intern(path), 0, 0};
-    size_t length = 0;
-    if (!g_file_get_contents(path, &text, &length, &inner)) {
-        error_at(error, place, "cannot read settings: %s", inner->message);
-        return false;
-    }
     settings loaded = *s;
     char *line = text;
     while (line) {
@@ -352,4 +345,18 @@ bool settings_load(settings *s, const char *path, GError **error)
     }
     *s = loaded;
     return true;
+}
+
+bool settings_load(settings *s, const char *path, GError **error)
+{
+    g_autoptr(GError) inner = NULL;
+    source_place place = {intern(path), 0, 0};
+    input in;
+    if (!input_read(&in, path, &inner)) {
+        error_at(error, place, "cannot read settings: %s", inner->message);
+        return false;
+    }
+    bool done = load_lines(s, in.data, place, error);
+    input_close(&in);
+    return done;
 }

@@ -101,10 +101,10 @@ picture *picture_read(const build_context *context, const params *p, const char 
         error_at(error, p->place, "expected \"string %s\", found none", name);
         return NULL;
     }
-    g_autoptr(GError) inner = NULL;
+    GError *inner = NULL;
     picture *pic = picture_read_file(context, path, options, &inner);
     if (!pic)
-        error_at(error, params_find(p, name)->place, "%s", inner->message);
+        error_move_at(error, params_find(p, name)->place, inner);
     return pic;
 }
 

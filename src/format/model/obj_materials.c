@@ -5,6 +5,7 @@
  */
 #include "format/model/obj_materials.h"
 
+#include "base/input.h"
 #include "format/model/importer.h"
 
 #include <string.h>
@@ -39,13 +40,10 @@ static char *after(const char *word, const char *line, size_t length)
 
 static bool each_line(obj_names *names, const char *path, line_func told)
 {
-    g_autoptr(GMappedFile) file = g_file_test(path, G_FILE_TEST_IS_REGULAR)
-                                      ? g_mapped_file_new(path, FALSE, NULL)
-                                      : NULL;
-    if (!file)
+    input in;
+    if (!input_read(&in, path, NULL))
         return false;
-    const char *at = g_mapped_file_get_contents(file);
-    const char *end = at + g_mapped_file_get_length(file);
+    const char *at = in.data, *end = in.data + in.size;
     while (at < end) {
         const char *stop = memchr(at, '\n', (size_t)(end - at));
         stop = stop ? stop : end;
@@ -54,6 +52,7 @@ static bool each_line(obj_names *names, const char *path, line_func told)
         told(names, at, (size_t)(stop - at));
         at = stop + 1;
     }
+    input_close(&in);
     return true;
 }
 

@@ -1,7 +1,9 @@
 /*
- * Whole input files, mapped or inflated.
+ * Input files, read whole rather than mapped: a file that someone cuts short while it is
+ * mapped ends the program. Names come from scenes, and a scene may be a stranger's: a
+ * pipe or a device is not waited for but refused.
  */
-#include "format/input.h"
+#include "base/input.h"
 
 #include "base/memory.h"
 
@@ -10,6 +12,7 @@
 #include <glib/gstdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 #include <zlib.h>
 
 /** Inflated bytes; grows by doubling. */
@@ -86,38 +89,74 @@ static bool unpack(input *in, GError **error)
         big_free(out.data);
         return false;
     }
-    in->inflated = out.data;
-    in->data = out.data;
-    in->size = out.size;
+    big_free(in->data);
+    *in = (input){out.data, out.size};
     return true;
 }
 
-static GMappedFile *map_file(const char *path, GError **error)
+/* Opening a pipe that nobody writes to would wait. */
+static int open_regular(const char *path, GStatBuf *status, GError **error)
+{
+    int fd = g_open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0);
+    if (fd < 0 || fstat(fd, status) != 0)
+        error_set(error, ERROR_INPUT, "cannot open '%s': %s", path, g_strerror(errno));
+    else if (!S_ISREG(status->st_mode))
+        error_set(error, ERROR_INPUT, "expected a file, found '%s', which is none", path);
+    else
+        return fd;
+    if (fd >= 0)
+        close(fd);
+    return -1;
+}
+
+/* Bytes read, up to size or the end of the file; -1 with errno. */
+static ssize_t fill(int fd, char *to, size_t size)
+{
+    size_t done = 0;
+    while (done < size) {
+        ssize_t n = read(fd, to + done, MIN(size - done, (size_t)1 << 30));
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n < 0)
+            return -1;
+        if (n == 0)
+            break;
+        done += (size_t)n;
+    }
+    return (ssize_t)done;
+}
+
+static bool read_all(input *in, int fd, size_t size, const char *path, GError **error)
+{
+    in->data = big_alloc(size + 1, 1, path, error);
+    if (!in->data)
+        return false;
+    ssize_t n = fill(fd, in->data, size);
+    if (n >= 0) {
+        in->size = (size_t)n;
+        return true;
+    }
+    error_set(error, ERROR_INPUT, "cannot read '%s': %s", path, g_strerror(errno));
+    input_close(in);
+    return false;
+}
+
+bool input_read(input *in, const char *path, GError **error)
 {
     GStatBuf status;
-    int fd = g_open(path, O_RDONLY | O_CLOEXEC, 0);
-    if (fd < 0 || fstat(fd, &status) != 0) {
-        error_set(error, ERROR_INPUT, "cannot open '%s': %s", path, g_strerror(errno));
-        return NULL;
-    }
-    GMappedFile *map = NULL;
-    g_autoptr(GError) inner = NULL;
-    if (!S_ISREG(status.st_mode))
-        error_set(error, ERROR_INPUT, "expected a file, found '%s', which is none", path);
-    else if (!(map = g_mapped_file_new_from_fd(fd, FALSE, &inner)))
-        error_set(error, ERROR_INPUT, "cannot read '%s': %s", path, inner->message);
-    g_close(fd, NULL);
-    return map;
+    *in = (input){0};
+    int fd = open_regular(path, &status, error);
+    if (fd < 0)
+        return false;
+    bool done = read_all(in, fd, (size_t)status.st_size, path, error);
+    close(fd);
+    return done;
 }
 
 bool input_open(input *in, const char *path, GError **error)
 {
-    *in = (input){0};
-    in->map = map_file(path, error);
-    if (!in->map)
+    if (!input_read(in, path, error))
         return false;
-    in->size = g_mapped_file_get_length(in->map);
-    in->data = in->size ? g_mapped_file_get_contents(in->map) : "";
     bool is_gzip = in->size >= 2 && memcmp(in->data, "\x1f\x8b", 2) == 0;
     if (!is_gzip || unpack(in, error))
         return true;
@@ -126,10 +165,26 @@ bool input_open(input *in, const char *path, GError **error)
     return false;
 }
 
+size_t input_peek(const char *path, char *to, size_t size)
+{
+    GStatBuf status;
+    int fd = open_regular(path, &status, NULL);
+    ssize_t n = fd < 0 ? 0 : fill(fd, to, size);
+    if (fd >= 0)
+        close(fd);
+    return n < 0 ? 0 : (size_t)n;
+}
+
+GBytes *input_bytes(const char *path, GError **error)
+{
+    input in;
+    if (!input_read(&in, path, error))
+        return NULL;
+    return g_bytes_new_with_free_func(in.data, in.size, big_free, in.data);
+}
+
 void input_close(input *in)
 {
-    if (in->map)
-        g_mapped_file_unref(in->map);
-    big_free(in->inflated);
+    big_free(in->data);
     *in = (input){0};
 }
