@@ -6,13 +6,26 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Names in results come from files too. */
+static char *printable_lines(const char *text)
+{
+    g_auto(GStrv) lines = g_strsplit(text, "\n", -1);
+    for (char **line = lines; *line; line++) {
+        char *shown = neph_text_printable(*line);
+        g_free(*line);
+        *line = shown;
+    }
+    return g_strjoinv("\n", lines);
+}
+
 int print_result(const char *format, ...)
 {
     va_list args;
     va_start(args, format);
     g_autofree char *text = g_strdup_vprintf(format, args);
     va_end(args);
-    if (fputs(text, stdout) >= 0 && fflush(stdout) == 0)
+    g_autofree char *shown = printable_lines(text);
+    if (fputs(shown, stdout) >= 0 && fflush(stdout) == 0)
         return EXIT_DONE;
     tell("error", "cannot write to standard output: %s", g_strerror(errno));
     return EXIT_FAILED;
@@ -24,7 +37,8 @@ void say(const char *format, ...)
     va_start(args, format);
     g_autofree char *text = g_strdup_vprintf(format, args);
     va_end(args);
-    fprintf(stderr, "nephroid: %s\n", text);
+    g_autofree char *shown = neph_text_printable(text);
+    fprintf(stderr, "nephroid: %s\n", shown);
 }
 
 /* Length of a place without the ":LINE" or ":LINE:COLUMN" at its end. */
@@ -60,8 +74,9 @@ void tell(const char *level, const char *format, ...)
     va_start(args, format);
     g_autofree char *text = g_strdup_vprintf(format, args);
     va_end(args);
-    const char *what = behind_place(text);
-    fprintf(stderr, "%.*s%s: %s\n", (int)(what - text), text, level, what);
+    g_autofree char *shown = neph_text_printable(text);
+    const char *what = behind_place(shown);
+    fprintf(stderr, "%.*s%s: %s\n", (int)(what - shown), shown, level, what);
 }
 
 static int exit_code(const GError *error)

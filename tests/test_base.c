@@ -6,6 +6,7 @@
 #include "base/intern.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/printable.h"
 
 #include <stdint.h>
 
@@ -15,6 +16,28 @@ static void test_error_names_its_place(void)
     error_at(&error, (source_place){"box.pbrt", 7, 3}, "expected %s", "a number");
     g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
     g_assert_cmpstr(error->message, ==, "box.pbrt:7:3: expected a number");
+}
+
+static void test_printable(void)
+{
+    static const char *const cases[][2] = {
+        {"", ""},
+        {"plain \"text\" \\ 1", "plain \"text\" \\ 1"},
+        {"gl\303\244sern \346\227\245\346\234\254 \360\237\230\200",
+         "gl\303\244sern \346\227\245\346\234\254 \360\237\230\200"},
+        {"\033[31m", "\\x1b[31m"},
+        {"a\nb\tc\rd", "a\\nb\\tc\\x0dd"},
+        {"\177", "\\x7f"},
+        {"\302\233", "\\u009b"},
+        {"\342\200\250\342\200\256", "\\u2028\\u202e"},
+        {"\377\303", "\\xff\\xc3"},
+        {"\340\200\200", "\\xe0\\x80\\x80"}, /* zero, written too long */
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autofree char *once = printable(cases[i][0]), *twice = printable(once);
+        g_assert_cmpstr(once, ==, cases[i][1]);
+        g_assert_cmpstr(twice, ==, once);
+    }
 }
 
 static void test_allocation_is_aligned_and_zeroed(void)
@@ -93,6 +116,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/base/error/place", test_error_names_its_place);
+    g_test_add_func("/base/printable", test_printable);
     g_test_add_func("/base/memory/aligned", test_allocation_is_aligned_and_zeroed);
     g_test_add_func("/base/memory/refuses", test_allocation_refuses);
     g_test_add_func("/base/intern", test_interned_are_kept_once);

@@ -282,7 +282,7 @@ static void test_load_names_the_place(void)
     load_refuses(
         "passes = 3\n  photns = 4\n",
         ":2:3: expected a setting's name, found 'photns'; did you mean 'photons'?");
-    load_refuses("passes 3\n", ":1:1: expected name = value, found 'passes 3'");
+    load_refuses("passes 3\n", ":1:1: expected name = value, found no '='");
     load_refuses("passes = 3\nspp =  x\n",
                  ":2:8: setting 'spp': expected a whole number from 1 to 65536 "
                  "samples/pixel, found 'x'");

@@ -43,6 +43,11 @@ NEPH_API GQuark neph_error_quark(void);
 /** @brief The version, "0.1.0". Static. */
 NEPH_API const char *neph_version(void);
 
+/** @brief A copy of a text that came from a file, such as a material's name, fit for a
+ * terminal: control characters, line ends and what is not UTF-8 are spelt out. Errors, logs
+ * and descriptions have been through it. @return owned by the caller (g_free) */
+NEPH_API char *neph_text_printable(const char *text);
+
 typedef enum { NEPH_LOG_NOTE, NEPH_LOG_WARNING } NephLogLevel;
 /** @brief Receives one line without newline, on the thread that called the library. */
 typedef void (*NephLogFunc)(NephLogLevel level, const char *text, void *data);

@@ -1,7 +1,16 @@
 #include "api/describe.h"
 
+#include "base/printable.h"
+
 /* Names shown of a list that may be long. */
 enum { MOST_NAMES = 8 };
+
+/* What a file calls something. */
+static void put_name(GString *out, const char *before, const char *name)
+{
+    g_autofree char *shown = printable(name);
+    g_string_append_printf(out, "%s%s", before, shown);
+}
 
 static void put_vec3(GString *out, const char *label, vec3 v)
 {
@@ -55,8 +64,7 @@ static void put_materials(GString *out, const scene *s, const summary *all)
     if (all->caustic_names->len > 0) {
         g_string_append(out, "  caustics from ");
         for (guint i = 0; i < MIN(all->caustic_names->len, MOST_NAMES); i++)
-            g_string_append_printf(out, "%s %s", i ? "," : "",
-                                   (char *)all->caustic_names->pdata[i]);
+            put_name(out, i ? ", " : " ", all->caustic_names->pdata[i]);
         if (all->caustic_names->len > MOST_NAMES)
             g_string_append_printf(out, " and %u more",
                                    all->caustic_names->len - MOST_NAMES);
@@ -97,8 +105,10 @@ static void put_camera(GString *out, const scene *s, const summary *all)
                                (double)s->camera.focal_distance);
     else
         g_string_append_printf(out, "  %-14s pinhole\n", "lens");
-    if (s->camera.medium)
-        g_string_append_printf(out, "  %-14s %s\n", "in medium", s->camera.medium->name);
+    if (s->camera.medium) {
+        put_name(out, "  in medium      ", s->camera.medium->name);
+        g_string_append_c(out, '\n');
+    }
 }
 
 static void put_film(GString *out, const scene *s)
@@ -112,10 +122,9 @@ static void put_film(GString *out, const scene *s)
         g_string_append_printf(out, "  %-14s %g .. %g across, %g .. %g down\n", "crop",
                                (double)crop[0], (double)crop[1], (double)crop[2],
                                (double)crop[3]);
-    g_string_append_printf(out, "  %-14s %s\n", "file",
-                           film->filename ? film->filename : "not named");
-    g_string_append_printf(out, "  %-14s %s, %g x %g pixels\n", "filter", s->filter.name,
-                           2.0 * (double)s->filter.x_radius,
+    put_name(out, "  file           ", film->filename ? film->filename : "not named");
+    g_string_append_printf(out, "\n  %-14s %s, %g x %g pixels\n", "filter",
+                           s->filter.name, 2.0 * (double)s->filter.x_radius,
                            2.0 * (double)s->filter.y_radius);
 }
 
@@ -143,17 +152,20 @@ static void put_files(GString *out, const scene *s)
     const char *const *paths = scene_sources_paths(s->build.sources);
     guint n = g_strv_length((char **)paths);
     g_string_append_printf(out, "read from        %u file%s\n", n, n == 1 ? "" : "s");
-    for (guint i = 0; i < MIN(n, MOST_NAMES); i++)
-        g_string_append_printf(out, "  %s\n", paths[i]);
+    for (guint i = 0; i < MIN(n, MOST_NAMES); i++) {
+        put_name(out, "  ", paths[i]);
+        g_string_append_c(out, '\n');
+    }
     if (n > MOST_NAMES)
         g_string_append_printf(out, "  and %u more\n", n - MOST_NAMES);
 }
 
 static void put_warnings(GString *out, const summary *all)
 {
-    for (guint i = 0; i < all->warnings->len; i++)
-        g_string_append_printf(out, "warning          %s\n",
-                               (char *)all->warnings->pdata[i]);
+    for (guint i = 0; i < all->warnings->len; i++) {
+        put_name(out, "warning          ", all->warnings->pdata[i]);
+        g_string_append_c(out, '\n');
+    }
 }
 
 char *describe_as_text(const scene *s, const summary *all)

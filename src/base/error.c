@@ -1,5 +1,7 @@
 #include "base/error.h"
 
+#include "base/printable.h"
+
 GQuark error_quark(void)
 {
     return g_quark_from_static_string("nephroid-error");
@@ -14,10 +16,10 @@ char *source_place_text(source_place place)
                : g_strdup_printf("%s:%d:%d: ", place.file, place.line, place.column);
 }
 
-static void set_at(GError **error, int code, source_place place, const char *text)
+static void set(GError **error, int code, const char *before, const char *text)
 {
-    g_autofree char *at = source_place_text(place);
-    g_set_error(error, NEPH_ERROR, code, "%s%s", at, text);
+    g_autofree char *whole = g_strconcat(before, text, NULL), *shown = printable(whole);
+    g_set_error_literal(error, NEPH_ERROR, code, shown);
 }
 
 void error_at(GError **error, source_place place, const char *format, ...)
@@ -26,12 +28,14 @@ void error_at(GError **error, source_place place, const char *format, ...)
     va_start(args, format);
     g_autofree char *text = g_strdup_vprintf(format, args);
     va_end(args);
-    set_at(error, ERROR_INPUT, place, text);
+    g_autofree char *at = source_place_text(place);
+    set(error, ERROR_INPUT, at, text);
 }
 
 void error_move_at(GError **error, source_place place, GError *inner)
 {
-    set_at(error, inner->code, place, inner->message);
+    g_autofree char *at = source_place_text(place);
+    set(error, inner->code, at, inner->message);
     g_error_free(inner);
 }
 
@@ -41,5 +45,15 @@ void error_set(GError **error, error_code code, const char *format, ...)
     va_start(args, format);
     g_autofree char *text = g_strdup_vprintf(format, args);
     va_end(args);
-    g_set_error_literal(error, NEPH_ERROR, code, text);
+    set(error, code, "", text);
+}
+
+void error_set_lines(GError **error, const GPtrArray *messages)
+{
+    g_autoptr(GString) all = g_string_new(NULL);
+    for (guint i = 0; i < messages->len; i++) {
+        g_autofree char *shown = printable(messages->pdata[i]);
+        g_string_append_printf(all, "%s%s", i ? "\n" : "", shown);
+    }
+    g_set_error_literal(error, NEPH_ERROR, ERROR_INPUT, all->str);
 }

@@ -3,7 +3,8 @@
  * parameter is a GError **.
  *
  * The codes are the exit codes of the command line, so that the reason for a failure
- * survives from the deepest reader up to the shell.
+ * survives from the deepest reader up to the shell. Messages name what stands in files, and
+ * come out printable (printable.h): one line, and nothing that a terminal would obey.
  */
 #pragma once
 
@@ -41,6 +42,9 @@ void error_at(GError **error, source_place place, const char *format, ...)
 /** @brief Sets an error with the code of `inner` and the place before its message; frees
  * inner. */
 void error_move_at(GError **error, source_place place, GError *inner);
+
+/** @brief Sets an ERROR_INPUT of several messages (char *), a line each. */
+void error_set_lines(GError **error, const GPtrArray *messages);
 
 /** @brief Sets an error with the given code. */
 void error_set(GError **error, error_code code, const char *format, ...)

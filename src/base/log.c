@@ -1,5 +1,7 @@
 #include "base/log.h"
 
+#include "base/printable.h"
+
 void log_message(const log_sink *sink, log_level level, const char *format, ...)
 {
     if (!sink || !sink->write)
@@ -8,7 +10,8 @@ void log_message(const log_sink *sink, log_level level, const char *format, ...)
     va_start(args, format);
     g_autofree char *text = g_strdup_vprintf(format, args);
     va_end(args);
-    sink->write(level, text, sink->data);
+    g_autofree char *shown = printable(text);
+    sink->write(level, shown, sink->data);
 }
 
 void log_at(const log_sink *sink, log_level level, source_place place, const char *format,

@@ -217,10 +217,16 @@ static void include_with(pbrt_parser *parser, const char *name, source_place pla
     input_close(&in);
 }
 
+/* What a scene includes may be any file that can be read here: nothing is quoted of one
+ * that is not pbrt's. */
 static void read_directives(pbrt_parser *parser, lexer *words, void *data)
 {
     (void)data;
-    read_words(parser, words);
+    token t = lexer_peek(words);
+    if (t.kind == TOKEN_END || (t.kind == TOKEN_WORD && find_directive(&t)))
+        read_words(parser, words);
+    else
+        pbrt_error(parser, t.place, "expected a directive, found something else");
 }
 
 void pbrt_include(pbrt_parser *parser, const char *name, source_place place)
@@ -239,7 +245,8 @@ static void read_parameters(pbrt_parser *parser, lexer *words, void *data)
     parameter_file *file = data;
     lexer *outer = parser->words;
     parser->words = words;
-    file->has_some = lexer_peek(words).kind == TOKEN_STRING;
+    token first = lexer_peek(words);
+    file->has_some = pbrt_is_declaration(&first);
     file->fine = !file->has_some || pbrt_read_param_list(parser, file->p);
     token t = lexer_peek(words);
     if (file->has_some && file->fine && t.kind != TOKEN_END)
@@ -406,9 +413,7 @@ static bool read_pbrt(scene *s, const char *path, GError **error)
     if (parser.fatal) {
         g_propagate_error(error, parser.fatal);
     } else if (!fine) {
-        g_ptr_array_add(parser.errors, NULL);
-        g_autofree char *all = g_strjoinv("\n", (char **)parser.errors->pdata);
-        error_set(error, ERROR_INPUT, "%s", all);
+        error_set_lines(error, parser.errors);
     }
     parser_clear(&parser);
     return fine;

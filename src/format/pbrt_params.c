@@ -44,6 +44,16 @@ static const type_row *find_type(const char *name)
     return NULL;
 }
 
+bool pbrt_is_declaration(const token *t)
+{
+    if (t->kind != TOKEN_STRING)
+        return false;
+    g_autofree char *text = token_string(t);
+    g_strstrip(text);
+    text[strcspn(text, " \t")] = '\0';
+    return find_type(text) || strcmp(text, "color") == 0;
+}
+
 static bool read_declaration(pbrt_parser *parser, declaration *d)
 {
     d->token = lexer_next(parser->words);

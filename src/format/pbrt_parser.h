@@ -168,6 +168,9 @@ bool pbrt_include_parameters(pbrt_parser *parser, params *p, bool *fine);
 
 /* ---- pbrt_params.c ---- */
 
+/** @brief True for a string that begins with a parameter's type. */
+bool pbrt_is_declaration(const token *t);
+
 /** @brief Reads parameters into a list, up to what is none. @return false, reported, if
  * they do not follow the grammar */
 bool pbrt_read_param_list(pbrt_parser *parser, params *p);

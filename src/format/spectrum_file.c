@@ -15,9 +15,10 @@ static bool read_pairs(lexer *words, GArray *numbers, GError **error)
         if (t.kind == TOKEN_END && numbers->len > 0 && numbers->len % 2 == 0)
             return true;
         if (t.kind != TOKEN_WORD || !number_float(t.text, t.length, &value)) {
-            g_autofree char *found = token_describe(&t);
+            /* not quoted: a scene may name any file */
             error_at(error, t.place, "expected %s, found %s",
-                     numbers->len % 2 ? "a value" : "a wavelength in nm", found);
+                     numbers->len % 2 ? "a value" : "a wavelength in nm",
+                     t.kind == TOKEN_END ? "the end of the file" : "something else");
             return false;
         }
         g_array_append_val(numbers, value);

@@ -314,7 +314,7 @@ static bool load_line(settings *s, char *line, source_place place, GError **erro
     place.column = (int)begin + 1;
     size_t equals = strcspn(line, "=");
     if (!line[equals]) {
-        error_at(error, place, "expected name = value, found '%s'", g_strstrip(line));
+        error_at(error, place, "expected name = value, found no '='");
         return false;
     }
     line[equals] = '\0';
