@@ -23,7 +23,7 @@
 #include "format/pbrt_v3.h"
 #include "scene/scene.h"
 
-enum { MAX_ERRORS = 20, MAX_DEPTH = 64 };
+enum { MAX_ERRORS = 20, MAX_DEPTH = 64, MAX_ATTRIBUTES = 1000 };
 
 /** Kinds of directives that Attribute gives parameters to. */
 typedef enum attribute_target {

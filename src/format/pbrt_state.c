@@ -11,6 +11,11 @@
 bool pbrt_attribute_begin(pbrt_parser *parser, source_place place)
 {
     saved_state saved = {parser->state, place};
+    if (parser->saved->len >= MAX_ATTRIBUTES) {
+        pbrt_error(parser, place, "expected at most %d AttributeBegin within each other",
+                   MAX_ATTRIBUTES);
+        return true;
+    }
     g_array_append_val(parser->saved, saved);
     return true;
 }

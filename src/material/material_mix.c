@@ -9,9 +9,14 @@
 
 #include <string.h>
 
+/* A mix of mixes calls as deep as they nest. */
+enum { DEEPEST = 1000 };
+
 typedef struct mixture {
     const material *parts[2]; /* of the scene */
     float_input amount;
+    unsigned depth; /* 1: of no mixes */
+    unsigned lobes;
 } mixture;
 
 static const material *find_part(const build_context *context, const param *q,
@@ -50,30 +55,48 @@ static bool read_parts(mixture *m, const build_context *context, const params *p
     return true;
 }
 
+static bool measure(mixture *m, const params *p, GError **error)
+{
+    m->depth = 1;
+    for (int i = 0; i < 2; i++) {
+        const material *part = m->parts[i];
+        const mixture *inner = part->kind == &material_mix ? part->self : NULL;
+        m->depth = MAX(m->depth, inner ? inner->depth + 1 : 1);
+        m->lobes |= part->kind->possible_lobes(part->self);
+    }
+    if (m->depth <= DEEPEST)
+        return true;
+    error_at(error, p->place, "expected mixes of at most %d levels, found %u", DEEPEST,
+             m->depth);
+    return false;
+}
+
 static void *mixture_create(const build_context *context, const params *p, GError **error)
 {
     mixture *m = g_new0(mixture, 1);
-    if (read_parts(m, context, p, error) &&
+    if (read_parts(m, context, p, error) && measure(m, p, error) &&
         float_input_init(&m->amount, context, p, "amount", 0.5f, error))
         return m;
     g_free(m);
     return NULL;
 }
 
-/* Uniform in [0, 1), by where the point is. */
-static float chance_of(vec3 p)
+/* Uniform in [0, 1), by where the point is; at each level of mixes another number, or the
+ * inner choice would follow the outer one. */
+static float chance_of(vec3 p, unsigned depth)
 {
     uint64_t bits[2];
     memcpy(bits, &p, sizeof bits);
     bits[1] &= 0xffffffffu; /* the unused lane */
-    return (float)(hash_mix(hash_mix(bits[0], bits[1]), 0x6d69u) >> 40) * 0x1p-24f;
+    return (float)(hash_mix(hash_mix(bits[0], bits[1]), 0x6d68u + depth) >> 40) *
+           0x1p-24f;
 }
 
 static void mixture_bsdf(const void *self, const surface_hit *hit, const wavelengths *w,
                          const bsdf_options *options, bsdf *out)
 {
     const mixture *m = self;
-    bool second = chance_of(hit->p) < float_input_eval(&m->amount, hit);
+    bool second = chance_of(hit->p, m->depth) < float_input_eval(&m->amount, hit);
     const material *part = m->parts[second];
     if (part->bump)
         out->shading = bump_frame(part->bump, hit);
@@ -82,9 +105,7 @@ static void mixture_bsdf(const void *self, const surface_hit *hit, const wavelen
 
 static unsigned mixture_lobes(const void *self)
 {
-    const mixture *m = self;
-    return m->parts[0]->kind->possible_lobes(m->parts[0]->self) |
-           m->parts[1]->kind->possible_lobes(m->parts[1]->self);
+    return ((const mixture *)self)->lobes;
 }
 
 const material_kind material_mix = {

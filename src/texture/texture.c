@@ -11,7 +11,12 @@ struct texture {
     const texture_kind *kind;
     void *self;
     bool is_spectrum;
+    unsigned steps;
 };
+
+/* A chain of textures calls as deep as it is long, and where each looks at the one before
+ * twice, twenty make a million. What people draw has some tens. */
+enum { MOST_STEPS = 1000 };
 
 static const texture_kind *const kinds[] = {
 #define TEXTURE(kind, file) &texture_##kind,
@@ -37,6 +42,17 @@ static const texture_kind *find_kind(const char *name, const params *p, GError *
     return NULL;
 }
 
+static bool steps_possible(const texture *t, const params *p, GError **error)
+{
+    if (t->steps <= MOST_STEPS)
+        return true;
+    error_at(error, p->place,
+             "expected at most %d textures in one, each counted as often as it is used, "
+             "found %u",
+             MOST_STEPS, t->steps);
+    return false;
+}
+
 texture *texture_new(const build_context *context, const char *kind, bool is_spectrum,
                      const params *p, GError **error)
 {
@@ -48,8 +64,8 @@ texture *texture_new(const build_context *context, const char *kind, bool is_spe
     if (!self)
         return NULL;
     texture *t = g_new0(texture, 1);
-    *t = (texture){k, self, is_spectrum};
-    if (!params_all_used(p, what, error)) {
+    *t = (texture){k, self, is_spectrum, 1 + (k->input_steps ? k->input_steps(self) : 0)};
+    if (!steps_possible(t, p, error) || !params_all_used(p, what, error)) {
         texture_free(t);
         return NULL;
     }
@@ -73,6 +89,11 @@ spectrum texture_eval_spectrum(const texture *t, const surface_hit *hit,
                                const wavelengths *w, curve_role role)
 {
     return t->kind->eval_spectrum(t->self, hit, w, role);
+}
+
+unsigned texture_steps(const texture *t)
+{
+    return t ? t->steps : 0;
 }
 
 bool texture_is_spectrum(const texture *t)

@@ -26,6 +26,9 @@ typedef struct texture_kind {
      * coordinates where they are not the hit's own: a normal map. NULL: can be none. */
     void (*eval_normal)(const void *self, const surface_hit *hit, float rgb[3],
                         vec3 *dpdu, vec3 *dpdv);
+    /** texture_steps of all textures that it is made of, each as often as it looks at it.
+     * NULL: it is made of none. */
+    unsigned (*input_steps)(const void *self);
 } texture_kind;
 
 texture *texture_new(const build_context *context, const char *kind, bool is_spectrum,
@@ -41,6 +44,9 @@ const texture *texture_find(const build_context *context, const param *q,
 float texture_eval_float(const texture *t, const surface_hit *hit);
 spectrum texture_eval_spectrum(const texture *t, const surface_hit *hit,
                                const wavelengths *w, curve_role role);
+/** @brief How many textures one evaluation looks at, itself among them: what bounds its
+ * time, and how deep it calls. NULL: 0. */
+unsigned texture_steps(const texture *t);
 /** @brief True if texture_eval_normal may be asked for. */
 bool texture_is_normal_map(const texture *t);
 /** @brief As texture_kind's eval_normal; *dpdu and *dpdv come as those of the hit. */

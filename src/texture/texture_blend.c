@@ -253,11 +253,20 @@ static void *bilerp_create(const build_context *context, bool is_spectrum,
     return b ? finish(b, mapping2_init(&b->mapping, p, error), weigh_corners) : NULL;
 }
 
+static unsigned blend_steps(const void *self)
+{
+    const blend *b = self;
+    unsigned steps = texture_steps(b->amount.texture);
+    for (int i = 0; i < b->n; i++)
+        steps += texture_steps(b->inputs[i].texture);
+    return steps;
+}
+
 #define BLEND_KIND(name_, parameters_, create_)                                          \
     {                                                                                    \
         .name = (name_), .parameters = (parameters_), .create = (create_),               \
         .free = blend_free, .eval_float = blend_eval_float,                              \
-        .eval_spectrum = blend_eval_spectrum,                                            \
+        .eval_spectrum = blend_eval_spectrum, .input_steps = blend_steps,                \
     }
 
 const texture_kind texture_scale = BLEND_KIND("scale", "tex scale", scale_create);
