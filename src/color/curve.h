@@ -35,6 +35,9 @@ void color_space_chromaticities(const color_space *space, float xy[8]);
 /** @brief A function of wavelength. Opaque, immutable, reference counted. */
 typedef struct curve curve;
 
+/** @brief Points that a tabulated curve from a file or a parameter may have. */
+enum { CURVE_MOST_POINTS = 100000 };
+
 curve *curve_constant(float value);
 /** @brief Piecewise linear through n >= 1 points (nm ascending), zero outside them like
  *  pbrt's PiecewiseLinearSpectrum; constant ends are the caller's choice of points.

@@ -16,6 +16,10 @@
 #include <math.h>
 #include <string.h>
 
+/* Elements that no bytes stand for: such an accessor is all zero but for what is sparse,
+ * and its length is but a claim. */
+enum { MOST_ZEROS = 1 << 24 };
+
 enum { BYTE = 5120, UBYTE, SHORT, USHORT, UINT = 5125, FLOAT };
 
 /* Elements in memory. */
@@ -44,22 +48,31 @@ char *gltf_uri_path(gltf *g, const json_value *at, const char *uri)
     return NULL;
 }
 
-static GBytes *data_uri_bytes(const json_value *at, const char *uri)
+static GBytes *data_uri_bytes(gltf *g, const json_value *at, const char *uri)
 {
     const char *comma = strchr(uri, ',');
     if (!comma || comma - uri < 7 || strncmp(comma - 7, ";base64", 7) != 0) {
         json_fail(at, "expected a data: URI in base64");
         return NULL;
     }
-    gsize size;
-    guchar *bytes = g_base64_decode(comma + 1, &size);
-    return g_bytes_new_take(bytes, size);
+    const char *code = comma + 1;
+    size_t length = strlen(code);
+    GError *error = NULL;
+    guchar *bytes = big_alloc(length / 4 * 3 + 3, 1, "data: URI", &error);
+    if (!bytes) {
+        gltf_take_error(g, at, error);
+        return NULL;
+    }
+    gint state = 0;
+    guint save = 0;
+    gsize size = g_base64_decode_step(code, length, bytes, &state, &save);
+    return g_bytes_new_with_free_func(bytes, size, big_free, bytes);
 }
 
 GBytes *gltf_uri_bytes(gltf *g, const json_value *at, const char *uri)
 {
     if (g_str_has_prefix(uri, "data:"))
-        return data_uri_bytes(at, uri);
+        return data_uri_bytes(g, at, uri);
     g_autofree char *path = gltf_uri_path(g, at, uri);
     if (!path)
         return NULL;
@@ -203,7 +216,13 @@ static bool open_run(gltf *g, const json_value *accessor, element_run *run)
         json_fail(accessor, "expected a \"count\" of at least 1");
     run->count = (size_t)MAX(count, 1);
     run->stride = component_size(run->type) * run->n_components;
-    return !gltf_failed(g) && place_run(g, accessor, run);
+    if (gltf_failed(g) || !place_run(g, accessor, run))
+        return false;
+    if (run->bytes || count <= MOST_ZEROS)
+        return true;
+    json_fail(accessor, "expected a \"bufferView\" for more than %d elements",
+              MOST_ZEROS);
+    return false;
 }
 
 static uint32_t read_whole(const uint8_t *at, int type)

@@ -4,6 +4,8 @@
  */
 #include "format/height_map.h"
 
+#include "base/memory.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -51,15 +53,21 @@ static void normal_at(const image *img, double strength, int x, int y, float out
 GBytes *height_map_as_normals(const image *img, double strength)
 {
     const char *order = G_BYTE_ORDER == G_LITTLE_ENDIAN ? "-1.0" : "1.0";
-    GByteArray *out = g_byte_array_new();
     g_autofree char *head =
         g_strdup_printf("PF\n%d %d\n%s\n", img->width, img->height, order);
-    g_byte_array_append(out, (const guint8 *)head, (guint)strlen(head));
+    size_t n_head = strlen(head), row = (size_t)img->width * RGB * sizeof(float);
+    size_t size = n_head + row * (size_t)img->height;
+    char *out = big_alloc(size, 1, "height map", NULL), *to = out;
+    if (!out)
+        return NULL;
+    memcpy(to, head, n_head);
+    to += n_head;
     for (int y = img->height - 1; y >= 0; y--)
         for (int x = 0; x < img->width; x++) {
             float n[RGB];
             normal_at(img, strength, x, y, n);
-            g_byte_array_append(out, (const guint8 *)n, sizeof n);
+            memcpy(to, n, sizeof n);
+            to += sizeof n;
         }
-    return g_byte_array_free_to_bytes(out);
+    return g_bytes_new_with_free_func(out, size, big_free, out);
 }

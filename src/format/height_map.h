@@ -12,5 +12,6 @@ bool height_map_is_normals(const image *img);
 /**
  * @brief A normal map from the grey of an image, as a PFM file.
  * @param strength slope of a step from black to white across one texel
+ * @return NULL if there is no memory for it
  */
 GBytes *height_map_as_normals(const image *img, double strength);

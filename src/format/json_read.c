@@ -4,6 +4,7 @@
 #include "format/json_read.h"
 
 #include "base/intern.h"
+#include "base/memory.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,6 +12,10 @@
 
 /* JSON-GLib parses by recursion. */
 enum { MAX_NESTING = 200 };
+
+/* What JSON-GLib makes of a value of two characters, and how it ends the program where
+ * that is not to be had. */
+enum { BYTES_A_VALUE = 128 };
 
 /* Line of the first bracket that nests too deep, or 0. */
 static int line_too_deep(const char *text, size_t size)
@@ -33,6 +38,17 @@ static int line_too_deep(const char *text, size_t size)
         }
     }
     return 0;
+}
+
+/* Asks for as much memory as the values will take, and gives it back. */
+static bool has_room(const char *text, size_t size, GError **error)
+{
+    size_t n = 1;
+    for (size_t i = 0; i < size; i++)
+        n += text[i] == ',' || text[i] == '[' || text[i] == '{';
+    void *room = big_alloc(n, BYTES_A_VALUE, "JSON", error);
+    big_free(room);
+    return room != NULL;
 }
 
 /* JSON-GLib's message "<data>:LINE:COLUMN: Parse error: ..." with our place. */
@@ -58,6 +74,8 @@ bool json_open(json_reader *reader, const char *file, const char *text, size_t s
                  MAX_NESTING);
         return false;
     }
+    if (!has_room(text, size, error))
+        return false;
     g_autoptr(GError) inner = NULL;
     reader->parser = json_parser_new_immutable();
     if (!g_utf8_validate(text, (gssize)size, NULL))

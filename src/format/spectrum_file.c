@@ -4,6 +4,7 @@
 #include "format/spectrum_file.h"
 
 #include "base/input.h"
+#include "color/curve.h"
 #include "format/lexer.h"
 #include "format/number.h"
 
@@ -19,6 +20,11 @@ static bool read_pairs(lexer *words, GArray *numbers, GError **error)
             error_at(error, t.place, "expected %s, found %s",
                      numbers->len % 2 ? "a value" : "a wavelength in nm",
                      t.kind == TOKEN_END ? "the end of the file" : "something else");
+            return false;
+        }
+        if (numbers->len >= 2 * CURVE_MOST_POINTS) {
+            error_at(error, t.place, "expected at most %d wavelengths, found more",
+                     CURVE_MOST_POINTS);
             return false;
         }
         g_array_append_val(numbers, value);

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { MAX_ANGLES = 4096 };
+enum { MAX_ANGLES = 4096, LONGEST_QUOTE = 60 };
 
 /** @brief A type of photometry: what the angles of its files mean. */
 typedef struct ies_photometry {
@@ -35,7 +35,7 @@ static bool next_number(ies_reader *r, const char *what, double *out)
         return true;
     }
     error_set(r->error, ERROR_INPUT, "expected %s, found '%.*s'", what,
-              (int)strcspn(r->at, "\r\n"), r->at);
+              (int)MIN(strcspn(r->at, "\r\n"), LONGEST_QUOTE), r->at);
     return false;
 }
 
@@ -91,7 +91,8 @@ static bool read_tilt(ies_reader *r, double *factor)
         return true;
     if (g_ascii_strncasecmp(word, "INCLUDE", 7) != 0) {
         error_set(r->error, ERROR_INPUT,
-                  "expected TILT=NONE or TILT=INCLUDE, found '%.*s'", (int)length, word);
+                  "expected TILT=NONE or TILT=INCLUDE, found '%.*s'",
+                  (int)MIN(length, LONGEST_QUOTE), word);
         return false;
     }
     int n;
@@ -125,9 +126,23 @@ static bool read_head(ies_reader *r, ies_profile *out, double *scale)
     return false;
 }
 
+/* Room for n numbers, if so many can be in what is left: none is written with fewer than
+ * two characters. */
+static float *room_for(ies_reader *r, size_t n, const char *what)
+{
+    size_t left = strlen(r->at);
+    if (n <= left / 2 + 1)
+        return g_new0(float, n);
+    error_set(r->error, ERROR_INPUT,
+              "expected %zu numbers from %s on, found %zu characters", n, what, left);
+    return NULL;
+}
+
 static bool read_angles(ies_reader *r, int n, const char *what, float **out)
 {
-    *out = g_new0(float, (gsize)n);
+    *out = room_for(r, (size_t)n, what);
+    if (!*out)
+        return false;
     for (int i = 0; i < n; i++) {
         double x;
         if (!next_number(r, what, &x))
@@ -146,7 +161,9 @@ static bool read_angles(ies_reader *r, int n, const char *what, float **out)
 static bool read_values(ies_reader *r, ies_profile *out, double scale)
 {
     size_t n = (size_t)out->n_vertical * (size_t)out->n_horizontal;
-    out->candela = g_new0(float, n);
+    out->candela = room_for(r, n, "candela");
+    if (!out->candela)
+        return false;
     for (size_t i = 0; i < n; i++) {
         double x;
         if (!next_number(r, "candela", &x))

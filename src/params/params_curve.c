@@ -4,8 +4,6 @@
  */
 #include "params/params.h"
 
-#include <limits.h>
-
 static bool exactly(const param *q, size_t n, const char *what, GError **error)
 {
     if (q->n == n)
@@ -17,7 +15,7 @@ static bool exactly(const param *q, size_t n, const char *what, GError **error)
 
 static curve *from_pairs(const param *q, GError **error)
 {
-    if (q->n < 2 || q->n % 2 || q->n > INT_MAX) {
+    if (q->n < 2 || q->n % 2) {
         error_at(error, q->place,
                  "parameter '%s': expected pairs of wavelength and value, found %zu "
                  "numbers",
@@ -25,6 +23,11 @@ static curve *from_pairs(const param *q, GError **error)
         return NULL;
     }
     size_t n = q->n / 2;
+    if (n > CURVE_MOST_POINTS) {
+        error_at(error, q->place, "parameter '%s': expected at most %d pairs, found %zu",
+                 q->name, CURVE_MOST_POINTS, n);
+        return NULL;
+    }
     g_autofree float *nm = g_new(float, n);
     g_autofree float *values = g_new(float, n);
     for (size_t i = 0; i < n; i++) {

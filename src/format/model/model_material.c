@@ -193,6 +193,10 @@ static void give_heights(model_builder *b, params *p, const model_material *m)
         build_context_read_image(&b->scene->build, path, &linear, NULL);
     if (!height_map_is_normals(heights)) {
         g_autoptr(GBytes) normals = height_map_as_normals(heights, strength);
+        if (!normals) {
+            model_tell(b, "there is no memory for a map of heights, which is left out");
+            return;
+        }
         char *name = g_strdup_printf("%s.%g.normals.pfm", path, strength);
         g_free(path);
         path = name;
