@@ -2,9 +2,9 @@
  * Whole renders against what must hold: furnaces, path tracing, symmetry of threads and
  * scale.
  */
+#include "bsdf/bsdf_models.h"
 #include "photon/direction.h"
 #include "rooms.h"
-#include "bsdf/bsdf_models.h"
 #include "transport/photonmap.h"
 
 /* ---- Furnace ---- */
@@ -303,6 +303,90 @@ static void test_cancel_keeps_what_there_is(void)
     g_assert_nonnull(img);
 }
 
+static void *cancel_soon(void *data)
+{
+    g_usleep(100000);
+    render_cancel(data);
+    return NULL;
+}
+
+/* How long a render goes on once it is cancelled, s. */
+static double goes_on_for(const scene *s, const char *words)
+{
+    g_autoptr(render) r = render_of(s, words);
+    GThread *other = g_thread_new("cancel", cancel_soon, r);
+    double start = (double)g_get_monotonic_time() * 1e-6;
+    g_assert_false(render_run(r, NULL, NULL, NULL));
+    double took = (double)g_get_monotonic_time() * 1e-6 - start - 0.1;
+    g_thread_join(other);
+    g_test_message("%s: %g s after", words, took);
+    return took;
+}
+
+/* Where one sample, or the trials before the first, takes seconds. A busy machine may
+   keep the last ray waiting. */
+static void test_cancel_acts_soon(void)
+{
+    static const char *const ways[] = {
+        "spp=1 photons=60000 radius=2 final_gather=on gather_rays=65536 "
+        "precompute_radiance=off",
+        "spp=1 photons=400000 radius=2 final_gather=on",
+        "photons=100000000",
+    };
+    g_autoptr(scene) s = scene_of(ROOM);
+    for (size_t i = 0; i < G_N_ELEMENTS(ways); i++)
+        g_assert_cmpfloat(goes_on_for(s, ways[i]), <, 0.1 + 0.4);
+}
+
+/* ---- Long ways ---- */
+
+/* Within mirrors that keep nearly all light. A ray meets the lamp after about 300 of
+   them, or never. */
+#define MIRRORS                                                                          \
+    "WorldBegin Material \"conductor\" \"rgb reflectance\" [1 1 1] Shape "               \
+    "\"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 " \
+    "1 -1 1 1] \"integer indices\" [0 1 2 0 2 3 4 6 5 4 7 6 0 5 1 0 4 5 3 2 6 3 6 7 0 "  \
+    "3 7 0 7 4 1 5 6 1 6 2] "
+
+static const char camera_askew[] =
+    "LookAt 0.31 0.17 0.23  1 0.6 0.9  0 0 1 Camera \"perspective\" " SIZE(8);
+
+static const char with_lamp[] = MIRRORS
+    "Material \"diffuse\" \"rgb reflectance\" [0 0 0] AreaLightSource \"diffuse\" "
+    "\"rgb L\" [2 2 2] Shape \"trianglemesh\" \"point3 P\" [-0.9999 0 0 -0.9999 "
+    "0.2 0 -0.9999 0.2 0.3 -0.9999 0 0.3] \"integer indices\" [0 1 2 0 2 3]";
+
+static const char without_lamp[] = MIRRORS "LightSource \"point\"";
+
+/* What is seen of a scene, and how many rays a sample takes. */
+static double seen_by(const char *world, const char *how, double *rays)
+{
+    enum { SPP = 8, SAMPLES = 8 * 8 * SPP };
+    g_autofree char *text = g_strconcat(camera_askew, world, NULL);
+    g_autofree char *words = g_strdup_printf(
+        "%s max_backward_bounces=-1 max_forward_bounces=-1 passes=1 spp=%d", how,
+        (int)SPP);
+    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(render) r = render_of(s, words);
+    g_assert_true(render_run(r, NULL, NULL, NULL));
+    g_autoptr(image) img = image_of(r);
+    *rays = (double)render_get_statistics(r).camera_rays / SAMPLES;
+    g_test_message("%s: radiance %g, %g rays a sample", how, mean_of(img, ""), *rays);
+    return mean_of(img, "");
+}
+
+/* Long ways end by chance, and what is seen stays as bright as by path tracing, whose
+   paths are the same but where they end. */
+static void test_long_ways(void)
+{
+    double rays;
+    double expected = seen_by(with_lamp, "integrator=path", &rays);
+    double found = seen_by(with_lamp, "photons=100", &rays);
+    g_assert_cmpfloat(fabs(found / expected - 1.0), <, 0.02);
+    seen_by(without_lamp, "photons=100 caustic_emission=uniform", &rays);
+    g_assert_cmpfloat(rays, <, 1000.0);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -326,5 +410,7 @@ int main(int argc, char **argv)
     g_test_add_func("/transport/scale", test_scale_changes_nothing);
     g_test_add_func("/transport/shadow-rays", test_shadow_rays_off_lights_through);
     g_test_add_func("/transport/cancel", test_cancel_keeps_what_there_is);
+    g_test_add_func("/transport/cancel-soon", test_cancel_acts_soon);
+    g_test_add_func("/transport/long-ways", test_long_ways);
     return g_test_run();
 }

@@ -442,7 +442,8 @@ static void trace_some(size_t begin, size_t end, unsigned thread, void *data)
     trace_loop *loop = data;
     trace_chunk *out = &loop->chunks[begin / CHUNK];
     out->of = loop->empty;
-    for (size_t i = begin; i < end && !out->error; i++) {
+    const cancel_flag *cancel = loop->task->cancel;
+    for (size_t i = begin; i < end && !out->error && !cancelled(cancel); i++) {
         photon_path path = {
             .task = loop->task, .index = loop->task->first + i, .out = out};
         trace_one(&path);

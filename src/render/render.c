@@ -257,6 +257,8 @@ static void render_pixel(camera_loop *loop, int x, int y, unsigned thread)
             sampler_make(key, loop->index * (uint64_t)how->spp + (uint64_t)i);
         render_sample(loop, (vec2){(float)x, (float)y}, &random, thread, &sums, &groups);
     }
+    if (cancelled(&r->cancel)) /* then the last sample is not whole */
+        return;
     film_put(&r->film, x, y, &sums.film);
     gbuffer_put(&r->film, x, y, &sums.surface);
     film_put_groups(&r->film, &loop->film_pass, x, y, groups.sum);
@@ -482,6 +484,10 @@ static bool prepare(render *r, GError **error)
         return true;
     r->prepared =
         set_pace(r, error) && transport_plan_prepare(&r->plan, &r->cancel, error);
+    if (r->prepared && cancelled(&r->cancel)) { /* what was measured is worth nothing */
+        error_set(error, ERROR_CANCELLED, "cancelled");
+        r->prepared = false;
+    }
     r->statistics.time_prepare += seconds() - start;
     note_photons(r);
     return r->prepared;

@@ -280,7 +280,7 @@ static bool go_on(camera_tree *tree, camera_branch *branch, const surface_hit *h
 static void follow(camera_tree *tree, camera_branch branch)
 {
     const photonmap_pass *pass = tree->pass;
-    for (bool first = branch.n_followed == 0;;) {
+    for (bool first = branch.n_followed == 0; !cancelled(pass->plan->cancel);) {
         surface_hit hit;
         tree->scratch->camera_rays++;
         bool met = branch.n_followed == 0

@@ -107,7 +107,11 @@ static bool add_points(photonmap_pass *pass, int slice, const trace_result *poin
                             .offset = out->n,
                             .slice = slice,
                             .failed = failed};
-    parallel_for(n, 256, (unsigned)pass->how->threads, NULL, irradiance_chunk, &loop);
+    if (!parallel_for(n, 256, (unsigned)pass->how->threads, pass->plan->cancel,
+                      irradiance_chunk, &loop)) {
+        error_set(error, ERROR_CANCELLED, "cancelled");
+        return false;
+    }
     out->n += n;
     for (size_t i = 0; i < n_chunks; i++) {
         if (failed[i]) {
@@ -315,7 +319,7 @@ static spectrum gather_along(const photonmap_pass *pass, gather_path path,
 {
     spectrum sum = {0};
     int64_t limit = pass->how->max_backward_bounces;
-    while (limit < 0 || path.bounces <= limit) {
+    while ((limit < 0 || path.bounces <= limit) && !cancelled(pass->plan->cancel)) {
         surface_hit hit;
         scratch->camera_rays++;
         bool met = scene_intersect(pass->scene, &path.ray, &hit);
@@ -352,7 +356,7 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
     int n_groups = pass->scene->n_light_groups;
     for (int i = 0; i < n_groups; i++)
         scratch->gathered[i] = (spectrum){0};
-    for (uint32_t i = 0; i < n; i++) {
+    for (uint32_t i = 0; i < n && !cancelled(pass->plan->cancel); i++) {
         sampler stream = sampler_make(key, i);
         float u_lobe = sampler_1d(&stream);
         vec2 u = sampler_2d(&stream);

@@ -363,7 +363,7 @@ void path_radiance(const void *data, const ray *r, sampler *random,
                         .lane = ALL_LANES,
                         .eta2 = 1.0f,
                         .from = r->origin};
-    while (path_goes_on(&walk, &path))
+    while (!cancelled(pass->plan->cancel) && path_goes_on(&walk, &path))
         continue;
 }
 

@@ -53,6 +53,7 @@ bool transport_plan_prepare(transport_plan *plan, const cancel_flag *cancel,
 {
     transport_plan_clear(plan);
     *plan = transport_plan_of(plan->scene, &plan->how);
+    plan->cancel = cancel;
     return transport_find(plan->how.integrator)->prepare(plan, cancel, error);
 }
 

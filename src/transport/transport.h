@@ -79,6 +79,8 @@ typedef struct transport_counts {
 typedef struct transport_plan {
     const scene *scene;
     settings how;
+    const cancel_flag *cancel; /**< of the render that this is for: once set, passes and
+                                  samples end as they are, worth nothing; NULL: never */
     uint64_t
         n_photons[N_PHOTON_CLASSES]; /**< emitted each pass; 0: the class is not needed */
     double radius[N_PHOTON_CLASSES]; /**< of pass 0, m: everywhere, or the median */

@@ -349,7 +349,7 @@ static void follow(camera_walk *c)
     static const bsdf_options options = {0};
     const vcm_pass *pass = c->pass;
     vcm_walk *walk = &c->walk;
-    for (;;) {
+    while (!cancelled(pass->plan->cancel)) {
         surface_hit hit;
         c->scratch->camera_rays++;
         bool met = walk->counts.n == 0 ? scene_see(pass->scene, &walk->ray, &hit)

@@ -351,7 +351,8 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
     (void)thread;
     light_loop *loop = data;
     light_chunk *out = &loop->chunks[begin / CHUNK];
-    for (size_t i = begin; i < end && !out->error; i++) {
+    const cancel_flag *cancel = loop->pass->plan->cancel;
+    for (size_t i = begin; i < end && !out->error && !cancelled(cancel); i++) {
         light_walk l = walk_of(loop->pass, i);
         l.out = out;
         if (emit(&l))
