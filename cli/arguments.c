@@ -8,8 +8,12 @@
 #include <string.h>
 
 static gboolean wants_help, wants_version;
+static char *memory;
 
 static const GOptionEntry common_entries[] = {
+    {"memory", 0, 0, G_OPTION_ARG_STRING, &memory,
+     "Take at most so much memory, as 2G or 500M; if not given, 80 % of what there is",
+     "SIZE"},
     {"help", 'h', 0, G_OPTION_ARG_NONE, &wants_help, "Show this help", NULL},
     {"version", 'V', 0, G_OPTION_ARG_NONE, &wants_version, "Show the version", NULL},
     G_OPTION_ENTRY_NULL};
@@ -120,6 +124,11 @@ bool arguments_parse(const usage *how, int *argc, char ***argv, int *exit_code)
     g_autoptr(GError) error = NULL;
     detach_values(how, argc, argv);
     if (!g_option_context_parse(context, argc, argv, &error)) {
+        *exit_code = report_error(error);
+        return false;
+    }
+    if (memory && !neph_memory_set_limit(memory, &error)) {
+        g_prefix_error(&error, "--");
         *exit_code = report_error(error);
         return false;
     }

@@ -33,14 +33,16 @@ int command_view(int argc, char **argv)
     (void)argc;
     if (argv[1] && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0))
         return print_result(
-            "%s", "Usage:\n  nephroid view [SCENE]\n\nOpens a window on a scene: "
-                  "the picture as it is rendered, the photons, and\nevery "
-                  "setting. The same as nephroid-view.\n\nOptions:\n"
-                  "  -h, --help     Show this help\n"
-                  "  -V, --version  Show the version\n");
+            "%s",
+            "Usage:\n  nephroid view [--memory SIZE] [SCENE]\n\nOpens a window on a "
+            "scene: the picture as it is rendered, the photons, and\nevery "
+            "setting. The same as nephroid-view.\n\nOptions:\n"
+            "  --memory SIZE  Take at most so much memory, as 2G or 500M\n"
+            "  -h, --help     Show this help\n"
+            "  -V, --version  Show the version\n");
     if (argv[1] && (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0))
         return print_result("nephroid %s\n", neph_version());
-    if (argv[1] && argv[1][0] == '-')
+    if (argv[1] && argv[1][0] == '-' && !g_str_has_prefix(argv[1], "--memory"))
         return usage_error("unknown option %s", argv[1]);
     g_autofree char *viewer = find_viewer();
     if (viewer) {

@@ -120,7 +120,7 @@ static void startup(GtkApplication *app)
 
 /* What the options ask for; one program, one command line. */
 static struct {
-    char *screenshot, *view, *page, *theme, *pick;
+    char *screenshot, *view, *page, *theme, *pick, *memory;
     double after; /* s */
     gboolean version;
 } given = {.after = 4.0};
@@ -133,6 +133,8 @@ static const GOptionEntry options[] = {
     {"theme", 0, 0, G_OPTION_ARG_STRING, &given.theme, "system, light or dark", "NAME"},
     {"pick", 0, 0, G_OPTION_ARG_STRING, &given.pick,
      "Pick what is seen there in the photon view, as soon as photons are traced", "X,Y"},
+    {"memory", 0, 0, G_OPTION_ARG_STRING, &given.memory,
+     "Take at most so much memory, as 2G or 500M", "SIZE"},
     {"screenshot", 0, 0, G_OPTION_ARG_FILENAME, &given.screenshot,
      "Take a picture of the window and end", "FILE.png"},
     {"after", 0, 0, G_OPTION_ARG_DOUBLE, &given.after,
@@ -142,6 +144,11 @@ static const GOptionEntry options[] = {
 
 static int local_options(void)
 {
+    g_autoptr(GError) error = NULL;
+    if (given.memory && !neph_memory_set_limit(given.memory, &error)) {
+        g_printerr("nephroid-view: --%s\n", error->message);
+        return 2;
+    }
     if (!given.version)
         return -1;
     g_print("nephroid-view %s\n", neph_version());

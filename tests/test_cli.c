@@ -54,6 +54,10 @@ static void test_bad_usage(folder *f, gconstpointer data)
         {"photons box.pbrt --trace -1", "--trace"},
         {"photons box.pbrt --trace 2.5", "--trace"},
         {"info", "expected SCENE"},
+        {"info box.pbrt --memory lots", "--memory: expected a size as 2G or 500M"},
+        {"info box.pbrt --memory 0", "--memory"},
+        {"info box.pbrt --memory 2GG", "--memory"},
+        {"info box.pbrt --memory -2G", "--memory"},
         {"compare a.exr", "expected IMAGE REFERENCE"},
         {"compare a.exr b.exr --metric ssim", "expected rmse, relmse, psnr or flip"},
         {"image", "expected IMAGE..."},
@@ -238,6 +242,22 @@ static void test_info(folder *f, gconstpointer data)
     g_assert_cmpfloat(json_find_number(json.out, "width"), ==, 16.0);
 }
 
+/* Any command takes a limit, and tells who wanted more. */
+static void test_memory(folder *f, gconstpointer data)
+{
+    (void)data;
+    run_well(f, "info box.pbrt --memory 1.5G");
+    run_well(f, "render box.pbrt -q --memory=500m");
+    g_auto(result) info = run(f, "info box.pbrt --memory 1K");
+    g_auto(result) render = run(f, "render box.pbrt -q --memory 40K -o none.png");
+    g_assert_cmpint(info.code, ==, 3);
+    g_assert_cmpint(render.code, ==, 3);
+    contains(info.err, "box.pbrt: error: out of memory: ");
+    contains(info.err, "limit of 1.0 KiB");
+    contains(render.err, "limit of 40.0 KiB");
+    g_assert_false(folder_has(f, "none.png"));
+}
+
 static void test_bsdf(folder *f, gconstpointer data)
 {
     (void)data;
@@ -266,5 +286,6 @@ int main(int argc, char **argv)
     folder_add_test("/cli/settings-file", test_settings_file_is_read_strictly);
     folder_add_test("/cli/info", test_info);
     folder_add_test("/cli/bsdf", test_bsdf);
+    folder_add_test("/cli/memory", test_memory);
     return g_test_run();
 }

@@ -66,6 +66,20 @@ NEPH_API bool neph_file_spares(const char *path, const char *const *others,
  * signal that is about to end the program: no file can be finished afterwards. */
 NEPH_API void neph_file_abandon_all(void);
 
+/* ---- Memory ---- */
+
+/** @brief Limits the memory that all scenes, images, photons and pictures of the process
+ * take together. What would take more fails with NEPH_ERROR_FAILED, before it is
+ * allocated; the message says how much was wanted for what, and how much is left. What is
+ * in use stays.
+ * @param size a number of bytes, with K, M, G or T of 1024, 1024², ...: "2G", "500M";
+ * NULL: as at first, 80 % of what the machine, the process's cgroup and ulimit -v have,
+ * whichever is least
+ * @return false with NEPH_ERROR_USAGE; the limit is as it was. From any thread. */
+NEPH_API bool neph_memory_set_limit(const char *size, GError **error);
+/** @brief The limit in bytes. */
+NEPH_API size_t neph_memory_limit(void);
+
 /* ---- Settings ---- */
 
 typedef enum {

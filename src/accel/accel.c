@@ -4,7 +4,8 @@
  *   the world ── its own shapes, numbered as in world.shapes
  *             └─ instances, numbered from world.n on ── an object ── its shapes
  */
-#include "accel/accel_embree.h"
+#include "accel/embree_device.h"
+#include "base/memory.h"
 
 #include <string.h>
 
@@ -18,24 +19,16 @@ typedef struct accel_group {
 } accel_group;
 
 struct accel {
-    RTCDevice device;
+    embree_device embree;
     shape **shapes; /* a copy of the array; the shapes are borrowed */
     accel_group world, *objects;
     size_t n_objects, n_instances;
+    size_t reserved; /* bytes of what Embree does not tell of */
     placed *instances;
     double shutter[2]; /* s: when rays of time 0 and 1 are */
-    char message[256]; /* the last thing the device complained of, while building */
-    enum RTCError code;
 };
 
 /* ---- Building ---- */
-
-static void note_error(void *data, enum RTCError code, const char *message)
-{
-    accel *a = data;
-    a->code = code;
-    g_strlcpy(a->message, message ? message : "no reason given", sizeof a->message);
-}
 
 static void attach(accel_group *to, RTCGeometry g, unsigned number)
 {
@@ -46,7 +39,7 @@ static void attach(accel_group *to, RTCGeometry g, unsigned number)
 
 static void group_open(accel *a, accel_group *group)
 {
-    group->scene = rtcNewScene(a->device);
+    group->scene = rtcNewScene(a->embree.device);
     group->bounds = box3_empty();
     rtcSetSceneFlags(group->scene, RTC_SCENE_FLAG_ROBUST);
 }
@@ -83,7 +76,7 @@ static void attach_shapes(accel *a, accel_group *group)
         shape *s = a->shapes[group->shapes[i]];
         if (s->is_invisible)
             continue;
-        attach(group, shape_geometry(a->device, s), i);
+        attach(group, shape_geometry(a->embree.device, s), i);
         group->bounds = box3_union(group->bounds, s->kind->bounds(s->self));
     }
 }
@@ -114,38 +107,38 @@ static void build(accel *a, const accel_input *in)
         placed *p = &a->instances[i];
         place_instance(a, p, &in->instances[i]);
         if (a->objects[p->is->object].n > 0)
-            attach(&a->world, placed_geometry(a->device, p), a->world.n + (unsigned)i);
+            attach(&a->world, placed_geometry(a->embree.device, p),
+                   a->world.n + (unsigned)i);
     }
     rtcCommitScene(a->world.scene);
 }
 
+static bool reserve_instances(accel *a, GError **error)
+{
+    const size_t each = 384; /* Embree 3.13 takes 298, with malloc */
+    size_t size = a->n_instances * each;
+    if (memory_reserve(size, "instances", error))
+        a->reserved = size;
+    return a->reserved == size;
+}
+
 accel *accel_build(const accel_input *in, unsigned threads, GError **error)
 {
-    g_autofree char *config = g_strdup_printf("threads=%u,set_affinity=0", threads);
     accel *a = g_new0(accel, 1);
     a->shapes = g_memdup2(in->shapes, in->n_shapes * sizeof(shape *));
     a->n_objects = in->n_objects;
     a->objects = g_new0(accel_group, MAX(in->n_objects, 1));
     a->n_instances = in->n_instances;
-    a->instances = g_new0(placed, MAX(in->n_instances, 1));
+    a->instances = big_alloc(in->n_instances, sizeof(placed), "instances", error);
     memcpy(a->shutter, in->shutter, sizeof a->shutter);
-    a->device = rtcNewDevice(config);
-    if (!a->device) {
-        error_set(error, ERROR_FAILED, "Embree does not start (error %d)",
-                  (int)rtcGetDeviceError(NULL));
-        accel_free(a);
-        return NULL;
+    if (a->instances && reserve_instances(a, error) &&
+        embree_device_open(&a->embree, "the search structure", threads, error)) {
+        build(a, in);
+        if (embree_device_check(&a->embree, error))
+            return a;
     }
-    rtcSetDeviceErrorFunction(a->device, note_error, a);
-    build(a, in);
-    if (a->code != RTC_ERROR_NONE) {
-        error_set(error, ERROR_FAILED, "Embree can not build the scene: %s%s",
-                  a->code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory: " : "",
-                  a->message);
-        accel_free(a);
-        return NULL;
-    }
-    return a;
+    accel_free(a);
+    return NULL;
 }
 
 static void group_close(accel_group *group)
@@ -162,10 +155,10 @@ void accel_free(accel *a)
     group_close(&a->world);
     for (size_t i = 0; i < a->n_objects; i++)
         group_close(&a->objects[i]);
-    if (a->device)
-        rtcReleaseDevice(a->device);
+    embree_device_close(&a->embree);
+    memory_release(a->reserved);
     g_free(a->objects);
-    g_free(a->instances);
+    big_free(a->instances);
     g_free(a->shapes);
     g_free(a);
 }

@@ -3,8 +3,8 @@
  */
 #pragma once
 
-#include "shape/instance.h"
 #include "medium/hit.h"
+#include "shape/instance.h"
 #include "shape/shape.h"
 
 typedef struct accel accel;

@@ -1,5 +1,7 @@
 #include "base/memory.h"
 
+#include "base/machine.h"
+
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -10,7 +12,81 @@
 
 enum { HUGE_ARRAY = 4 << 20 }; /* bytes, from which on huge pages are worth asking for */
 
+#define DEFAULT_SHARE 0.8
+
 static atomic_uint fail_countdown;
+
+/* ---- The limit ---- */
+
+static atomic_size_t used, limit /* 0: not asked for yet */;
+
+void memory_set_limit(size_t bytes)
+{
+    atomic_store(&limit, bytes);
+}
+
+size_t memory_limit(void)
+{
+    size_t bytes = atomic_load(&limit);
+    if (bytes > 0)
+        return bytes;
+    bytes = (size_t)(DEFAULT_SHARE * (double)machine_memory());
+    atomic_store(&limit, bytes);
+    return bytes;
+}
+
+/* "3.5 GiB" */
+static void write_size(size_t bytes, char *out, size_t size)
+{
+    static const char *const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+    double x = (double)bytes;
+    size_t unit = 0;
+    for (; x >= 1024.0 && unit + 1 < G_N_ELEMENTS(units); unit++)
+        x /= 1024.0;
+    g_snprintf(out, (gulong)size, unit ? "%.1f %s" : "%.0f %s", x, units[unit]);
+}
+
+static void refuse(size_t bytes, const char *what, GError **error)
+{
+    char wanted[32], left[32], most[32];
+    size_t in_use = atomic_load(&used), all = memory_limit();
+    write_size(bytes, wanted, sizeof wanted);
+    write_size(all - MIN(in_use, all), left, sizeof left);
+    write_size(all, most, sizeof most);
+    error_set(error, ERROR_FAILED,
+              "out of memory: %s for %s, where %s are left of the limit of %s", wanted,
+              what, left, most);
+}
+
+static bool reserve(size_t bytes)
+{
+    size_t all = memory_limit(), before = atomic_load(&used);
+    do
+        if (before > all || bytes > all - before)
+            return false;
+    while (!atomic_compare_exchange_weak(&used, &before, before + bytes));
+    return true;
+}
+
+bool memory_reserve(size_t bytes, const char *what, GError **error)
+{
+    if (reserve(bytes))
+        return true;
+    refuse(bytes, what, error);
+    return false;
+}
+
+void memory_count(size_t bytes)
+{
+    atomic_fetch_add(&used, bytes);
+}
+
+void memory_release(size_t bytes)
+{
+    atomic_fetch_sub(&used, bytes);
+}
+
+/* ---- Arrays ---- */
 
 static bool must_fail(void)
 {
@@ -38,24 +114,33 @@ static void use_huge_pages(char *base, size_t bytes)
 }
 
 /* From calloc, which knows which memory is zero already: a big array is then not touched
- * before it is used, nor by one thread only. Where it begins stands before the array. */
+ * before it is used, nor by one thread only. Before the array stand how large it is and
+ * where it begins. */
+typedef struct array_head {
+    size_t bytes;
+    void *base;
+} array_head;
+
 void *big_alloc(size_t n, size_t size, const char *what, GError **error)
 {
     const size_t alignment = 64;
     size_t bytes = 0;
     bool fits = !__builtin_mul_overflow(n, size, &bytes) && bytes <= SIZE_MAX / 2;
-    size_t rounded = fits ? (bytes + alignment) & ~(alignment - 1) : 0;
-    char *base = fits && !must_fail() ? calloc(1, rounded + alignment) : NULL;
+    size_t rounded = fits ? (bytes + alignment) & ~(alignment - 1) : SIZE_MAX / 2;
+    size_t total = rounded + alignment;
+    if (!memory_reserve(total, what, error))
+        return NULL;
+    char *base = must_fail() ? NULL : calloc(1, total);
     if (!base) {
-        error_set(error, ERROR_FAILED, "out of memory: %zu x %zu bytes for %s", n, size,
-                  what);
+        memory_release(total);
+        refuse(total, what, error);
         return NULL;
     }
     if (rounded >= HUGE_ARRAY)
         use_huge_pages(base, rounded);
-    void **array = (void **)(((uintptr_t)base + alignment) & ~(uintptr_t)(alignment - 1));
-    array[-1] = base;
-    return array;
+    uintptr_t array = ((uintptr_t)base + alignment) & ~(uintptr_t)(alignment - 1);
+    ((array_head *)array)[-1] = (array_head){total, base};
+    return (void *)array;
 }
 
 void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *what,
@@ -71,8 +156,11 @@ void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *w
 
 void big_free(void *array)
 {
-    if (array)
-        free(((void **)array)[-1]);
+    if (!array)
+        return;
+    const array_head head = ((array_head *)array)[-1];
+    memory_release(head.bytes);
+    free(head.base);
 }
 
 size_t memory_peak(void)

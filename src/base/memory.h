@@ -4,6 +4,10 @@
  * Small things (strings, lists) use GLib, which aborts when a few bytes are not to be
  * had; arrays whose size depends on the input (photons, meshes, images) come from here
  * and may fail.
+ *
+ * All of them together stay below a limit, so that a file of a few bytes that asks for
+ * all the memory there is gets a message and not the machine. What libraries allocate
+ * for us (decoders, Embree) is reserved here before.
  */
 #pragma once
 
@@ -26,6 +30,20 @@ void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *w
 
 /** @brief Frees what big_alloc or big_grow gave; NULL is allowed. */
 void big_free(void *array);
+
+/** @brief Counts bytes that come from elsewhere, or will be wanted later, as used.
+ * @return false with ERROR_FAILED saying how much `what` wanted and how much of the limit
+ * is left; nothing is counted then */
+bool memory_reserve(size_t bytes, const char *what, GError **error);
+/** @brief The same where nothing can be refused any more. */
+void memory_count(size_t bytes);
+/** @brief Gives back what memory_reserve or memory_count took. */
+void memory_release(size_t bytes);
+
+/** @brief Limits the process. What is in use stays. @param bytes 0: as at first, 80 % of
+ * what the machine, the process's cgroup and ulimit -v have, whichever is least */
+void memory_set_limit(size_t bytes);
+size_t memory_limit(void);
 
 /** @brief For tests: the n-th call from now (1 = next) fails once; 0 = never. */
 void big_alloc_fail_at(unsigned n);

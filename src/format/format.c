@@ -79,18 +79,20 @@ static void warn_of_darkness(const scene *s, const char *path)
                     s->lights->len ? " but what is black" : "");
 }
 
-/** What only the whole scene can tell has no line; the file it is of is named. */
-static bool commit(scene *s, const char *path, unsigned threads, GError **error)
+/** What is wrong in a file is told with its place. What only the whole scene can tell has
+ * no line, and want of memory no file: the scene's is named. */
+static bool load(scene *s, const char *path, unsigned threads, GError **error)
 {
-    g_autoptr(GError) inner = NULL;
-    if (scene_commit(s, threads, &inner)) {
+    GError *inner = NULL;
+    bool read = format_read(s, path, &inner);
+    if (read && scene_commit(s, threads, &inner)) {
         warn_of_darkness(s, path);
         return true;
     }
-    bool is_input = g_error_matches(inner, NEPH_ERROR, ERROR_INPUT);
-    if (is_input && !g_str_has_prefix(inner->message, path))
+    bool has_place = !read && g_error_matches(inner, NEPH_ERROR, ERROR_INPUT);
+    if (!has_place && !strstr(inner->message, path))
         g_prefix_error(&inner, "%s: ", path);
-    g_propagate_error(error, g_steal_pointer(&inner));
+    g_propagate_error(error, inner);
     return false;
 }
 
@@ -111,7 +113,7 @@ scene *format_load_with(const char *path, const load_options *options, GError **
     s->thin_glass = options->thin_glass;
     s->build.sources = scene_sources_new(options->source, options->source_data);
     s->build.cancel = options->cancel;
-    if (!format_read(s, path, error) || !commit(s, path, options->threads, error))
+    if (!load(s, path, options->threads, error))
         return NULL;
     s->build.cancel = NULL;
     return g_steal_pointer(&s);

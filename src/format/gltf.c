@@ -49,15 +49,11 @@ void gltf_take_error(gltf *g, const json_value *at, GError *error)
         return;
     }
     g_autofree char *way = json_path(at);
-    if (g_error_matches(error, NEPH_ERROR, ERROR_INPUT)) {
-        g_autofree char *before = g_strdup_printf("%s: ", g->path);
-        const char *text = error->message;
-        text += g_str_has_prefix(text, before) ? strlen(before) : 0;
-        error_at(&g->json.error, (source_place){g->json.file, 0, 0}, "%s: %s", way, text);
-        g_error_free(error);
-    } else {
-        g->json.error = error;
-    }
+    g_autofree char *before = g_strdup_printf("%s: ", g->path);
+    const char *text = error->message;
+    text += g_str_has_prefix(text, before) ? strlen(before) : 0;
+    error_set(&g->json.error, (error_code)error->code, "%s%s: %s", before, way, text);
+    g_error_free(error);
 }
 
 json_value gltf_refer(gltf *g, const json_value *of, const char *key, const char *name,

@@ -124,6 +124,17 @@ static bool read_attribute(gltf *g, const json_value *attributes, const char *na
     return !gltf_failed(g);
 }
 
+/* A count of many may stand in a file of few bytes. */
+static bool expect_copies(gltf *g, const shown_mesh *shown, size_t n)
+{
+    const source_place whole = {NULL, 0, 0};
+    GError *error = NULL;
+    if (scene_expect_instances(g->scene, n, whole, &error))
+        return true;
+    gltf_take_error(g, &shown->of, error);
+    return false;
+}
+
 static void place_copies(gltf *g, const shown_mesh *shown, const json_value *attributes,
                          const transform *to_world)
 {
@@ -132,6 +143,7 @@ static void place_copies(gltf *g, const shown_mesh *shown, const json_value *att
     bool done = read_attribute(g, attributes, "TRANSLATION", 3, &n, &t) &&
                 read_attribute(g, attributes, "ROTATION", 4, &n, &q) &&
                 read_attribute(g, attributes, "SCALE", 3, &n, &s);
+    done = done && expect_copies(g, shown, n);
     for (size_t i = 0; i < n && done && !gltf_failed(g); i++) {
         double move[3] = {0}, turn[4] = {0, 0, 0, 1.0}, scale[3] = {1.0, 1.0, 1.0};
         transform own;

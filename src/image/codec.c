@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/output.h"
 
+#include <glib/gstdio.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -117,7 +118,8 @@ static image *read_source(const image_source *source, const image_read_options *
     return img;
 }
 
-image *image_read(const char *path, const image_read_options *options, GError **error)
+static image *read_path(const char *path, const image_read_options *options,
+                        GError **error)
 {
     input in;
     if (!input_read(&in, path, error))
@@ -128,15 +130,30 @@ image *image_read(const char *path, const image_read_options *options, GError **
     return img;
 }
 
+image *image_read(const char *path, const image_read_options *options, GError **error)
+{
+    GStatBuf about;
+    size_t size = g_stat(path, &about) == 0 ? (size_t)about.st_size : 0;
+    if (!memory_reserve(size, "the file", error)) {
+        name_file(path, error);
+        return NULL;
+    }
+    image *img = read_path(path, options, error);
+    memory_release(size);
+    return img;
+}
+
 /* Codecs may read the zero behind the bytes. */
 image *image_read_bytes(const char *name, GBytes *bytes,
                         const image_read_options *options, GError **error)
 {
     gsize size;
     const uint8_t *data = g_bytes_get_data(bytes, &size);
-    uint8_t *copy = big_alloc(size + 1, 1, name, error);
-    if (!copy)
+    uint8_t *copy = big_alloc(size + 1, 1, "the file", error);
+    if (!copy) {
+        name_file(name, error);
         return NULL;
+    }
     if (size)
         memcpy(copy, data, size);
     image_source source = {name, copy, size};

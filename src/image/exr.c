@@ -5,6 +5,7 @@
  *
  * The image is the data window: what lies outside it is not in the file.
  */
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "image/codec.h"
 #include "image/exr_file.h"
@@ -24,6 +25,7 @@ enum {
 typedef struct exr_reading {
     const image_source *source;
     image *img;
+    size_t reserved; /* bytes for what the library decodes at once */
     GError **error;
 } exr_reading;
 
@@ -99,11 +101,25 @@ static bool can_be_read(const exr_description *part, const image_source *source,
     return false;
 }
 
+/* Chunks are tiles or up to 256 lines; there is one as it is in the file and one decoded.
+ */
+static bool reserve_chunks(exr_reading *r, const exr_description *part)
+{
+    double lines = (double)part->width * (double)MIN(part->height, 256);
+    double tile = (double)part->tile_width * (double)part->tile_height;
+    double bytes = 2 * part->bytes_per_pixel * (part->tile_width > 0 ? tile : lines);
+    size_t whole = bytes < (double)(SIZE_MAX / 4) ? (size_t)bytes : SIZE_MAX / 4;
+    if (!memory_reserve(whole, "the chunks of an image", r->error))
+        return false;
+    r->reserved = whole;
+    return true;
+}
+
 /* An exr_place_function. */
 static float *make_image(const exr_description *part, void *data)
 {
     exr_reading *r = data;
-    if (!can_be_read(part, r->source, r->error))
+    if (!can_be_read(part, r->source, r->error) || !reserve_chunks(r, part))
         return NULL;
     r->img = image_new((int)part->width, (int)part->height, (int)part->n_channels,
                        part->channels, r->error);
@@ -141,6 +157,7 @@ static image *read_exr(const image_source *source, const image_read_options *opt
     exr_reading r = {.source = source, .error = error};
     if (!read_file(&r, error))
         image_free(g_steal_pointer(&r.img));
+    memory_release(r.reserved);
     return r.img;
 }
 

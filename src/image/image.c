@@ -24,7 +24,8 @@ image *image_new(int width, int height, int n_channels, const char *const *chann
     }
     size_t n_pixels = (size_t)width * (size_t)height;
     size_t pixel_size = (size_t)n_channels * sizeof(float);
-    float *pixels = big_alloc(n_pixels, pixel_size, "image", error);
+    g_autofree char *what = g_strdup_printf("an image of %d x %d pixels", width, height);
+    float *pixels = big_alloc(n_pixels, pixel_size, what, error);
     if (!pixels)
         return NULL;
     image *img = g_new0(image, 1);

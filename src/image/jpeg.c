@@ -6,6 +6,7 @@
  * warns of (a scan that ends early, a broken code) is damage here, for it would be
  * guessed at in grey.
  */
+#include "base/memory.h"
 #include "image/codec.h"
 
 #include <jpeglib.h> /* after stdio.h */
@@ -29,8 +30,9 @@ typedef struct jpeg_job {
     image *read;
     const float *table;
     JSAMPLE *row;
-    float scale; /* 2^exposure */
-    int rgba[4]; /* channels of to_write */
+    size_t reserved; /* bytes of what libjpeg keeps */
+    float scale;     /* 2^exposure */
+    int rgba[4];     /* channels of to_write */
 } jpeg_job;
 
 static void on_error(j_common_ptr info)
@@ -112,18 +114,31 @@ static void read_rows(jpeg_job *job)
     jpeg_finish_decompress(&job->in);
 }
 
-static bool read_guarded(jpeg_job *job, GError **error)
+/* For the image, and for the coefficients that libjpeg keeps of files with several scans.
+ */
+static bool make_room(jpeg_job *job, GError **error)
 {
     const double best_ratio = 512; /* a bit for 64 pixels of 8 bits */
+    int64_t width = job->in.output_width, height = job->in.output_height;
+    if (!source_size_possible(job->source, width, height, 1, best_ratio, error))
+        return false;
+    size_t pixel = (size_t)job->in.num_components * sizeof(JCOEF);
+    size_t kept =
+        jpeg_has_multiple_scans(&job->in) ? (size_t)(width * height) * pixel : 0;
+    if (!memory_reserve(kept, "the scans of an image", error))
+        return false;
+    job->reserved = kept;
+    job->read = image_new((int)width, (int)height, 3, rgba_names, error);
+    job->row = job->read ? g_malloc_n((gsize)width, 3) : NULL;
+    return job->read != NULL;
+}
+
+static bool read_guarded(jpeg_job *job, GError **error)
+{
     bool read = guarded(job, read_header);
     if (read) {
-        int64_t width = job->in.output_width, height = job->in.output_height;
-        if (!source_size_possible(job->source, width, height, 1, best_ratio, error))
+        if (!make_room(job, error))
             return false;
-        job->read = image_new((int)width, (int)height, 3, rgba_names, error);
-        if (!job->read)
-            return false;
-        job->row = g_malloc_n(width, 3);
         read = guarded(job, read_rows);
     }
     if (!read)
@@ -144,6 +159,7 @@ static image *read_jpeg(const image_source *source, const image_read_options *op
     bool read = read_guarded(job, error);
     img = job->read;
     jpeg_destroy_decompress(&job->in);
+    memory_release(job->reserved);
     g_free(job->row);
     g_free(job);
     return read ? g_steal_pointer(&img) : NULL;

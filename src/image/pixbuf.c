@@ -4,6 +4,7 @@
  * A TGA file begins with no mark of its own, so it is asked for last, and what it says of
  * itself must be possible.
  */
+#include "base/memory.h"
 #include "image/codec.h"
 
 #include <gdk-pixbuf/gdk-pixbuf.h>
@@ -37,21 +38,37 @@ static image *to_image(const GdkPixbuf *from, const image_read_options *options,
     return img;
 }
 
-/* @param type gdk-pixbuf's name of the format, name ours */
-static image *read_as(const char *type, const char *name, const image_source *source,
-                      const image_read_options *options, GError **error)
+/* The two names of a format. */
+typedef struct pixbuf_format {
+    const char *type, *name; /* gdk-pixbuf's, ours */
+} pixbuf_format;
+
+static image *read_unlimited(const pixbuf_format *as, const image_source *source,
+                             const image_read_options *options, GError **error)
 {
     g_autoptr(GError) why = NULL;
-    g_autoptr(GdkPixbufLoader) loader = gdk_pixbuf_loader_new_with_type(type, &why);
+    g_autoptr(GdkPixbufLoader) loader = gdk_pixbuf_loader_new_with_type(as->type, &why);
     if (!loader) {
         error_set(error, ERROR_FAILED, "%s: %s files cannot be read here: %s",
-                  source->path, name, why->message);
+                  source->path, as->name, why->message);
         return NULL;
     }
     if (load(loader, source, &why))
         return to_image(gdk_pixbuf_loader_get_pixbuf(loader), options, error);
-    source_damaged(source, name, why ? why->message : "it ends early", error);
+    source_damaged(source, as->name, why ? why->message : "it ends early", error);
     return NULL;
+}
+
+/* gdk-pixbuf makes room by itself, for up to four bytes a pixel. */
+static image *read_as(const pixbuf_format *as, const image_source *source,
+                      int64_t n_pixels, const image_read_options *options, GError **error)
+{
+    const size_t size = 4 * (size_t)n_pixels;
+    if (!memory_reserve(size, "the rows of an image", error))
+        return NULL;
+    image *img = read_unlimited(as, source, options, error);
+    memory_release(size);
+    return img;
 }
 
 static unsigned u16_at(const image_source *source, size_t at)
@@ -94,7 +111,8 @@ static image *read_bmp(const image_source *source, const image_read_options *opt
         source_damaged(source, codec_bmp.name, "it ends early", error);
         return NULL;
     }
-    return read_as("bmp", codec_bmp.name, source, options, error);
+    const pixbuf_format bmp = {"bmp", codec_bmp.name};
+    return read_as(&bmp, source, width * height, options, error);
 }
 
 /* ---- TGA ("Truevision TGA File Format Specification" 2.0): a header of 18 bytes ---- */
@@ -123,10 +141,11 @@ static image *read_tga(const image_source *source, const image_read_options *opt
                        GError **error)
 {
     const double best_ratio = 128; /* a run of so many pixels, each of one byte or more */
-    if (!source_size_possible(source, u16_at(source, 12), u16_at(source, 14), 1,
-                              best_ratio, error))
+    int64_t width = u16_at(source, 12), height = u16_at(source, 14);
+    if (!source_size_possible(source, width, height, 1, best_ratio, error))
         return NULL;
-    return read_as("tga", codec_tga.name, source, options, error);
+    const pixbuf_format tga = {"tga", codec_tga.name};
+    return read_as(&tga, source, width * height, options, error);
 }
 
 static const char *const read_only[] = {NULL};

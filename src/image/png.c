@@ -4,6 +4,7 @@
  * libpng reports errors by a jump. All state that must survive one lies in a png_job of
  * the caller's; the function that sets the jump has no variables of its own.
  */
+#include "base/memory.h"
 #include "image/codec.h"
 
 #include <math.h>
@@ -105,12 +106,11 @@ static bool allocate_rows(png_job *job, GError **error)
 {
     size_t row_size = png_get_rowbytes(job->png, job->info);
     size_t n_rows = (size_t)job->height;
-    job->bytes = g_try_malloc_n(n_rows, row_size);
-    job->rows = g_try_malloc_n(n_rows, sizeof *job->rows);
-    if (!job->bytes || !job->rows) {
-        error_set(error, ERROR_FAILED, "%s: out of memory", job->source->path);
+    job->bytes = big_alloc(n_rows, row_size, "the rows of an image", error);
+    if (job->bytes)
+        job->rows = big_alloc(n_rows, sizeof *job->rows, "the rows of an image", error);
+    if (!job->rows)
         return false;
-    }
     for (size_t y = 0; y < n_rows; y++)
         job->rows[y] = job->bytes + y * row_size;
     return true;
@@ -157,16 +157,17 @@ static image *read_guarded(png_job *job, const image_read_options *options,
     }
     if (!describe(job, error) || !allocate_rows(job, error))
         return NULL;
+    g_autoptr(image) img =
+        image_new(job->width, job->height, job->n_values, rgba_names, error);
+    if (!img)
+        return NULL;
     if (!guarded(job, read_rows)) {
         source_damaged(job->source, codec_png.name, job->message, error);
         return NULL;
     }
-    image *img = image_new(job->width, job->height, job->n_values, rgba_names, error);
-    if (!img)
-        return NULL;
     g_autofree float *table = encoding_table(options, 1u << job->depth);
     convert(job, table, img->pixels);
-    return img;
+    return g_steal_pointer(&img);
 }
 
 static image *read_png(const image_source *source, const image_read_options *options,
@@ -187,8 +188,8 @@ static image *read_png(const image_source *source, const image_read_options *opt
     else
         error_set(error, ERROR_FAILED, "%s: libpng cannot be started", source->path);
     png_destroy_read_struct(&job->png, &job->info, NULL);
-    g_free(job->bytes);
-    g_free(job->rows);
+    big_free(job->bytes);
+    big_free(job->rows);
     g_free(job);
     return img;
 }

@@ -4,13 +4,12 @@
  */
 #include "photon/disc_set.h"
 
-#include "accel/accel_embree.h"
+#include "accel/embree_device.h"
 
 struct disc_set {
-    RTCDevice device;
+    embree_device embree;
     RTCScene scene;
     const disc *discs;
-    enum RTCError code;
 };
 
 /* A query, with what Embree hands on to the function that intersects. */
@@ -64,21 +63,15 @@ static void disc_occluded(const struct RTCOccludedFunctionNArguments *args)
         query->out->at[query->out->n++] = (disc_crossing){args->primID, t, distance2};
 }
 
-static void note_error(void *data, enum RTCError code, const char *message)
-{
-    (void)message;
-    ((disc_set *)data)->code = code;
-}
-
 static void build(disc_set *set, size_t n)
 {
-    RTCGeometry g = rtcNewGeometry(set->device, RTC_GEOMETRY_TYPE_USER);
+    RTCGeometry g = rtcNewGeometry(set->embree.device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(g, (unsigned)n);
     rtcSetGeometryUserData(g, set);
     rtcSetGeometryBoundsFunction(g, disc_bounds, NULL);
     rtcSetGeometryOccludedFunction(g, disc_occluded);
     rtcCommitGeometry(g);
-    set->scene = rtcNewScene(set->device);
+    set->scene = rtcNewScene(set->embree.device);
     rtcSetSceneFlags(set->scene, RTC_SCENE_FLAG_ROBUST);
     rtcAttachGeometry(set->scene, g);
     rtcReleaseGeometry(g);
@@ -87,18 +80,15 @@ static void build(disc_set *set, size_t n)
 
 disc_set *disc_set_build(const disc *discs, size_t n, unsigned threads, GError **error)
 {
-    g_autofree char *config = g_strdup_printf("threads=%u,set_affinity=0", threads);
     disc_set *set = g_new0(disc_set, 1);
     set->discs = discs;
-    set->device = rtcNewDevice(config);
-    if (set->device && n < RTC_INVALID_GEOMETRY_ID) {
-        rtcSetDeviceErrorFunction(set->device, note_error, set);
+    if (n >= RTC_INVALID_GEOMETRY_ID)
+        error_set(error, ERROR_FAILED, "%zu photons in media are too many for Embree", n);
+    else if (embree_device_open(&set->embree, "photons in media", threads, error)) {
         build(set, n);
-        if (set->code == RTC_ERROR_NONE)
+        if (embree_device_check(&set->embree, error))
             return set;
     }
-    error_set(error, ERROR_FAILED, "Embree can not sort %zu photons in media (error %d)",
-              n, (int)set->code);
     disc_set_free(set);
     return NULL;
 }
@@ -109,8 +99,7 @@ void disc_set_free(disc_set *set)
         return;
     if (set->scene)
         rtcReleaseScene(set->scene);
-    if (set->device)
-        rtcReleaseDevice(set->device);
+    embree_device_close(&set->embree);
     g_free(set);
 }
 

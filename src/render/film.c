@@ -31,6 +31,19 @@ static bool open_groups(film *f, const scene *s, GError **error)
     return f->groups != NULL;
 }
 
+static GPtrArray *channel_names(const film *f);
+
+/* The image that the film becomes is not refused when all is rendered. */
+static bool reserve_image(film *f, GError **error)
+{
+    g_autoptr(GPtrArray) names = channel_names(f);
+    const size_t n_variance = 1; /* not among the names before there are passes */
+    size_t size = n_pixels(f) * (names->len + n_variance) * sizeof(float);
+    if (memory_reserve(size, "the image", error))
+        f->image_size = size;
+    return f->image_size > 0;
+}
+
 bool film_open(film *f, const scene *s, GError **error)
 {
     const film_settings *how = &s->film;
@@ -56,7 +69,8 @@ bool film_open(film *f, const scene *s, GError **error)
     f->pass = big_alloc(n_pixels(f), sizeof *f->pass, "the film", error);
     if (f->pass)
         f->pixels = big_alloc(n_pixels(f), sizeof *f->pixels, "the film", error);
-    return f->pixels && open_groups(f, s, error) && gbuffer_open(f, how, error);
+    return f->pixels && open_groups(f, s, error) && gbuffer_open(f, how, error) &&
+           reserve_image(f, error);
 }
 
 void film_clear(film *f)
@@ -67,6 +81,7 @@ void film_clear(film *f)
     big_free(f->groups);
     big_free(f->pass_surfaces);
     big_free(f->surfaces);
+    memory_release(f->image_size);
     *f = (film){0};
 }
 
@@ -423,8 +438,10 @@ image *film_image(const film *f, unsigned threads, GError **error)
 image *film_image_rows(const film *f, int y, int rows, unsigned threads, GError **error)
 {
     g_autoptr(GPtrArray) names = channel_names(f);
+    memory_release(f->image_size);
     image *img = image_new(f->width, rows, (int)names->len,
                            (const char *const *)names->pdata, error);
+    memory_count(f->image_size);
     if (!img)
         return NULL;
     image_loop loop = {f, img, (size_t)y * (size_t)f->width};

@@ -73,6 +73,7 @@ typedef struct film {
     const color_space *space;
     surface_sum *pass_surfaces; /**< of the pass; NULL: the film is no gbuffer */
     surface_sum *surfaces;      /**< of the passes done */
+    size_t image_size;          /**< bytes reserved for film_image */
 } film;
 
 /** @brief An empty film for the scene's crop window. */

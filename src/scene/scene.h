@@ -71,6 +71,7 @@ typedef struct scene {
     medium_interface around;    /**< what is added from here on */
     GArray *objects;            /**< scene_object */
     GArray *instances;          /**< instance */
+    size_t instance_room;       /**< as many have their memory reserved */
     int open_object; /**< that shapes are added to now, or NO_INDEX: the world */
     camera camera;
     bool has_camera;
@@ -161,6 +162,9 @@ int scene_object_begin(scene *s, const char *name, source_place place, GError **
 void scene_object_end(scene *s);
 /** @brief Index of a named object, or NO_INDEX. */
 int scene_find_object(const scene *s, const char *name);
+/** @brief Reserves the memory of n instances, so that they are refused before the first
+ * of them is made. Not needed, but for counts that a small file may state. */
+bool scene_expect_instances(scene *s, size_t n, source_place place, GError **error);
 /** @brief Puts an object into the world once more. Times of the motion in seconds. */
 bool scene_add_instance(scene *s, int object, const motion *to_world, source_place place,
                         GError **error);

@@ -15,6 +15,9 @@
 
 /* ---- Objects and instances ---- */
 
+/* An array that grows holds up to twice what is in it. */
+#define INSTANCE_SIZE (2 * sizeof(instance))
+
 static void clear_object(void *data)
 {
     g_free(((scene_object *)data)->name);
@@ -31,6 +34,7 @@ void scene_open_objects(scene *s)
 void scene_close_objects(scene *s)
 {
     g_array_unref(s->objects);
+    memory_release(s->instance_room * INSTANCE_SIZE);
     g_array_unref(s->instances);
 }
 
@@ -68,6 +72,21 @@ int scene_find_object(const scene *s, const char *name)
     return NO_INDEX;
 }
 
+bool scene_expect_instances(scene *s, size_t n, source_place place, GError **error)
+{
+    size_t size;
+    g_autofree char *what = g_strdup_printf("%zu instance%s", n, n == 1 ? "" : "s");
+    GError *refused = NULL;
+    if (__builtin_mul_overflow(n, INSTANCE_SIZE, &size))
+        size = SIZE_MAX;
+    if (memory_reserve(size, what, &refused)) {
+        s->instance_room += n;
+        return true;
+    }
+    error_move_at(error, place, refused);
+    return false;
+}
+
 bool scene_add_instance(scene *s, int object, const motion *to_world, source_place place,
                         GError **error)
 {
@@ -75,6 +94,9 @@ bool scene_add_instance(scene *s, int object, const motion *to_world, source_pla
         error_at(error, place, "an instance needs an object, before the scene is whole");
         return false;
     }
+    if (s->instances->len == s->instance_room &&
+        !scene_expect_instances(s, 1, place, error))
+        return false;
     instance made = {object, *to_world, place};
     LISTENER_TELL(s, instance, object, to_world);
     g_array_append_val(s->instances, made);
