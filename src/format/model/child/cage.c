@@ -61,8 +61,9 @@ static bool allow(scmp_filter_ctx filter)
     const struct scmp_arg_cmp not_run = SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0);
     const struct scmp_arg_cmp no_file =
         SCMP_A3(SCMP_CMP_MASKED_EQ, MAP_ANONYMOUS, MAP_ANONYMOUS);
-    const struct scmp_arg_cmp to_pipe = SCMP_A0(SCMP_CMP_EQ, STDOUT_FILENO);
-    const struct scmp_arg_cmp self = SCMP_A0(SCMP_CMP_EQ, (scmp_datum_t)getpid());
+    const struct scmp_arg_cmp to_pipe = {.op = SCMP_CMP_EQ, .datum_a = STDOUT_FILENO};
+    const struct scmp_arg_cmp self = {.op = SCMP_CMP_EQ,
+                                      .datum_a = (scmp_datum_t)getpid()};
     return done &&
            seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(mmap), 2, not_run,
                             no_file) == 0 &&

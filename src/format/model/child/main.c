@@ -64,7 +64,7 @@ static bool take_files(given_files *files, const char *model, int n, char **name
 }
 
 /* Running out of memory is all that C++ throws of its own accord. */
-static void fail(out *o, const char *text)
+_Noreturn static void fail(out *o, const char *text)
 {
     bool no_memory = !text || !*text || strstr(text, "bad_alloc");
     out_fail(o, no_memory ? STREAM_NO_MEMORY : STREAM_DAMAGED, text ? text : "");
