@@ -113,7 +113,8 @@ bool pbrt_color_space(pbrt_parser *parser, source_place place)
 static char *new_object_name(pbrt_parser *parser, const char *name, source_place at)
 {
     char *own = g_strdup(name);
-    for (unsigned i = 2; scene_find_object(parser->scene, own) != NO_INDEX; i++) {
+    guint n = parser->scene->objects->len;
+    for (guint i = n + 1; scene_find_object(parser->scene, own) != NO_INDEX; i++) {
         g_free(own);
         own = g_strdup_printf("%s, %u", name, i);
     }

@@ -42,7 +42,8 @@ static bool is_taken(const pbrt_parser *parser, name_kind kind, const char *name
 static const char *free_name(const pbrt_parser *parser, name_kind kind, const char *name)
 {
     g_autofree char *candidate = g_strdup(name);
-    for (unsigned i = 2; is_taken(parser, kind, candidate); i++) {
+    /* From how many there are: files may give a name ten thousand times. */
+    for (guint i = parser->v3_names->len + 1; is_taken(parser, kind, candidate); i++) {
         g_free(candidate);
         candidate = g_strdup_printf("%s, %u", name, i);
     }
