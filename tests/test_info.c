@@ -130,6 +130,81 @@ static void test_json(void)
     folder_remove(&f);
 }
 
+/* ---- Watts ---- */
+
+static double power_told(const char *lamps)
+{
+    g_autofree char *all = g_strconcat("WorldBegin\n", lamps, NULL);
+    scene_folder f = folder_new(all);
+    g_autoptr(GError) error = NULL;
+    g_autoptr(NephScene) s = neph_scene_load(f.main, 1, NULL, NULL, &error);
+    g_assert_no_error(error);
+    g_autofree char *json = neph_scene_describe(s, true);
+    folder_remove(&f);
+    return json_find_number(json, "power");
+}
+
+/* Lamps have the watts that the file gives them, whatever their spectra; those that it
+   gives in other ways have what follows by geometry. */
+static void test_watts(void)
+{
+    static const struct {
+        const char *lamps;
+        double watts;
+    } cases[] = {
+        {"LightSource \"point\" \"float power\" 1 LightSource \"point\" \"float power\" "
+         "3\n",
+         4},
+        {"LightSource \"point\" \"float power\" 1 \"rgb I\" [1 0 0] LightSource "
+         "\"point\" "
+         "\"float power\" 3 \"blackbody I\" 2400\n",
+         0.2126 + 3},
+        {"LightSource \"point\" \"float power\" 4 \"spectrum I\" [588 0 589 1 590 0]\n",
+         4},
+        {"LightSource \"point\"\n", 4 * G_PI},
+        {"LightSource \"spot\" \"float power\" 7 \"float coneangle\" 20\n", 7},
+        {"LightSource \"distant\" \"float illuminance\" 2 Shape \"sphere\"\n", 2 * G_PI},
+        {"LightSource \"infinite\" \"float illuminance\" 2 Shape \"sphere\"\n",
+         2 * 4 * G_PI},
+        {"AreaLightSource \"diffuse\" \"float power\" 5 Shape \"sphere\"\n", 5},
+        {"AreaLightSource \"diffuse\" \"rgb L\" [3 3 3] Shape \"disk\"\n",
+         3 * G_PI * G_PI},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        double found = power_told(cases[i].lamps);
+        g_test_message("%s%g W, expected %g", cases[i].lamps, found, cases[i].watts);
+        g_assert_cmpfloat(fabs(found / cases[i].watts - 1), <, 2e-3);
+    }
+}
+
+/* And these are the watts of the photons that they send: all of them land in a ball. */
+static void test_watts_of_photons(void)
+{
+    scene_folder f = folder_new(
+        "Integrator \"photonmap\" \"bool direct_illumination\" false \"integer "
+        "direct_photons\" 2000\nWorldBegin LightSource \"point\" \"float power\" 1 "
+        "LightSource \"point\" \"float power\" 3 Material \"diffuse\" Shape "
+        "\"sphere\"\n");
+    double sum = 0;
+    enum { SEEDS = 16 };
+    g_autoptr(NephScene) s = neph_scene_load(f.main, 1, NULL, NULL, NULL);
+    for (int seed = 0; seed < SEEDS; seed++) { /* each draws wavelengths of its own */
+        g_autoptr(NephSettings) how = neph_scene_settings(s);
+        g_autofree char *text = g_strdup_printf("%d", seed);
+        g_assert_true(neph_settings_set(how, "seed", text, NULL));
+        g_autoptr(NephPhotons) photons = neph_photons_trace(s, how, NULL);
+        NephPhoton p;
+        for (size_t i = 0; neph_photons_get(photons, i, &p); i++)
+            if (p.photon_class == NEPH_PHOTON_DIRECT)
+                sum += (0.2126 * (double)p.rgb[0] + 0.7152 * (double)p.rgb[1] +
+                        0.0722 * (double)p.rgb[2]) /
+                       SEEDS;
+    }
+    folder_remove(&f);
+    g_test_message("%g W of photons", sum);
+    g_assert_cmpfloat(fabs(sum / 4 - 1), <, 0.03);
+}
+
 static void test_instances(void)
 {
     scene_folder f =
@@ -230,6 +305,8 @@ int main(int argc, char **argv)
     g_test_add_func("/info/instances", test_instances);
     g_test_add_func("/info/portal", test_portal);
     g_test_add_func("/info/json", test_json);
+    g_test_add_func("/info/watts", test_watts);
+    g_test_add_func("/info/watts-of-photons", test_watts_of_photons);
     g_test_add_func("/info/media", test_media);
     g_test_add_func("/info/fog-without-bounds", test_fog_without_bounds);
     g_test_add_func("/info/lamp-in-medium", test_lamp_in_medium);

@@ -413,7 +413,7 @@ NEPH_API char *neph_statistics_text(const NephStatistics *statistics, bool json)
 
 typedef struct NephPhoton {
     float position[3], direction[3]; /**< direction: to where it came from, unit */
-    float rgb[3];                    /**< flux as linear sRGB, W */
+    float rgb[3];                    /**< flux as linear sRGB, W of 683 lm */
     NephPhotonClass photon_class;
     uint32_t bounces; /**< scatterings before it landed; 0 until neph_photons_follow */
 } NephPhoton;

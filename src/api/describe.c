@@ -1,7 +1,6 @@
 #include "api/describe.h"
 
 #include "base/memory.h"
-#include "light/light_lines.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,6 +41,19 @@ static void count_shapes(const scene *s, summary *all)
     }
 }
 
+/* The light that the eye sees, over all wavelengths, lines too: Y, as the film has it. */
+static double watts_of(const light *one)
+{
+    double sum = 0.0;
+    for (int k = 0; k < CELLS_PER_STRATUM; k++) {
+        const wavelengths w = wavelengths_at(((float)k + 0.5f) / CELLS_PER_STRATUM);
+        float xyz[3];
+        spectrum_to_xyz(&w, one->kind->power(one->self, &w), xyz);
+        sum += (double)xyz[1];
+    }
+    return sum / CELLS_PER_STRATUM;
+}
+
 static void count_lights(const scene *s, summary *all)
 {
     for (guint i = 0; i < s->lights->len; i++) {
@@ -49,7 +61,7 @@ static void count_lights(const scene *s, summary *all)
         tally *t = tally_of(all->lights, one->kind->name);
         t->n++;
         t->is_environment = one->kind->is_environment;
-        t->power += (double)(light_measure(one, NULL).power * (LAMBDA_MAX - LAMBDA_MIN));
+        t->power += watts_of(one);
     }
 }
 

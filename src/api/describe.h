@@ -11,7 +11,7 @@ typedef struct tally {
     size_t n;
     size_t n_triangles;  /**< of shapes */
     double area;         /**< of shapes, m² */
-    double power;        /**< of lights, W between LAMBDA_MIN and LAMBDA_MAX */
+    double power;        /**< of lights, W of 683 lm: what "power" in a file names */
     size_t n_shining;    /**< shapes that are lights */
     size_t n_caustic;    /**< materials that cast caustics */
     size_t n_scattering; /**< media */
