@@ -414,18 +414,53 @@ static void test_save_and_close(void)
 #define CYCLES 5
 #endif
 
+static bool has_picture(window *w)
+{
+    return view_is_rendering(w) && canvas_picture(w->canvas);
+}
+
+static bool has_photons_and_passes(window *w)
+{
+    return has_passes(w) && w->photons;
+}
+
+/* Closes the window: who holds its scene besides has let it go soon, so nobody renders it
+   any more. */
+static void close_and_check(window *w)
+{
+    held_scene *held = held_scene_ref(w->scene);
+    g_assert_cmpint(w->state, ==, SESSION_RENDERING);
+    g_assert_cmpint(atomic_load(&held->holders), >, 2);
+    view_close(w);
+    gint64 limit = g_get_monotonic_time() + 60 * G_USEC_PER_SEC;
+    while (atomic_load(&held->holders) > 1 && g_get_monotonic_time() < limit) {
+        g_main_context_iteration(NULL, FALSE);
+        g_usleep(1000);
+    }
+    g_assert_cmpint(atomic_load(&held->holders), ==, 1);
+    held_scene_unref(held);
+}
+
 /* Each window dies while its worker is busy, at another moment each time: twenty for the
    address sanitizer, which then finds no leak. */
 static void test_close_while_rendering(void)
 {
+    static bool (*const moments[])(window * w) = {view_is_rendering, has_picture,
+                                                  has_passes, has_photons_and_passes};
     g_autofree char *path = long_scene();
     for (int i = 0; i < CYCLES; i++) {
         window *w = open_scene(path);
-        for (int k = 0; k < 3 * i; k++) {
-            g_main_context_iteration(NULL, FALSE);
-            g_usleep(1000);
+        if (i % 5 == 4) { /* it may not be read yet */
+            view_close(w);
+            continue;
         }
-        view_close(w);
+        if (i % 5 == 3) {
+            view_wait(view_is_rendering, w);
+            view_activate(w, "win.trace-photons");
+        }
+        view_wait(moments[i % 5], w);
+        g_usleep((gulong)(1000 * i));
+        close_and_check(w);
     }
 }
 
