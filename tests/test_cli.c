@@ -172,7 +172,6 @@ static void test_bad_input(folder *f, gconstpointer data)
     refuse(f, scene_head, nan_mesh, "bad.pbrt:");
     refuse(f, scene_head, zero_light, "bad.pbrt:");
     refuse(f, scene_head, bad_ply, "cut.ply");
-    refuse(f, "", scene_body, "amera");
     refuse(f, huge_film, scene_body, "bad.pbrt:");
     refuse(f, "Integrator \"photonmap\" \"integer photns\" 1\n", scene_body,
            "bad.pbrt:1:");

@@ -112,6 +112,7 @@ static void test_sppm_is_a_preset(void)
     expected.integrator = INTEGRATOR_PHOTONMAP;
     expected.spp = 1;
     expected.radius = 0.5;
+    expected.given = s.given; /* what was said differs, not what holds */
     g_assert_cmpmem(&s, sizeof s, &expected, sizeof expected);
 }
 
@@ -164,6 +165,7 @@ static void test_words_of_counts(void)
         g_autofree char *none = settings_get(&s, settings_find(names[i]));
         g_assert_cmpstr(none, ==, "0");
         set(&s, names[i], " unlimited ");
+        expected.given = s.given; /* what was said differs, not what holds */
         g_assert_cmpmem(&s, sizeof s, &expected, sizeof expected);
         set(&s, names[i], "7");
         set(&s, names[i], "-1");
