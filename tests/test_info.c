@@ -163,9 +163,11 @@ static void test_watts(void)
          4},
         {"LightSource \"point\"\n", 4 * G_PI},
         {"LightSource \"spot\" \"float power\" 7 \"float coneangle\" 20\n", 7},
-        {"LightSource \"distant\" \"float illuminance\" 2 Shape \"sphere\"\n", 2 * G_PI},
+        /* What meets the sphere around the scene's box: R² = 3 around a ball's. */
+        {"LightSource \"distant\" \"float illuminance\" 2 Shape \"sphere\"\n",
+         2 * G_PI * 3},
         {"LightSource \"infinite\" \"float illuminance\" 2 Shape \"sphere\"\n",
-         2 * 4 * G_PI},
+         2 * 4 * G_PI * 3},
         {"AreaLightSource \"diffuse\" \"float power\" 5 Shape \"sphere\"\n", 5},
         {"AreaLightSource \"diffuse\" \"rgb L\" [3 3 3] Shape \"disk\"\n",
          3 * G_PI * G_PI},
