@@ -1,9 +1,8 @@
 #!/bin/sh
-# What a broken reader meets in program and library: no writable code, no table of functions
+# What a broken reader meets in programs and library: no writable code, no table of functions
 # to overwrite, no known address, a stack that is watched and calls that know their buffers.
-# usage: test_hardening.sh PROGRAM LIBRARY; speaks TAP. CC chooses the compiler.
-program=$1
-library=$2
+# usage: test_hardening.sh LIBRARY PROGRAM...; speaks TAP. CC chooses the compiler.
+library=$1
 work=$(mktemp -d) || exit 99
 trap 'rm -rf "$work"' EXIT
 number=0
@@ -16,6 +15,15 @@ report() {
     else
         echo "not ok $number /hardening/$1"
     fi
+}
+
+# each CHECK FILE...: whether all of them pass
+each() {
+    check=$1
+    shift
+    for file in "$@"; do
+        "$check" "$file" || { echo "# $file"; return 1; }
+    done
 }
 
 is_movable() {
@@ -36,6 +44,10 @@ calls() {
     LC_ALL=C readelf --dyn-syms -W "$1" | grep -q -E "UND $2"
 }
 
+is_watched() {
+    calls "$1" __stack_chk_fail
+}
+
 # A call through a pointer may only land where one is meant to.
 marks_entries() {
     [ "$(uname -m)" = x86_64 ] || return 0
@@ -43,17 +55,17 @@ marks_entries() {
 }
 
 echo 1..7
-is_movable "$program" && is_movable "$library"
+each is_movable "$@"
 report any-address $?
-binds_at_once "$program" && binds_at_once "$library"
+each binds_at_once "$@"
 report bound-at-once $?
-stack_is_no_code "$program" && stack_is_no_code "$library"
+each stack_is_no_code "$@"
 report stack-is-no-code $?
-calls "$program" __stack_chk_fail && calls "$library" __stack_chk_fail
+each is_watched "$@"
 report stack-watched $?
 calls "$library" '__(memcpy|fread|printf|fprintf|vsnprintf|snprintf|sprintf|memset)_chk'
 report buffers-known $?
-marks_entries "$library" neph_version && marks_entries "$program" main
+marks_entries "$library" neph_version && marks_entries "$2" main
 report entries-marked $?
 
 cat >"$work/fault.c" <<'TEXT'

@@ -95,15 +95,18 @@ static bool unpack(input *in, GError **error)
 }
 
 /* Opening a pipe that nobody writes to would wait. */
-static int open_regular(const char *path, GStatBuf *status, GError **error)
+int input_descriptor(const char *path, size_t *size, GError **error)
 {
+    GStatBuf status;
     int fd = g_open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0);
-    if (fd < 0 || fstat(fd, status) != 0)
+    if (fd < 0 || fstat(fd, &status) != 0)
         error_set(error, ERROR_INPUT, "cannot open '%s': %s", path, g_strerror(errno));
-    else if (!S_ISREG(status->st_mode))
+    else if (!S_ISREG(status.st_mode))
         error_set(error, ERROR_INPUT, "expected a file, found '%s', which is none", path);
-    else
+    else {
+        *size = (size_t)status.st_size;
         return fd;
+    }
     if (fd >= 0)
         close(fd);
     return -1;
@@ -143,12 +146,12 @@ static bool read_all(input *in, int fd, size_t size, const char *path, GError **
 
 bool input_read(input *in, const char *path, GError **error)
 {
-    GStatBuf status;
+    size_t size;
     *in = (input){0};
-    int fd = open_regular(path, &status, error);
+    int fd = input_descriptor(path, &size, error);
     if (fd < 0)
         return false;
-    bool done = read_all(in, fd, (size_t)status.st_size, path, error);
+    bool done = read_all(in, fd, size, path, error);
     close(fd);
     return done;
 }
@@ -167,8 +170,8 @@ bool input_open(input *in, const char *path, GError **error)
 
 size_t input_peek(const char *path, char *to, size_t size)
 {
-    GStatBuf status;
-    int fd = open_regular(path, &status, NULL);
+    size_t whole;
+    int fd = input_descriptor(path, &whole, NULL);
     ssize_t n = fd < 0 ? 0 : fill(fd, to, size);
     if (fd >= 0)
         close(fd);

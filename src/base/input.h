@@ -25,6 +25,9 @@ bool input_read(input *in, const char *path, GError **error);
 bool input_open(input *in, const char *path, GError **error);
 void input_close(input *in);
 
+/** @brief A file opened for reading and its size; -1 with an error. Closed by the caller,
+ * and by exec. */
+int input_descriptor(const char *path, size_t *size, GError **error);
 /** @brief The first bytes, at most size. @return how many; 0 if there is no such file */
 size_t input_peek(const char *path, char *to, size_t size);
 /** @brief A file as it is, with a zero behind it; NULL with an error. */

@@ -6,6 +6,7 @@
 #define _GNU_SOURCE
 #include "format/model/importer.h"
 
+#include "base/input.h"
 #include "base/intern.h"
 #include "base/memory.h"
 #include "importer_paths.h"
@@ -18,7 +19,6 @@
 #include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -83,15 +83,14 @@ typedef struct child {
 /* The number is none of those that the child is to have: they are set one by one. */
 static int open_file(const char *path, size_t *size)
 {
-    struct stat about;
-    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    int out = file >= 0 && fstat(file, &about) == 0 && S_ISREG(about.st_mode)
-                  ? fcntl(file, F_DUPFD_CLOEXEC, ABOVE_STANDARD + MOST_IMPORT_FILES)
-                  : -1;
-    if (file >= 0)
-        close(file);
+    size_t own;
+    int file = input_descriptor(path, &own, NULL);
+    if (file < 0)
+        return -1;
+    int out = fcntl(file, F_DUPFD_CLOEXEC, ABOVE_STANDARD + MOST_IMPORT_FILES);
+    close(file);
     if (out >= 0)
-        *size += (size_t)about.st_size;
+        *size += own;
     return out;
 }
 
