@@ -80,16 +80,16 @@ static void test_doubling(void)
 }
 
 /* The share of each grey among what a scene's last material is at many points. */
-static void count_greys(const scene *s, const float greys[], unsigned n, double shares[])
+static void count_greys(const scene *s, int n_points, const float greys[], unsigned n,
+                        double shares[])
 {
-    enum { POINTS = 40000 };
     const bsdf_options plain = {0};
     const material *m = s->materials->pdata[s->materials->len - 1];
     wavelengths w = wavelengths_at(0.5f);
     GRand *random = g_rand_new_with_seed(11);
     for (unsigned i = 0; i < n; i++)
         shares[i] = 0.0;
-    for (int point = 0; point < POINTS; point++) {
+    for (int point = 0; point < n_points; point++) {
         surface_hit hit = {
             .n = {0, 0, 1, 0}, .n_geom = {0, 0, 1, 0}, .dpdu = {1, 0, 0, 0}};
         hit.p = vec3_make((float)g_rand_double(random), (float)g_rand_double(random),
@@ -98,7 +98,7 @@ static void count_greys(const scene *s, const float greys[], unsigned n, double 
         material_bsdf(m, &hit, &w, ALL_LANES, &plain, &b);
         for (unsigned i = 0; i < n; i++)
             if (fabsf(b.rho[0] - greys[i]) < 1e-3f)
-                shares[i] += 1.0 / POINTS;
+                shares[i] += 1.0 / n_points;
     }
     g_rand_free(random);
 }
@@ -124,7 +124,7 @@ static void test_mixes_of_mixes(void)
         "\"bc\"]\n");
     static const float greys[] = {0.2f, 0.4f, 0.6f};
     double shares[3];
-    count_greys(s, greys, 3, shares);
+    count_greys(s, 40000, greys, 3, shares);
     g_test_message("%g %g %g", shares[0], shares[1], shares[2]);
     g_assert_cmpfloat_with_epsilon(shares[0], 0.5, 0.015);
     g_assert_cmpfloat_with_epsilon(shares[1], 0.25, 0.013);
@@ -143,7 +143,7 @@ static void test_deep_mixes(void)
     double share;
     alarm(PATIENCE);
     g_autoptr(scene) s = scene_of(text);
-    count_greys(s, grey, 1, &share);
+    count_greys(s, 400, grey, 1, &share);
     alarm(0);
     g_assert_cmpfloat_with_epsilon(share, 1.0, 1e-6);
 }
@@ -157,7 +157,7 @@ static void test_deep_textures(void)
     static const float grey[] = {0.3f};
     double share;
     g_autoptr(scene) s = scene_of(text);
-    count_greys(s, grey, 1, &share);
+    count_greys(s, 400, grey, 1, &share);
     g_assert_cmpfloat_with_epsilon(share, 1.0, 1e-6);
 }
 
