@@ -135,7 +135,7 @@ typedef struct feature_case {
     {                                                                                    \
         "Texture", kind, base "'string mapping' 'planar' || 'vector3 v2' [0.3 1 1]"      \
     }
-#define MAP "'string filename' 'map.png' "
+#define PICTURE_MAP "'string filename' 'map.png' "
 
 static const feature_case feature_cases[] = {
     {"Option", "seed", "'integer seed' 7"},
@@ -394,14 +394,15 @@ static const feature_case feature_cases[] = {
     {"Texture", "fbm", "'float roughness' 0.9"},
     {"Texture", "imagemap",
      "'string filename' 'square.pfm' ## 'string filename' 'map.png'"},
-    {"Texture", "imagemap", MAP "'float uscale' 3 || 'string wrap' 'black'"},
-    {"Texture", "imagemap", MAP "|| 'string filter' 'point'"},
-    {"Texture", "imagemap", MAP "'string filter' 'EWA' || 'float maxanisotropy' 2"},
-    {"Texture", "imagemap", MAP "|| 'string encoding' 'linear'"},
-    {"Texture", "imagemap", MAP "|| 'float scale' 0.5"},
-    {"Texture", "imagemap", MAP "|| 'bool invert' true"},
-    MAPPED("imagemap", MAP, ""),
-    PLANAR("imagemap", MAP),
+    {"Texture", "imagemap", PICTURE_MAP "'float uscale' 3 || 'string wrap' 'black'"},
+    {"Texture", "imagemap", PICTURE_MAP "|| 'string filter' 'point'"},
+    {"Texture", "imagemap",
+     PICTURE_MAP "'string filter' 'EWA' || 'float maxanisotropy' 2"},
+    {"Texture", "imagemap", PICTURE_MAP "|| 'string encoding' 'linear'"},
+    {"Texture", "imagemap", PICTURE_MAP "|| 'float scale' 0.5"},
+    {"Texture", "imagemap", PICTURE_MAP "|| 'bool invert' true"},
+    MAPPED("imagemap", PICTURE_MAP, ""),
+    PLANAR("imagemap", PICTURE_MAP),
     {"Texture", "marble", "'integer octaves' 2"},
     {"Texture", "marble", "'float roughness' 0.9"},
     {"Texture", "marble", "'float scale' 3"},
