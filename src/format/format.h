@@ -16,7 +16,7 @@ const char *const *format_extensions(void);
 /** @brief How to load. */
 typedef struct load_options {
     unsigned threads;    /**< for the acceleration structure; 0 = all */
-    bool lenient;        /**< see scene/lenient.h */
+    bool lenient;        /**< see format/lenient.h */
     bool thin_glass;     /**< see scene.h */
     const log_sink *log; /**< may be NULL; must outlive the scene */
     source_func source;  /**< told the files that are read; may be NULL */

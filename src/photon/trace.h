@@ -9,7 +9,7 @@
  *   light ─► (S|G)+ ────► D          caustic
  *   light ─► ... D ... ─► D          indirect
  *
- * (D, G, S: a diffuse, glossy, specular lobe; see scene/bsdf.h; a point in a medium where
+ * (D, G, S: a diffuse, glossy, specular lobe; see bsdf/bsdf.h; a point in a medium where
  * light is scattered is as a D). A glossy lobe alone
  * takes photons only from delta lights by way of S*: all else that it reflects, camera
  * paths find by following it. So every path of light is counted once.

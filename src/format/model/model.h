@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "format/model/stream.h"
 
-/** @brief Arrays as scene/shape.h's mesh has them; NULL where there are none. */
+/** @brief Arrays as math/mesh.h's mesh has them; NULL where there are none. */
 typedef struct model_mesh {
     size_t n_vertices, n_triangles;
     uint32_t material;
