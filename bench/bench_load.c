@@ -7,8 +7,8 @@
  *   bench_load [triangles, default 10000000]
  */
 #include "format/format.h"
-#include "format/ply.h"
-#include "format/ply_write.h"
+#include "format/ply/ply.h"
+#include "format/ply/ply_write.h"
 
 #include "base/memory.h"
 

@@ -7,7 +7,7 @@
  *   bench_trace [photons, default 100000]
  */
 #include "format/format.h"
-#include "photon/trace.h"
+#include "photon/trace/trace.h"
 #include "render/render.h"
 
 #if __has_include(<embree4/rtcore.h>)

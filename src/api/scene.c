@@ -1,7 +1,7 @@
 #include "api/objects.h"
 
 #include "api/asking.h"
-#include "format/convert.h"
+#include "format/convert/convert.h"
 #include "format/format.h"
 
 #include <string.h>

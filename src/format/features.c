@@ -6,8 +6,8 @@
 #include "format/features.h"
 
 #include "base/intern.h"
-#include "format/gltf_extensions.h"
-#include "format/pbrt_parser.h"
+#include "format/gltf/gltf_extensions.h"
+#include "format/pbrt/pbrt_parser.h"
 #include "scene/scene.h"
 #include "scene/scene_film.h"
 

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "math/vec.h"
-#include "photon/lanes.h"
+#include "photon/map/lanes.h"
 
 /** Steps from the centre of the square to its edge; the L1 norm of the points. */
 enum { OCTAHEDRON_STEPS = 16383 };

@@ -13,7 +13,7 @@
 #include "photon/estimate.h"
 
 #include "base/memory.h"
-#include "photon/map_kind.h"
+#include "photon/map/map_kind.h"
 #include "photon/neighbourhood.h"
 
 /* Photons arrive in proportion to |wi·n_geom|, so without a limit on |wi·n| / |wi·n_geom|

@@ -20,7 +20,7 @@
 
 #include "photon/disc_set.h"
 #include "photon/flat_curve.h"
-#include "photon/map.h"
+#include "photon/map/map.h"
 
 /** @brief How to estimate. */
 typedef struct estimate_options {

@@ -14,7 +14,7 @@
  */
 #pragma once
 
-#include "photon/lanes.h"
+#include "photon/map/lanes.h"
 #include "settings/settings.h"
 
 /** @brief A kernel with its parameter. */

@@ -17,7 +17,7 @@
 #pragma once
 
 #include "photon/direction.h"
-#include "photon/map.h"
+#include "photon/map/map.h"
 
 typedef struct photon_probe {
     const photon_store *store;

@@ -1,6 +1,6 @@
 #include "photon/share.h"
 
-#include "photon/emit.h"
+#include "photon/trace/emit.h"
 
 /* Density of the emission in the measure that p_scatter and p_lights are compared in. */
 static float emission_density(const caustic_share *share, const caustic_end *end)

@@ -18,7 +18,7 @@
  */
 #pragma once
 
-#include "photon/map.h"
+#include "photon/map/map.h"
 
 typedef struct photon_spots photon_spots;
 

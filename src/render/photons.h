@@ -5,7 +5,7 @@
 #pragma once
 
 #include "color/wavelengths.h"
-#include "photon/trace.h"
+#include "photon/trace/trace.h"
 #include "render/render.h"
 #include "transport/transport.h"
 

@@ -38,7 +38,7 @@ typedef enum integrator_choice {
 #undef INTEGRATOR
     N_INTEGRATORS
 } integrator_choice;
-/** Which strategies vertex connection and merging uses: see transport/vcm.h. */
+/** Which strategies vertex connection and merging uses: see transport/vcm/vcm.h. */
 typedef enum vcm_choice { VCM_ALL, VCM_BPT, VCM_BPM, VCM_PPM, VCM_LIGHT } vcm_choice;
 
 enum { MOST_TIME_SLICES = 64 };

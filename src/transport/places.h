@@ -5,7 +5,7 @@
  */
 #pragma once
 
-#include "photon/map.h"
+#include "photon/map/map.h"
 
 /** Photons whose distance tells how close they lie. */
 enum { PLACES_NEAREST = 16 };

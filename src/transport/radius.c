@@ -17,7 +17,7 @@
  * window, and most pixels be of a landscape where they are metres wide.
  */
 #include "math/median.h"
-#include "transport/photonmap.h"
+#include "transport/photonmap/photonmap.h"
 #include "transport/places.h"
 #include "transport/visible.h"
 

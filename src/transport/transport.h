@@ -14,7 +14,7 @@
 #include "math/sampler.h"
 #include "photon/estimate.h"
 #include "photon/share.h"
-#include "photon/trace.h"
+#include "photon/trace/trace.h"
 #include "scene/scene.h"
 
 /** @brief The layers of the picture. Their sum is the beauty image. */

@@ -1,5 +1,5 @@
 /* PLY, text and binary: any bytes become a mesh or an error. */
-#include "format/ply.h"
+#include "format/ply/ply.h"
 #include "fuzz_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -7,7 +7,7 @@
  */
 #include "math/sampler.h"
 #include "photon/estimate.h"
-#include "photon/trace.h"
+#include "photon/trace/trace.h"
 #include "rooms.h"
 #include "verify.h"
 

@@ -8,7 +8,7 @@
  * where ──►/──────\─►    it goes can be told from what it is.
  *         /________\     .
  */
-#include "photon/trace.h"
+#include "photon/trace/trace.h"
 #include "scene_text.h"
 
 /* Sellmeier coefficients, µm² (Schott, optical glass data sheets). */

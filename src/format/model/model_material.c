@@ -15,7 +15,7 @@
 
 #include "base/intern.h"
 #include "format/given.h"
-#include "format/height_map.h"
+#include "format/gltf/height_map.h"
 #include "texture/picture.h"
 
 #include <math.h>

@@ -1,0 +1,347 @@
+/*
+ * Parameter lists: "type name" followed by one value or a bracketed list.
+ */
+#include "format/pbrt/pbrt_parser.h"
+
+#include "base/memory.h"
+#include "format/number.h"
+#include "format/spectrum_file.h"
+
+#include <string.h>
+
+typedef enum value_class { NUMBERS, INTEGERS, BOOLS, STRINGS, SPECTRA } value_class;
+
+typedef struct type_row {
+    const char *name;
+    param_type type;
+    value_class values;
+    size_t n; /**< numbers that belong together */
+} type_row;
+
+static const type_row types[] = {
+    {"float", PARAM_FLOAT, NUMBERS, 1},       {"integer", PARAM_INTEGER, INTEGERS, 1},
+    {"bool", PARAM_BOOL, BOOLS, 1},           {"string", PARAM_STRING, STRINGS, 1},
+    {"point2", PARAM_POINT2, NUMBERS, 2},     {"vector2", PARAM_VECTOR2, NUMBERS, 2},
+    {"point3", PARAM_POINT3, NUMBERS, 3},     {"point", PARAM_POINT3, NUMBERS, 3},
+    {"vector3", PARAM_VECTOR3, NUMBERS, 3},   {"vector", PARAM_VECTOR3, NUMBERS, 3},
+    {"normal", PARAM_NORMAL, NUMBERS, 3},     {"normal3", PARAM_NORMAL, NUMBERS, 3},
+    {"rgb", PARAM_RGB, NUMBERS, 3},           {"blackbody", PARAM_BLACKBODY, NUMBERS, 1},
+    {"spectrum", PARAM_SPECTRUM, SPECTRA, 1}, {"texture", PARAM_TEXTURE, STRINGS, 1},
+};
+
+/** A parameter being read. */
+typedef struct declaration {
+    const type_row *type;
+    char *name;
+    token token;
+} declaration;
+
+static const type_row *find_type(const char *name)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(types); i++)
+        if (strcmp(types[i].name, name) == 0)
+            return &types[i];
+    return NULL;
+}
+
+bool pbrt_is_declaration(const token *t)
+{
+    if (t->kind != TOKEN_STRING)
+        return false;
+    g_autofree char *text = token_string(t);
+    g_strstrip(text);
+    text[strcspn(text, " \t")] = '\0';
+    return find_type(text) || strcmp(text, "color") == 0;
+}
+
+static bool read_declaration(pbrt_parser *parser, declaration *d)
+{
+    d->token = lexer_next(parser->words);
+    g_autofree char *text = token_string(&d->token);
+    g_auto(GStrv) words = g_strsplit_set(g_strstrip(text), " \t", 2);
+    if (g_strv_length(words) != 2 || strpbrk(g_strstrip(words[1]), " \t"))
+        return pbrt_expected(parser, "\"type name\"", &d->token);
+    bool old_rgb = parser->is_v3 && strcmp(words[0], "color") == 0;
+    d->type = find_type(old_rgb ? "rgb" : words[0]);
+    if (!d->type) {
+        pbrt_error(
+            parser, d->token.place,
+            "expected a parameter type (float, integer, bool, string, point2, "
+            "vector2, point3, vector3, normal, rgb, blackbody, spectrum, texture), "
+            "found '%s'",
+            words[0]);
+        return false;
+    }
+    d->name = g_strdup(words[1]);
+    return true;
+}
+
+/** Room for one more number. NULL and reported if memory is short. */
+static void *push(pbrt_parser *parser)
+{
+    scratch *s = &parser->values;
+    if (s->n == s->capacity) {
+        size_t capacity = s->capacity ? 2 * s->capacity : 1024;
+        GError *error = NULL;
+        void *grown = s->data
+                          ? big_grow(s->data, s->capacity, capacity, 4, "numbers", &error)
+                          : big_alloc(capacity, 4, "numbers", &error);
+        if (!grown) {
+            pbrt_report(parser, error);
+            return NULL;
+        }
+        s->data = grown;
+        s->capacity = capacity;
+    }
+    return (char *)s->data + 4 * s->n++;
+}
+
+static bool wrong_value(pbrt_parser *parser, const declaration *d, const char *what,
+                        const token *found)
+{
+    g_autofree char *text = token_describe(found);
+    pbrt_error(parser, found->place, "parameter '%s': expected %s, found %s", d->name,
+               what, text);
+    return false;
+}
+
+static bool push_float(pbrt_parser *parser, const declaration *d, const token *t)
+{
+    float value;
+    if (t->kind != TOKEN_WORD || !number_float(t->text, t->length, &value))
+        return wrong_value(parser, d, "a number", t);
+    float *to = push(parser);
+    if (to)
+        *to = value;
+    return to != NULL;
+}
+
+static bool push_integer(pbrt_parser *parser, const declaration *d, const token *t)
+{
+    int value;
+    if (t->kind != TOKEN_WORD || !number_int(t->text, t->length, &value))
+        return wrong_value(parser, d, "a whole number", t);
+    int *to = push(parser);
+    if (to)
+        *to = value;
+    return to != NULL;
+}
+
+static bool push_bool(pbrt_parser *parser, const declaration *d, const token *t)
+{
+    token word = *t;
+    if (parser->is_v3 && t->kind == TOKEN_STRING)
+        word.kind = TOKEN_WORD; /* pbrt-v3 writes it in quotes */
+    bool is_true = token_is(&word, "true");
+    if (!is_true && !token_is(&word, "false"))
+        return wrong_value(parser, d, "true or false", t);
+    int *to = push(parser);
+    if (to)
+        *to = is_true;
+    return to != NULL;
+}
+
+static bool push_string(pbrt_parser *parser, const declaration *d, const token *t,
+                        GPtrArray *strings)
+{
+    if (t->kind != TOKEN_STRING)
+        return wrong_value(parser, d, "a string in quotes", t);
+    g_ptr_array_add(strings, token_string(t));
+    return true;
+}
+
+static bool push_value(pbrt_parser *parser, const declaration *d, const token *t,
+                       GPtrArray *strings)
+{
+    switch (d->type->values) {
+    case NUMBERS:
+        return push_float(parser, d, t);
+    case INTEGERS:
+        return push_integer(parser, d, t);
+    case BOOLS:
+        return push_bool(parser, d, t);
+    case STRINGS:
+        return push_string(parser, d, t, strings);
+    case SPECTRA:
+        break;
+    }
+    if (t->kind == TOKEN_STRING && parser->values.n == 0)
+        return push_string(parser, d, t, strings);
+    return push_float(parser, d, t);
+}
+
+/** All values of one parameter, into parser->values or strings. */
+static bool read_values(pbrt_parser *parser, const declaration *d, GPtrArray *strings)
+{
+    parser->values.n = 0;
+    token t = lexer_next(parser->words);
+    if (t.kind != TOKEN_LEFT)
+        return push_value(parser, d, &t, strings);
+    for (t = lexer_next(parser->words); t.kind != TOKEN_RIGHT;
+         t = lexer_next(parser->words))
+        if (!push_value(parser, d, &t, strings))
+            return false;
+    if (parser->values.n + strings->len == 0)
+        return wrong_value(parser, d, "a value", &t);
+    return true;
+}
+
+static bool is_known_spectrum(const char *name)
+{
+    g_autoptr(curve) known = curve_named(name);
+    return known != NULL;
+}
+
+/** A spectrum's name stays a name if it is known, else it is a file's. */
+static bool add_spectrum(pbrt_parser *parser, params *p, const declaration *d,
+                         const GPtrArray *strings, GError **error)
+{
+    source_place place = d->token.place;
+    const char *const *names = (const char *const *)strings->pdata;
+    if (strings->len != 1 || is_known_spectrum(names[0]))
+        return params_add_strings(p, place, PARAM_SPECTRUM_NAME, d->name, names,
+                                  strings->len, error);
+    g_autofree char *path = g_canonicalize_filename(names[0], parser->base_directory);
+    scene_sources_add(parser->scene->build.sources, path);
+    if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
+        error_at(error, place,
+                 "parameter '%s': expected a spectrum's name or file, found \"%s\"",
+                 d->name, names[0]);
+        return false;
+    }
+    g_autoptr(GArray) numbers = spectrum_file_read(path, place, error);
+    return numbers &&
+           params_add_numbers(p, place, PARAM_SPECTRUM, d->name,
+                              (const float *)numbers->data, numbers->len, error);
+}
+
+/** Of a parameter that is given again the last counts, but pbrt-v3 takes a texture before
+ * a value. @return whether this one counts */
+static bool replace_older(pbrt_parser *parser, params *p, const declaration *d)
+{
+    const param *older = params_find(p, d->name);
+    source_place at = d->token.place;
+    if (!older)
+        return true;
+    bool stays =
+        parser->is_v3 && older->type == PARAM_TEXTURE && d->type->type != PARAM_TEXTURE;
+    log_at(&parser->scene->build.log, LOG_NOTE, at, "parameter '%s' is given again: %s",
+           d->name, stays ? "the texture counts" : "the last counts");
+    if (!stays)
+        params_remove(p, d->name);
+    return !stays;
+}
+
+static bool add_values(pbrt_parser *parser, params *p, const declaration *d,
+                       const GPtrArray *strings, GError **error)
+{
+    const type_row *type = d->type;
+    const scratch *values = &parser->values;
+    source_place place = d->token.place;
+    if (values->n % type->n) {
+        error_at(error, place,
+                 "parameter '%s': expected a multiple of %zu numbers, "
+                 "found %zu",
+                 d->name, type->n, values->n);
+        return false;
+    }
+    if (type->values == SPECTRA && strings->len)
+        return add_spectrum(parser, p, d, strings, error);
+    if (type->values == STRINGS)
+        return params_add_strings(p, place, type->type, d->name,
+                                  (const char *const *)strings->pdata, strings->len,
+                                  error);
+    if (type->values == INTEGERS || type->values == BOOLS)
+        return params_add_integers(p, place, type->type, d->name, values->data, values->n,
+                                   error);
+    return params_add_numbers(p, place, type->type, d->name, values->data, values->n,
+                              error);
+}
+
+/** One parameter. A wrong one ends its directive as broken grammar does: what would be
+ * said about the rest would only follow from it. */
+static bool read_param(pbrt_parser *parser, params *p)
+{
+    declaration d = {0};
+    g_autoptr(GPtrArray) strings = g_ptr_array_new_with_free_func(g_free);
+    GError *error = NULL;
+    bool fine = read_declaration(parser, &d) && read_values(parser, &d, strings);
+    if (fine && replace_older(parser, p, &d) &&
+        !add_values(parser, p, &d, strings, &error)) {
+        pbrt_report(parser, error);
+        fine = false;
+    }
+    g_free(d.name);
+    return fine;
+}
+
+bool pbrt_read_param_list(pbrt_parser *parser, params *p)
+{
+    for (bool fine = true; fine;) {
+        token t = lexer_peek(parser->words);
+        if (t.kind == TOKEN_STRING)
+            fine = read_param(parser, p);
+        else if (!parser->is_v3 || !token_is(&t, "Include") ||
+                 !pbrt_include_parameters(parser, p, &fine))
+            return true;
+    }
+    return false;
+}
+
+params *pbrt_read_params(pbrt_parser *parser, source_place place)
+{
+    g_autoptr(params) p = params_new(place, parser->base_directory, parser->state.space);
+    p->to_world = parser->state.ctm;
+    p->log = &parser->scene->build.log;
+    p->lets_unknown = parser->is_v3;
+    if (!pbrt_read_param_list(parser, p))
+        return NULL;
+    token t = lexer_peek(parser->words);
+    if (t.kind == TOKEN_UNTERMINATED || t.kind == TOKEN_LEFT || t.kind == TOKEN_RIGHT) {
+        pbrt_expected(parser, "a parameter or a directive", &t);
+        return NULL;
+    }
+    return g_steal_pointer(&p);
+}
+
+/** Copies a default; it may go unused, since it is meant for many kinds. */
+static bool copy_default(params *p, const params *from, const param *q, GError **error)
+{
+    if (q->type == PARAM_RGB && from->space != p->space) {
+        error_at(error, q->place,
+                 "parameter '%s': expected the colour space of the directives it is for, "
+                 "found another",
+                 q->name);
+        return false;
+    }
+    if (!params_add_copy(p, q, error))
+        return false;
+    param *copy = p->list->pdata[p->list->len - 1];
+    copy->used = copy->is_default = true;
+    return true;
+}
+
+params *pbrt_read_params_for(pbrt_parser *parser, source_place place,
+                             attribute_target target)
+{
+    params *p = pbrt_read_params(parser, place);
+    if (!p)
+        return NULL;
+    for (const attribute *a = parser->state.attributes[target]; a; a = a->before)
+        for (guint i = 0; i < a->given->list->len; i++) {
+            const param *q = a->given->list->pdata[i];
+            GError *error = NULL;
+            if (!params_has(p, q->name) && !copy_default(p, a->given, q, &error))
+                pbrt_report(parser, error);
+        }
+    return p;
+}
+
+void pbrt_check_used(pbrt_parser *parser, const params *p, const char *what,
+                     const char *kind)
+{
+    g_autofree char *whole = g_strdup_printf("%s \"%s\"", what, kind);
+    GError *error = NULL;
+    if (!params_all_used(p, whole, &error))
+        pbrt_report(parser, error);
+}

@@ -1,0 +1,395 @@
+/*
+ * What the world is made of: materials, textures, lights and shapes, each given to the
+ * scene as it is read.
+ */
+#include "format/pbrt/pbrt_parser.h"
+
+#include "format/lenient.h"
+#include "format/ply/ply.h"
+
+#include <string.h>
+
+typedef directive_arguments arguments;
+
+static bool read_arguments(pbrt_parser *parser, source_place place,
+                           attribute_target target, arguments *out)
+{
+    *out = (arguments){.at = place};
+    out->kind = pbrt_read_string(parser, "a kind", &out->at);
+    out->p = out->kind ? pbrt_read_params_for(parser, place, target) : NULL;
+    if (out->p)
+        return true;
+    g_clear_pointer(&out->kind, g_free);
+    return false;
+}
+
+/** What a pbrt-v3 file says, in pbrt-v4's words. */
+static void translate(pbrt_parser *parser, pbrt_v3_target target, arguments *a)
+{
+    if (!parser->is_v3)
+        return;
+    pbrt_v3_translate(target, &a->kind, a->p, &parser->scene->build.log);
+    if (target != V3_TEXTURE) /* which asks what type it is of */
+        pbrt_v3_resolve(parser, a->p, true);
+}
+
+void pbrt_clear_arguments(arguments *a)
+{
+    g_free(a->kind);
+    params_free(a->p);
+}
+
+static bool is_interface(const char *kind)
+{
+    return !*kind || strcmp(kind, "interface") == 0 || strcmp(kind, "none") == 0;
+}
+
+/** Index of a new material; NO_INDEX for an interface, and, reported, if it is wrong. */
+static int add_material(pbrt_parser *parser, const char *name, const char *kind,
+                        const params *p)
+{
+    GError *error = NULL;
+    int index = NO_INDEX;
+    g_autoptr(params) replaced =
+        lenient_material(&parser->scene->build, &kind, p, &error);
+    const params *given = replaced ? replaced : p;
+    if (!error && !is_interface(kind))
+        index = scene_add_material(parser->scene, name, kind, given, &error);
+    if (error)
+        pbrt_report(parser, error);
+    else
+        pbrt_check_used(parser, given, "material", kind);
+    return index;
+}
+
+/** Of a name. */
+static void make_material(pbrt_parser *parser, const char *name, const arguments *a)
+{
+    if (add_material(parser, name, a->kind, a->p) != NO_INDEX)
+        return;
+    g_hash_table_add(parser->interfaces, g_strdup(name));
+    if (scene_material_is_awaited(parser->scene, name))
+        scene_make_interface(parser->scene, name, a->p);
+}
+
+/** A material that waits has a name, by which its place in the scene is kept. */
+static void let_material_wait(pbrt_parser *parser, const char *name, arguments *a)
+{
+    g_autofree char *own =
+        name ? NULL : g_strdup_printf("material %u of the file", ++parser->n_unnamed);
+    const char *by = name ? name : own;
+    int index = scene_find_material(parser->scene, by);
+    if (index == NO_INDEX)
+        index = scene_await_material(parser->scene, by);
+    if (!name)
+        parser->state.material = index;
+    pbrt_wait(parser, LATE_MATERIAL, make_material, by, a);
+}
+
+bool pbrt_material(pbrt_parser *parser, source_place place)
+{
+    arguments a;
+    if (!read_arguments(parser, place, TARGET_MATERIAL, &a))
+        return false;
+    translate(parser, V3_MATERIAL, &a);
+    if (pbrt_must_wait(parser, a.p))
+        let_material_wait(parser, NULL, &a);
+    else
+        parser->state.material = add_material(parser, NULL, a.kind, a.p);
+    pbrt_clear_arguments(&a);
+    return true;
+}
+
+/** True of what is made or waits to be, and of interfaces. */
+static bool is_known_material(const pbrt_parser *parser, const char *name)
+{
+    return scene_find_material(parser->scene, name) != NO_INDEX ||
+           g_hash_table_contains(parser->interfaces, name);
+}
+
+/** True of what MakeNamedMaterial gave already. */
+static bool is_given_material(const pbrt_parser *parser, const char *name)
+{
+    return g_hash_table_contains(parser->given_materials, name);
+}
+
+static void add_named(pbrt_parser *parser, const arguments *named, const char *kind)
+{
+    arguments a = {.kind = g_strdup(kind), .at = named->at, .p = named->p};
+    translate(parser, V3_MATERIAL, &a);
+    g_hash_table_add(parser->given_materials, g_strdup(named->kind));
+    const char *name = parser->is_v3
+                           ? pbrt_v3_new_material(parser, named->kind, named->at)
+                           : named->kind;
+    make_material(parser, name, &a);
+    g_free(a.kind);
+}
+
+static void let_named_wait(pbrt_parser *parser, arguments *named, const char *kind)
+{
+    arguments a = {
+        .kind = g_strdup(kind), .at = named->at, .p = g_steal_pointer(&named->p)};
+    g_hash_table_add(parser->given_materials, g_strdup(named->kind));
+    let_material_wait(parser, named->kind, &a);
+}
+
+static void make_named_material(pbrt_parser *parser, arguments *a)
+{
+    GError *error = NULL;
+    const char *kind = NULL;
+    if (!params_string(a->p, "type", &kind, &error))
+        pbrt_report(parser, error);
+    else if (!kind)
+        pbrt_error(parser, a->at, "expected \"string type\" of material '%s', found none",
+                   a->kind);
+    else if (!parser->is_v3 && is_given_material(parser, a->kind))
+        pbrt_error(parser, a->at, "expected a new material's name, found \"%s\" again",
+                   a->kind);
+    else if (pbrt_must_wait(parser, a->p))
+        let_named_wait(parser, a, kind);
+    else
+        add_named(parser, a, kind);
+}
+
+bool pbrt_make_named_material(pbrt_parser *parser, source_place place)
+{
+    arguments a;
+    if (!read_arguments(parser, place, TARGET_MATERIAL, &a))
+        return false;
+    make_named_material(parser, &a);
+    pbrt_clear_arguments(&a);
+    return true;
+}
+
+bool pbrt_named_material(pbrt_parser *parser, source_place place)
+{
+    source_place at = place;
+    g_autofree char *name = pbrt_read_string(parser, "a material's name", &at);
+    if (!name)
+        return false;
+    const char *actual = parser->is_v3 ? pbrt_v3_material_name(parser, name) : name;
+    if (!is_known_material(parser, actual) && parser->is_v3) {
+        pbrt_warning(parser, at, "there is no material \"%s\"; the one before stays",
+                     name);
+        return true;
+    }
+    if (!is_known_material(parser, actual))
+        pbrt_await_material(parser, actual, at);
+    bool is_none = g_hash_table_contains(parser->interfaces, actual);
+    parser->state.material =
+        is_none ? NO_INDEX : scene_find_material(parser->scene, actual);
+    return true;
+}
+
+void pbrt_make_texture(pbrt_parser *parser, const char *name, bool is_spectrum,
+                       const char *kind, const params *p)
+{
+    GError *error = NULL;
+    g_autoptr(params) replaced =
+        lenient_texture(&parser->scene->build, &kind, is_spectrum, p, &error);
+    const params *given = replaced ? replaced : p;
+    if (!error &&
+        scene_add_texture(parser->scene, name, kind, is_spectrum, given, &error))
+        pbrt_check_used(parser, given, "texture", kind);
+    else
+        pbrt_report(parser, error);
+}
+
+static void make_float_texture(pbrt_parser *parser, const char *name, const arguments *a)
+{
+    pbrt_make_texture(parser, name, false, a->kind, a->p);
+}
+
+static void make_spectrum_texture(pbrt_parser *parser, const char *name,
+                                  const arguments *a)
+{
+    pbrt_make_texture(parser, name, true, a->kind, a->p);
+}
+
+static void add_texture(pbrt_parser *parser, const char *name, const char *type,
+                        source_place type_at, arguments *a)
+{
+    bool is_spectrum = strcmp(type, "spectrum") == 0;
+    late_maker make = is_spectrum ? make_spectrum_texture : make_float_texture;
+    if (!is_spectrum && strcmp(type, "float") != 0)
+        pbrt_error(parser, type_at, "expected \"float\" or \"spectrum\", found \"%s\"",
+                   type);
+    else if (parser->is_v3)
+        pbrt_v3_add_texture(parser, name, is_spectrum, a);
+    else if (pbrt_must_wait(parser, a->p))
+        pbrt_wait(parser, LATE_TEXTURE, make, name, a);
+    else
+        make(parser, name, a);
+}
+
+bool pbrt_texture(pbrt_parser *parser, source_place place)
+{
+    source_place type_at = place;
+    g_autofree char *name = pbrt_read_string(parser, "a texture's name", NULL);
+    g_autofree char *type =
+        name ? pbrt_read_string(parser, "\"float\" or \"spectrum\"", &type_at) : NULL;
+    arguments a;
+    if (!type || !read_arguments(parser, place, TARGET_TEXTURE, &a))
+        return false;
+    translate(parser, V3_TEXTURE, &a);
+    bool is_color = parser->is_v3 && strcmp(type, "color") == 0;
+    add_texture(parser, name, is_color ? "spectrum" : type, type_at, &a);
+    pbrt_clear_arguments(&a);
+    return true;
+}
+
+bool pbrt_light_source(pbrt_parser *parser, source_place place)
+{
+    arguments a;
+    if (!read_arguments(parser, place, TARGET_LIGHT, &a))
+        return false;
+    translate(parser, V3_LIGHT, &a);
+    pbrt_use_media(parser, &parser->state.inside, &parser->state.outside);
+    GError *error = NULL;
+    if (pbrt_is_moving(parser))
+        pbrt_warning(parser, place, "a light that moves stands still where it starts");
+    if (scene_add_light(parser->scene, a.kind, a.p, &parser->state.ctm, &error))
+        pbrt_check_used(parser, a.p, "light", a.kind);
+    else
+        pbrt_report(parser, error);
+    pbrt_clear_arguments(&a);
+    return true;
+}
+
+bool pbrt_area_light_source(pbrt_parser *parser, source_place place)
+{
+    arguments a;
+    if (!read_arguments(parser, place, TARGET_LIGHT, &a))
+        return false;
+    translate(parser, V3_AREA_LIGHT, &a);
+    if (strcmp(a.kind, "diffuse") == 0) {
+        parser->state.area_light = a.p;
+        g_ptr_array_add(parser->kept, g_steal_pointer(&a.p));
+    } else {
+        pbrt_error(parser, a.at, "expected AreaLightSource \"diffuse\", found \"%s\"",
+                   a.kind);
+    }
+    pbrt_clear_arguments(&a);
+    return true;
+}
+
+/** The material to use; pbrt's default, a half-white wall, is made when first needed. */
+static int current_material(pbrt_parser *parser, source_place place)
+{
+    if (parser->state.material != MATERIAL_DEFAULT)
+        return parser->state.material;
+    if (parser->default_material == NO_INDEX) {
+        g_autoptr(params) p =
+            params_new(place, parser->base_directory, parser->state.space);
+        parser->default_material = add_material(parser, NULL, "diffuse", p);
+    }
+    return parser->default_material;
+}
+
+/** A mesh of a PLY file. Errors begin with the place in the scene file. */
+static bool add_ply(pbrt_parser *parser, const params *p, const shape_place *at,
+                    GError **error)
+{
+    g_autofree char *path = NULL;
+    if (!params_path(p, "filename", &path, error))
+        return false;
+    if (!path) {
+        error_at(error, p->place, "plymesh: expected \"string filename\", found none");
+        return false;
+    }
+    source_place named = params_find(p, "filename")->place;
+    g_autoptr(GError) inner = NULL;
+    mesh m = {0};
+    scene_sources_add(parser->scene->build.sources, path);
+    if (ply_read(path, &m, &inner))
+        return scene_add_mesh(parser->scene, &m, at, named, error);
+    error_move_at(error, named, g_steal_pointer(&inner));
+    return false;
+}
+
+static bool add_still_shape(pbrt_parser *parser, const arguments *a,
+                            const shape_place *at, GError **error)
+{
+    bool is_ply = strcmp(a->kind, "plymesh") == 0;
+    return is_ply ? add_ply(parser, a->p, at, error)
+                  : scene_add_shape(parser->scene, a->kind, a->p, at, error);
+}
+
+/** A shape that moves is an object with one instance. */
+static bool add_made_shape(pbrt_parser *parser, const arguments *a, shape_place *at,
+                           GError **error)
+{
+    if (!pbrt_is_moving(parser))
+        return add_still_shape(parser, a, at, error);
+    int object = scene_object_begin(parser->scene, NULL, a->at, error);
+    if (object == NO_INDEX)
+        return false;
+    motion to_world = pbrt_motion(parser);
+    at->to_world = transform_identity();
+    bool done = add_still_shape(parser, a, at, error);
+    scene_object_end(parser->scene);
+    return done && scene_add_instance(parser->scene, object, &to_world, a->at, error);
+}
+
+/** True of what can not be flattened; as in pbrt it is not seen then. */
+static bool is_lost(const pbrt_parser *parser, const arguments *a)
+{
+    if (!pbrt_is_flat(parser))
+        return false;
+    bool is_mesh = strcmp(a->kind, "plymesh") == 0 || shape_may_be_flat(a->kind);
+    if (is_mesh && !pbrt_is_moving(parser))
+        return false;
+    pbrt_warning(parser, a->at, "a shape \"%s\"%s that is flattened is not seen", a->kind,
+                 is_mesh ? " that moves and" : "");
+    return true;
+}
+
+static void make_shape(pbrt_parser *parser, const char *name, const arguments *a)
+{
+    (void)name;
+    if (is_lost(parser, a))
+        return;
+    shape_place at = {.to_world = parser->state.ctm,
+                      .reverse_orientation = parser->state.reverse_orientation,
+                      .material = current_material(parser, a->at),
+                      .area_light = parser->state.area_light};
+    GError *error = NULL;
+    if (lenient_shape(&parser->scene->build, a->kind, a->p, &error))
+        return;
+    if (error) {
+        pbrt_report(parser, error);
+        return;
+    }
+    bool seen = true;
+    float_input alpha;
+    if (!params_bool(a->p, "camera_visible", &seen, &error) ||
+        !float_input_init(&alpha, &parser->scene->build, a->p, "alpha", 1.0f, &error)) {
+        pbrt_report(parser, error);
+        return;
+    }
+    pbrt_use_media(parser, &parser->state.inside, &parser->state.outside);
+    at.camera_hidden = !seen;
+    at.alpha = &alpha;
+    if (!add_made_shape(parser, a, &at, &error)) {
+        pbrt_report(parser, error);
+        return;
+    }
+    pbrt_check_used(parser, a->p, "shape", a->kind);
+    if (at.area_light)
+        pbrt_check_used(parser, at.area_light, "light", "diffuse");
+}
+
+bool pbrt_shape(pbrt_parser *parser, source_place place)
+{
+    arguments a;
+    if (!read_arguments(parser, place, TARGET_SHAPE, &a))
+        return false;
+    translate(parser, V3_SHAPE, &a);
+    bool waits = pbrt_must_wait(parser, a.p) || pbrt_awaits_media(parser);
+    if (waits && parser->object == NO_INDEX)
+        pbrt_wait(parser, LATE_SHAPE, make_shape, NULL, &a);
+    else
+        make_shape(parser, NULL, &a);
+    pbrt_clear_arguments(&a);
+    return true;
+}

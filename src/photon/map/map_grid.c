@@ -1,0 +1,340 @@
+/*
+ * The grid: photons sorted by cell, so that a query reads a few runs of memory.
+ *
+ *   start[slot] ──► x[] y[] z[]   one run per cell, x fastest: the three cells of a row
+ *                   wi[] flux[]   that a query meets are one run
+ *
+ * Workload: built once per pass from 10⁵..10⁸ photons, queried at every camera hit with
+ * the radius it was built for. Cells are as wide as the radius, or up to twice that where
+ * it makes the grid small enough, so a query meets 3×3×3 cells, nine runs, most of them
+ * empty since photons lie on surfaces. With no radius given, cells are sized so that
+ * there is one for every four photons.
+ *
+ * The grid covers the photons' bounds densely while it has at most one cell a photon.
+ * Beyond that (a lamp in a landscape) rows of cells are hashed into that many slots: row
+ * (y, z) begins at a hashed slot and x counts on from there, wrapping round. Photons of
+ * far cells that share a slot fail the distance test; a query's rows that overlap are
+ * merged, so that it meets no photon twice.
+ *
+ * Counting sort: O(n), no comparisons. Ma & McCool, "Low Latency Photon Mapping Using
+ * Block Hashing", 2002.
+ */
+#include "base/memory.h"
+#include "math/sampler.h"
+#include "photon/map/cell_sort.h"
+#include "photon/map/map_kind.h"
+#include "photon/map/nearest.h"
+
+enum {
+    MAX_CELLS_AN_AXIS = 1 << 20,
+    MIN_SLOTS = 1 << 12,
+    MAX_HASHED_ROWS = 256, /* a query that meets more looks at all photons */
+};
+
+typedef struct grid {
+    vec3 low, high; /* of the photons */
+    float cell;     /* width, m */
+    float inv_cell;
+    int32_t count[3]; /* cells an axis */
+    bool hashed;
+    size_t n_slots; /* a power of two if hashed */
+    size_t *start;  /* photons of slot s: start[s] .. start[s + 1] - 1 */
+} grid;
+
+/* Cells low..high an axis, inclusive. */
+typedef struct cell_range {
+    int32_t low[3], high[3];
+} cell_range;
+
+/* Monotone in x, and clamped: no photon is beyond the outermost cells. */
+static int32_t cell_index(const grid *g, int axis, float x)
+{
+    float t = (x - g->low[axis]) * g->inv_cell;
+    float last = (float)(g->count[axis] - 1);
+    return t >= last ? g->count[axis] - 1 : t > 0.0f ? (int32_t)t : 0;
+}
+
+static size_t row_slot(const grid *g, int32_t y, int32_t z)
+{
+    if (g->hashed)
+        return hash_mix((uint64_t)y, (uint64_t)z) & (g->n_slots - 1);
+    return ((size_t)z * (size_t)g->count[1] + (size_t)y) * (size_t)g->count[0];
+}
+
+static size_t slot_of_photon(size_t i, const void *data)
+{
+    const photon_map *map = data;
+    const grid *g = map->index;
+    size_t x = (size_t)cell_index(g, 0, map->store.x[i]);
+    int32_t y = cell_index(g, 1, map->store.y[i]), z = cell_index(g, 2, map->store.z[i]);
+    size_t slot = row_slot(g, y, z) + x;
+    return g->hashed ? slot & (g->n_slots - 1) : slot;
+}
+
+/* ---- Building ---- */
+
+static void find_bounds(grid *g, const photon_store *s)
+{
+    g->low = vec3_make(INFINITY, INFINITY, INFINITY);
+    g->high = -g->low;
+    for (size_t i = 0; i < s->n; i++) {
+        vec3 p = vec3_make(s->x[i], s->y[i], s->z[i]);
+        g->low = min3(p, g->low); /* in this order a NaN changes nothing */
+        g->high = max3(p, g->high);
+    }
+}
+
+static double count_cells(grid *g, float cell)
+{
+    double n = 1.0;
+    g->cell = cell;
+    g->inv_cell = 1.0f / cell;
+    for (int axis = 0; axis < 3; axis++) {
+        float extent =
+            fminf((g->high[axis] - g->low[axis]) / cell, MAX_CELLS_AN_AXIS - 1);
+        g->count[axis] = extent > 0.0f ? (int32_t)extent + 1 : 1;
+        n *= (double)g->count[axis];
+    }
+    return n;
+}
+
+/* Chooses the width of cells for a radius; returns their number, which is above `most`
+ * only if twice the width would not help. */
+static double choose_cell(grid *g, float radius, double most)
+{
+    for (float cell = radius; cell < 2.0f * radius; cell *= 1.0625f) {
+        double cells = count_cells(g, cell);
+        if (cells <= most)
+            return cells;
+    }
+    return count_cells(g, radius);
+}
+
+/* The same when no radius is known: a cell for every four photons. */
+static double choose_cell_by_density(grid *g, float extent, size_t n)
+{
+    float cell = extent;
+    while (count_cells(g, cell) < 0.25 * (double)n && cell > extent / MAX_CELLS_AN_AXIS)
+        cell *= 0.84f;
+    return count_cells(g, cell);
+}
+
+static size_t power_of_two_at_most(size_t n)
+{
+    size_t power = 1;
+    while (power <= n / 2)
+        power *= 2;
+    return power;
+}
+
+/* Sets the width of cells, their number, and whether they are hashed. */
+static void shape_grid(grid *g, size_t n, float radius)
+{
+    size_t most = MAX(n, MIN_SLOTS);
+    float extent = fmaxf(max_component3(g->high - g->low), 1e-20f);
+    double cells =
+        radius > 0.0f
+            ? choose_cell(g, fmaxf(radius, extent / MAX_CELLS_AN_AXIS), (double)most)
+            : choose_cell_by_density(g, extent, n);
+    g->hashed = cells > (double)most;
+    g->n_slots = g->hashed ? power_of_two_at_most(most) : (size_t)cells;
+}
+
+static void grid_free(photon_map *map)
+{
+    grid *g = map->index;
+    big_free(g->start);
+    big_free(g);
+}
+
+static bool grid_build(photon_map *map, float radius, unsigned threads, GError **error)
+{
+    grid *g = map->index = big_alloc(1, sizeof *g, "photon grid", error);
+    if (!g)
+        return false;
+    find_bounds(g, &map->store);
+    shape_grid(g, map->store.n, radius);
+    g->start = big_alloc(g->n_slots + 1, sizeof *g->start, "photon grid", error);
+    if (!g->start)
+        return false;
+    size_t *order = cell_sort(map->store.n, g->n_slots, slot_of_photon, map, g->start,
+                              threads, error);
+    bool ok = order && photon_store_permute(&map->store, order, threads, error);
+    big_free(order);
+    return ok;
+}
+
+static size_t grid_bytes(const photon_map *map)
+{
+    const grid *g = map->index;
+    return sizeof *g + (g->n_slots + 1) * sizeof *g->start;
+}
+
+/* ---- Runs ---- */
+
+/* The cells that [p - r, p + r] meets; false if it misses the photons' bounds. */
+static bool cells_within(const grid *g, vec3 p, float radius, cell_range *range)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        float low = p[axis] - radius, high = p[axis] + radius;
+        if (!(low <= g->high[axis] && high >= g->low[axis]))
+            return false;
+        range->low[axis] = cell_index(g, axis, low);
+        range->high[axis] = cell_index(g, axis, high);
+    }
+    return true;
+}
+
+static void dense_runs(const grid *g, const cell_range *range, run_batch *batch)
+{
+    for (int32_t z = range->low[2]; z <= range->high[2]; z++) {
+        for (int32_t y = range->low[1]; y <= range->high[1]; y++) {
+            const size_t *row = g->start + row_slot(g, y, z);
+            run_batch_add(batch, row[range->low[0]], row[range->high[0] + 1]);
+        }
+    }
+}
+
+/* Slots first .. last - 1. */
+typedef struct slot_run {
+    size_t first, last;
+} slot_run;
+
+/* Adds a run, keeping runs sorted by their first slot. */
+static size_t insert_run(slot_run *runs, size_t n, slot_run run)
+{
+    size_t i = n;
+    for (; i > 0 && runs[i - 1].first > run.first; i--)
+        runs[i] = runs[i - 1];
+    runs[i] = run;
+    return n + 1;
+}
+
+/* The slots of all rows in range, sorted; a row that wraps round makes two. */
+static size_t collect_rows(const grid *g, const cell_range *range, slot_run *runs)
+{
+    size_t n = 0, width = (size_t)(range->high[0] - range->low[0]) + 1;
+    for (int32_t z = range->low[2]; z <= range->high[2]; z++) {
+        for (int32_t y = range->low[1]; y <= range->high[1]; y++) {
+            size_t first = (row_slot(g, y, z) + (size_t)range->low[0]) & (g->n_slots - 1);
+            size_t last = first + width;
+            n = insert_run(runs, n, (slot_run){first, MIN(last, g->n_slots)});
+            if (last > g->n_slots)
+                n = insert_run(runs, n, (slot_run){0, last - g->n_slots});
+        }
+    }
+    return n;
+}
+
+static void hashed_runs(const grid *g, const cell_range *range, run_batch *batch)
+{
+    slot_run runs[2 * MAX_HASHED_ROWS];
+    double width = (double)(range->high[0] - range->low[0]) + 1.0;
+    double rows = ((double)(range->high[1] - range->low[1]) + 1.0) *
+                  ((double)(range->high[2] - range->low[2]) + 1.0);
+    if (rows > MAX_HASHED_ROWS || rows * width > 0.5 * (double)g->n_slots) {
+        run_batch_add(batch, 0, g->start[g->n_slots]);
+        return;
+    }
+    size_t n = collect_rows(g, range, runs), slot = 0;
+    for (size_t i = 0; i < n; i++) {
+        size_t first = MAX(runs[i].first, slot);
+        if (first >= runs[i].last)
+            continue;
+        slot = runs[i].last;
+        run_batch_add(batch, g->start[first], g->start[slot]);
+    }
+}
+
+static void grid_runs(const photon_map *map, vec3 p, float radius,
+                      photon_run_visitor visit, void *data)
+{
+    const grid *g = map->index;
+    cell_range range;
+    if (!cells_within(g, p, radius, &range))
+        return;
+    run_batch batch;
+    run_batch_begin(&batch, &map->store, visit, data);
+    if (g->hashed)
+        hashed_runs(g, &range, &batch);
+    else
+        dense_runs(g, &range, &batch);
+    run_batch_flush(&batch);
+}
+
+/* ---- Nearest ---- */
+
+static void count_runs(const photon_run *runs, size_t n, void *data)
+{
+    for (size_t i = 0; i < n; i++)
+        *(size_t *)data += runs[i].end - runs[i].begin;
+}
+
+static void nearest_runs(const photon_run *runs, size_t n, void *data)
+{
+    for (size_t i = 0; i < n; i++)
+        nearest_add_run(data, runs[i].begin, runs[i].end);
+}
+
+/* The radius beyond which there is no photon. */
+static float radius_of_all(const grid *g, vec3 p)
+{
+    vec3 reach = max3(abs3(p - g->low), abs3(p - g->high));
+    return 1.001f * length3(reach);
+}
+
+/* A first radius, from the number of photons in the cells around p, taken to lie on a
+ * surface: a little more than k should be in it. */
+static float guess_radius(const photon_map *map, vec3 p, size_t k, float largest)
+{
+    const grid *g = map->index;
+    float radius = 0.5f * g->cell;
+    size_t found = 0;
+    for (; radius < largest; radius *= 2.0f) {
+        grid_runs(map, p, radius, count_runs, &found);
+        if (found > 0)
+            break;
+    }
+    float side = 2.0f * radius + g->cell;
+    float wanted = 1.5f * (float)k / (float)MAX(found, 1);
+    return fminf(side * sqrtf(INV_PI_F * wanted), largest);
+}
+
+/* The next radius to try when the last one found only n. */
+static float grow_radius(float radius, size_t n, size_t k)
+{
+    float wanted = 1.5f * (float)k / (float)MAX(n, 1);
+    return radius * clampf(sqrtf(wanted), 1.25f, 3.0f);
+}
+
+/* Searches shells growing outwards until k photons are within the radius searched. */
+static bool grid_nearest(const photon_map *map, const photon_probe *probe, size_t k,
+                         float radius, photon_hits *hits)
+{
+    const grid *g = map->index;
+    nearest_set set;
+    if (!nearest_begin(&set, probe, k, radius, hits))
+        return false;
+    float all = radius_of_all(g, probe->p);
+    float largest = all < radius ? all : radius;
+    float r = guess_radius(map, probe->p, k, largest);
+    for (;; r = grow_radius(r, hits->n, k)) {
+        bool last = !(r < largest);
+        nearest_restart(&set, last ? radius : r);
+        grid_runs(map, probe->p, last ? radius : r, nearest_runs, &set);
+        if (last || hits->n >= k)
+            break;
+    }
+    nearest_cut(&set);
+    return true;
+}
+
+const photon_map_kind photon_map_grid = {
+    .name = "grid",
+    .build = grid_build,
+    .free = grid_free,
+    .bytes = grid_bytes,
+    .runs = grid_runs,
+    .within = photon_map_within_runs,
+    .nearest = grid_nearest,
+};

@@ -1,0 +1,192 @@
+#include "photon/trace/emit.h"
+
+#include "math/warp.h"
+
+/* A ray crosses no more surfaces than this on its way through the scene: only a guard
+   against endless loops on degenerate geometry. */
+enum { MAX_CROSSINGS = 4096 };
+
+static bool casts_caustics(const scene *s, const surface_hit *hit)
+{
+    return hit->material != NO_INDEX &&
+           material_casts_caustics(s->materials->pdata[hit->material]);
+}
+
+/* A point by area on all surfaces that cast caustics. */
+static vec3 caustic_target(const scene *s, float time, sampler *random)
+{
+    float u_shape = sampler_1d(random);
+    return scene_caustic_target(s, u_shape, sampler_2d(random), time);
+}
+
+/* Moves on to the next surface along a ray, cut-outs taken as solid as targets on them
+   are; distance grows by the way made. */
+static bool next_crossing(const scene *s, ray *r, float *distance, surface_hit *hit)
+{
+    if (!scene_intersect_solid(s, r, hit))
+        return false;
+    *distance += length3(hit->p - r->origin);
+    *r = hit_ray(hit, r->direction);
+    return true;
+}
+
+/* The density with which targets chosen by area give this ray: per solid angle at its
+   origin, or for parallel light per area across it. */
+static double aimed_density(const scene *s, ray r, bool parallel)
+{
+    double density = 0.0;
+    float distance = 0.0f;
+    surface_hit hit;
+    for (int i = 0; i < MAX_CROSSINGS && next_crossing(s, &r, &distance, &hit); i++) {
+        if (casts_caustics(s, &hit)) {
+            double cosine = fabs((double)dot3(hit.n_geom, r.direction));
+            double d2 = parallel ? 1.0 : (double)distance * (double)distance;
+            density += cosine > 0.0 ? scene_caustic_density(s, &hit) * d2 / cosine : 0.0;
+        }
+    }
+    return density;
+}
+
+/* True if the first surface that stops the ray casts caustics. */
+static bool meets_caster(const scene *s, ray r)
+{
+    surface_hit hit;
+    for (int i = 0; i < MAX_CROSSINGS && scene_intersect(s, &r, &hit); i++) {
+        if (hit.material != NO_INDEX)
+            return casts_caustics(s, &hit);
+        r = hit_ray(&hit, r.direction);
+    }
+    return false;
+}
+
+/* Chooses a light by power; *u becomes uniform again. */
+static const light *choose_light(const scene *s, const distribution *power, float *u,
+                                 photon_start *out)
+{
+    out->light = (int)distribution_sample(power, u);
+    out->p_light = distribution_pdf(power, (size_t)out->light);
+    return scene_light(s, out->light);
+}
+
+static bool finish(const light_emission *emission, float density, photon_start *out)
+{
+    float time = out->ray.time;
+    out->ray = emission->ray;
+    out->ray.time = time;
+    out->n = emission->n;
+    out->primitive = emission->primitive;
+    out->flux = emission->flux / (out->p_light * density);
+    return !spectrum_is_black(out->flux) && spectrum_is_finite(out->flux);
+}
+
+bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
+                       photon_start *out)
+{
+    light_emission emission;
+    float u_light = sampler_1d(random), u_primitive = sampler_1d(random);
+    vec2 u = sampler_2d(random);
+    if (!(distribution_total(&s->caustic_power) > 0.0))
+        return false;
+    const light *l = choose_light(s, &s->caustic_power, &u_light, out);
+    vec3 target = caustic_target(s, out->ray.time, random);
+    if (!l->kind->emit_toward(l->self, w, u_primitive, u, target, &emission))
+        return false;
+    emission.ray.time = out->ray.time;
+    if (!meets_caster(s, emission.ray) ||
+        (l->kind->admits && !l->kind->admits(l->self, &emission.ray)))
+        return false;
+    double density = aimed_density(s, emission.ray, l->kind->is_parallel);
+    return density > 0.0 && finish(&emission, (float)density, out);
+}
+
+bool photon_emit(const scene *s, const wavelengths *w, sampler *random, photon_start *out)
+{
+    float u[EMISSION_DIMENSIONS];
+    light_emission emission;
+    if (!scene_is_lit(s))
+        return false;
+    float density = emission_guide_draw(NULL, random, u);
+    const light *l = choose_light(s, &s->light_power, &u[0], out);
+    if (!l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]}, (vec2){u[4], u[5]},
+                       &emission))
+        return false;
+    return finish(&emission, density, out);
+}
+
+/* Parallel light through the disc of the sphere around what casts caustics. */
+static bool emit_at_disc(const scene *s, const light *l, const wavelengths *w,
+                         const float u[EMISSION_DIMENSIONS], light_emission *out)
+{
+    vec2 u_direction = {u[4], u[5]}, disk = warp_disk((vec2){u[2], u[3]});
+    if (!l->kind->emit_toward(l->self, w, u[1], u_direction, s->caustic_center, out))
+        return false;
+    frame f = frame_from_normal(out->ray.direction);
+    out->ray.origin += s->caustic_radius * (disk.x * f.s + disk.y * f.t);
+    out->flux *= PI_F * s->caustic_radius * s->caustic_radius;
+    return !l->kind->admits || l->kind->admits(l->self, &out->ray);
+}
+
+/* How far off rounding may turn a unit direction (radians). */
+#define DIRECTION_ERROR 2e-7
+
+/* 1 - cos of the half angle of the cone in which p sees the sphere, for all that rounding
+   does to the directions in it. */
+static float cone_of_sphere(const scene *s, vec3 p)
+{
+    double distance = (double)length3(s->caustic_center - p);
+    double sine = (double)s->caustic_radius / distance + DIRECTION_ERROR;
+    return (float)one_minus_cos_of_sine2(fmin(sine * sine, 1.0));
+}
+
+float photon_cone_pdf(const scene *s, vec3 p)
+{
+    return warp_cone_pdf(cone_of_sphere(s, p));
+}
+
+/* A direction, uniform in that cone, and its density. */
+static vec3 direction_to_sphere(const scene *s, vec3 p, vec2 u, float *density)
+{
+    frame f = frame_from_normal(normalize3(s->caustic_center - p));
+    *density = photon_cone_pdf(s, p);
+    return frame_to_world(&f, warp_cone(u, cone_of_sphere(s, p)));
+}
+
+/* A point in direction d from p and at least as far as q: so far that rounding of its
+   coordinates does not turn the direction. */
+static vec3 far_along(vec3 p, vec3 d, vec3 q)
+{
+    return p + (length3(p) + length3(q)) * d;
+}
+
+/* From a lamp apart: the place is drawn by the lamp, the direction in the cone. The lamp
+   is asked twice, since the cone depends on the place. */
+static bool emit_in_cone(const scene *s, const light *l, const wavelengths *w,
+                         const float u[EMISSION_DIMENSIONS], light_emission *out)
+{
+    vec2 u_place = {u[2], u[3]};
+    float density;
+    *out = (light_emission){0};
+    l->kind->emit_toward(l->self, w, u[1], u_place, s->caustic_center, out);
+    vec3 d = direction_to_sphere(s, out->ray.origin, (vec2){u[4], u[5]}, &density);
+    vec3 target = far_along(out->ray.origin, d, s->caustic_center);
+    if (!l->kind->emit_toward(l->self, w, u[1], u_place, target, out))
+        return false;
+    out->flux /= density;
+    return true;
+}
+
+bool photon_emit_caustic(const scene *s, const wavelengths *w,
+                         const emission_guide *guide, sampler *random, photon_start *out)
+{
+    float u[EMISSION_DIMENSIONS];
+    light_emission emission;
+    if (!(distribution_total(&s->caustic_power) > 0.0))
+        return false;
+    float density = emission_guide_draw(guide, random, u);
+    const light *l = choose_light(s, &s->caustic_power, &u[0], out);
+    bool emitted = l->kind->is_parallel ? emit_at_disc(s, l, w, u, &emission)
+                   : l->is_apart        ? emit_in_cone(s, l, w, u, &emission)
+                                 : l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]},
+                                                 (vec2){u[4], u[5]}, &emission);
+    return emitted && finish(&emission, density, out);
+}

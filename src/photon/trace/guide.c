@@ -1,0 +1,317 @@
+#include "photon/trace/guide.h"
+
+#include <string.h>
+
+enum {
+    BINS = 4, /* an axis' unevenness is judged in quarters */
+    MAX_CELLS = 4096,
+    MIN_ARRIVALS = 24, /* a cell with fewer is not split */
+    MAX_DEPTH = 40,
+    N_PAIRS = EMISSION_DIMENSIONS * (EMISSION_DIMENSIONS - 1) / 2,
+};
+
+/* Share of photons drawn uniformly, whatever was learned. */
+#define DEFENSIVE_SHARE 0.1
+
+/* ... and of each cell's, drawn without regard to what was learned inside it: next to
+   where much arrives it thins out step by step, and what arrives from there unforeseen is
+   not much heavier than its neighbours. */
+#define DEFENSIVE_SPLIT 0.05
+
+/* A pair of axes is uneven from this χ² on, for 15 degrees of freedom, and if it is this
+   share of the arrivals. */
+#define CHI2_BY_CHANCE 45.0
+#define CORRELATED 0.4
+
+/* A cell is split if the fullest and emptiest quarters along some axis differ by this
+   share of what it holds. */
+#define UNEVEN 0.2
+
+typedef struct guide_node {
+    float low[EMISSION_DIMENSIONS], high[EMISSION_DIMENSIONS];
+    int child; /* index of the first of two; 0: a leaf */
+    int axis;  /* split in the middle of */
+    int depth;
+    double mass; /* probability, defensive share included */
+} guide_node;
+
+/* What is learned of a node from arrivals; of a leaf also where in it they lie. */
+typedef struct guide_tally {
+    uint32_t arrivals;
+    double flux;
+    double square;     /* integral of the squared flux over the cell */
+    double importance; /* what its mass shall be in proportion to */
+    double share;      /* of all importance, smoothed */
+    double by_axis[EMISSION_DIMENSIONS][BINS];
+    uint32_t by_pair[N_PAIRS][BINS * BINS];
+} guide_tally;
+
+struct emission_guide {
+    GArray *nodes; /* of guide_node; 0 is the root */
+};
+
+static guide_node *node_at(const emission_guide *guide, int i)
+{
+    return &g_array_index(guide->nodes, guide_node, i);
+}
+
+static double volume(const guide_node *node)
+{
+    double v = 1.0;
+    for (int a = 0; a < EMISSION_DIMENSIONS; a++)
+        v *= (double)(node->high[a] - node->low[a]);
+    return v;
+}
+
+emission_guide *emission_guide_new(void)
+{
+    emission_guide *guide = g_new0(emission_guide, 1);
+    guide_node root = {.mass = 1.0};
+    for (int a = 0; a < EMISSION_DIMENSIONS; a++)
+        root.high[a] = 1.0f;
+    guide->nodes = g_array_new(FALSE, TRUE, sizeof(guide_node));
+    g_array_append_val(guide->nodes, root);
+    return guide;
+}
+
+void emission_guide_free(emission_guide *guide)
+{
+    if (!guide)
+        return;
+    g_array_unref(guide->nodes);
+    g_free(guide);
+}
+
+static float middle(const guide_node *node)
+{
+    return 0.5f * (node->low[node->axis] + node->high[node->axis]);
+}
+
+static int leaf_of(const emission_guide *guide, const float u[EMISSION_DIMENSIONS])
+{
+    int i = 0;
+    for (const guide_node *node = node_at(guide, 0); node->child;
+         node = node_at(guide, i))
+        i = node->child + (u[node->axis] < middle(node) ? 0 : 1);
+    return i;
+}
+
+float emission_guide_density(const emission_guide *guide,
+                             const float u[EMISSION_DIMENSIONS])
+{
+    const guide_node *leaf = node_at(guide, leaf_of(guide, u));
+    return (float)(leaf->mass / volume(leaf));
+}
+
+static void draw_uniform(sampler *random, float u[EMISSION_DIMENSIONS])
+{
+    light_numbers from = sampler_light(random);
+    vec2 direction = sampler_2d(random);
+    u[0] = from.light;
+    u[1] = from.primitive;
+    u[2] = from.place.x;
+    u[3] = from.place.y;
+    u[4] = direction.x;
+    u[5] = direction.y;
+}
+
+float emission_guide_draw(const emission_guide *guide, sampler *random,
+                          float u[EMISSION_DIMENSIONS])
+{
+    draw_uniform(random, u);
+    if (!guide)
+        return 1.0f;
+    const guide_node *node = node_at(guide, 0);
+    while (node->child) {
+        const guide_node *first = node_at(guide, node->child);
+        float p = (float)(first->mass / node->mass), *x = &u[node->axis];
+        bool second = *x >= p;
+        *x = minf(second ? (*x - p) / (1.0f - p) : *x / p, 0x1.fffffep-1f);
+        node = first + (second ? 1 : 0);
+    }
+    for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
+        float below = nextafterf(node->high[a], 0.0f);
+        u[a] = minf(lerpf(node->low[a], node->high[a], u[a]), below);
+    }
+    return (float)(node->mass / volume(node));
+}
+
+/* ---- Learning ---- */
+
+static guide_tally *tally_at(GArray *tallies, int i)
+{
+    return &g_array_index(tallies, guide_tally, i);
+}
+
+static void add_record(const guide_node *leaf, guide_tally *tally,
+                       const emission_record *record)
+{
+    int bin[EMISSION_DIMENSIONS], pair = 0;
+    double value = (double)record->value;
+    tally->arrivals++;
+    tally->flux += value;
+    tally->square += value * value * (double)record->density;
+    for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
+        float place = (record->u[a] - leaf->low[a]) / (leaf->high[a] - leaf->low[a]);
+        bin[a] = CLAMP((int)(place * (float)BINS), 0, BINS - 1);
+        tally->by_axis[a][bin[a]] += value;
+        for (int b = 0; b < a; b++)
+            tally->by_pair[pair++][bin[a] * BINS + bin[b]]++;
+    }
+}
+
+/* How unevenly arrivals lie along an axis, 0..1. */
+static double unevenness(const guide_tally *tally, int axis)
+{
+    double low = tally->by_axis[axis][0], high = low;
+    for (int b = 1; b < BINS; b++) {
+        low = MIN(low, tally->by_axis[axis][b]);
+        high = MAX(high, tally->by_axis[axis][b]);
+    }
+    return tally->flux > 0.0 ? (high - low) / tally->flux : 0.0;
+}
+
+/* The axis along which arrivals are uneven beyond what so many show by chance. -1: none.
+ */
+static int uneven_axis(const guide_tally *tally)
+{
+    double chance = 2.0 / sqrt((double)MAX(tally->arrivals, 1)), least = UNEVEN;
+    int axis = -1;
+    least = MAX(least, chance);
+    for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
+        double u = unevenness(tally, a);
+        if (u > least) {
+            least = u;
+            axis = a;
+        }
+    }
+    return axis;
+}
+
+/* The χ² of arrivals in the squares of two axes. */
+static double chi2_of_pair(const guide_tally *tally, int pair)
+{
+    double expected = (double)tally->arrivals / (BINS * BINS), sum = 0.0;
+    for (int i = 0; i < BINS * BINS; i++) {
+        double off = (double)tally->by_pair[pair][i] - expected;
+        sum += off * off / expected;
+    }
+    return sum;
+}
+
+/* A small thing seen from many places of a lamp fills a slanted sheet, even along every
+   axis and uneven in the squares of two. One of two such axes, or -1. */
+static int correlated_axis(const guide_tally *tally)
+{
+    double most = MAX(CHI2_BY_CHANCE, CORRELATED * (double)tally->arrivals);
+    int axis = -1, pair = 0;
+    for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
+        for (int b = 0; b < a; b++, pair++) {
+            double chi2 = chi2_of_pair(tally, pair);
+            if (chi2 > most) {
+                most = chi2;
+                axis = a;
+            }
+        }
+    }
+    return axis;
+}
+
+/* The axis to split a leaf along, or -1. */
+static int axis_to_split(const emission_guide *guide, const guide_node *leaf,
+                         const guide_tally *tally)
+{
+    if (leaf->child || leaf->depth >= MAX_DEPTH || tally->arrivals < MIN_ARRIVALS ||
+        guide->nodes->len + 2 > 2 * MAX_CELLS)
+        return -1;
+    int axis = uneven_axis(tally);
+    return axis >= 0 ? axis : correlated_axis(tally);
+}
+
+static void split(emission_guide *guide, int i, int axis)
+{
+    guide_node parent = *node_at(guide, i);
+    parent.axis = axis;
+    parent.child = (int)guide->nodes->len;
+    *node_at(guide, i) = parent;
+    guide_node half[2] = {{.depth = parent.depth + 1}, {.depth = parent.depth + 1}};
+    for (int k = 0; k < 2; k++) {
+        memcpy(half[k].low, parent.low, sizeof parent.low);
+        memcpy(half[k].high, parent.high, sizeof parent.high);
+    }
+    half[0].high[axis] = half[1].low[axis] = middle(&parent);
+    g_array_append_vals(guide->nodes, half, 2);
+}
+
+/* Tallies the records in their leaves and splits the leaves that deserve it, once. */
+static bool refine(emission_guide *guide, GArray *tallies, const emission_record *records,
+                   size_t n)
+{
+    g_array_set_size(tallies, 0);
+    g_array_set_size(tallies, guide->nodes->len);
+    for (size_t i = 0; i < n; i++) {
+        int leaf = leaf_of(guide, records[i].u);
+        add_record(node_at(guide, leaf), tally_at(tallies, leaf), &records[i]);
+    }
+    bool any = false;
+    for (int i = 0; i < (int)tallies->len; i++) {
+        int axis = axis_to_split(guide, node_at(guide, i), tally_at(tallies, i));
+        if (axis >= 0) {
+            split(guide, i, axis);
+            any = true;
+        }
+    }
+    return any;
+}
+
+/* Least variance wants photons in proportion to the root of the mean squared flux: where
+   few of many arrive, those few must not be heavy. Children come after their parents in
+   the array. */
+static void set_importance(const emission_guide *guide, GArray *tallies)
+{
+    for (int i = (int)tallies->len - 1; i >= 0; i--) {
+        const guide_node *node = node_at(guide, i);
+        guide_tally *tally = tally_at(tallies, i);
+        tally->importance = sqrt(volume(node) * tally->square);
+        if (node->child) {
+            const guide_tally *half = tally_at(tallies, node->child);
+            tally->importance = half[0].importance + half[1].importance;
+            tally->arrivals = half[0].arrivals + half[1].arrivals;
+        }
+    }
+}
+
+/* What n arrivals in both halves say of one of them, by Laplace's rule of succession: a
+   half where none of them lay may still hold one in n + 2. */
+static double smoothed_share(const guide_tally *parent, const guide_tally *half)
+{
+    double n = (double)parent->arrivals;
+    double seen = n > 0.0 ? half->importance / parent->importance : 0.5;
+    double learned = (seen * n + 1.0) / (n + 2.0);
+    return (1.0 - DEFENSIVE_SPLIT) * learned + 0.5 * DEFENSIVE_SPLIT;
+}
+
+static void set_masses(emission_guide *guide, GArray *tallies)
+{
+    tally_at(tallies, 0)->share = 1.0;
+    for (int i = 0; i < (int)tallies->len; i++) {
+        guide_node *node = node_at(guide, i);
+        const guide_tally *tally = tally_at(tallies, i);
+        node->mass =
+            DEFENSIVE_SHARE * volume(node) + (1.0 - DEFENSIVE_SHARE) * tally->share;
+        for (int k = 0; k < 2 && node->child; k++) {
+            guide_tally *half = tally_at(tallies, node->child + k);
+            half->share = tally->share * smoothed_share(tally, half);
+        }
+    }
+}
+
+void emission_guide_learn(emission_guide *guide, const emission_record *records, size_t n)
+{
+    g_autoptr(GArray) tallies = g_array_new(FALSE, TRUE, sizeof(guide_tally));
+    while (refine(guide, tallies, records, n)) {
+    }
+    set_importance(guide, tallies);
+    if (tally_at(tallies, 0)->importance > 0.0)
+        set_masses(guide, tallies);
+}

@@ -1,0 +1,112 @@
+/*
+ * The photon pass: emit, follow, store (Jensen 2001, §5).
+ *
+ * Each class of photon is traced apart with its own number of emissions N. What a photon
+ * has done so far decides its class when it lands; it is stored if that is the class
+ * being traced and the surface has a lobe that the map serves:
+ *
+ *   light ──────────────► D          direct
+ *   light ─► (S|G)+ ────► D          caustic
+ *   light ─► ... D ... ─► D          indirect
+ *
+ * (D, G, S: a diffuse, glossy, specular lobe; see bsdf/bsdf.h; a point in a medium where
+ * light is scattered is as a D). A glossy lobe alone
+ * takes photons only from delta lights by way of S*: all else that it reflects, camera
+ * paths find by following it. So every path of light is counted once.
+ *
+ * Where something moves, every photon has a time of its own: the i-th of N in a slice of
+ * the shutter's time that of the i-th N-th part of it, so that times, and the other
+ * numbers within any stretch of time, are spread evenly. A photon that lands on something
+ * that moves is kept where that will be in the middle of the slice.
+ *
+ * Russian roulette keeps photons of near equal power: survive with p = min(1, g(β
+ * Φ)/g(Φ)), Φ ← Φ β / p, where g is the mean or the maximum over wavelengths.
+ */
+#pragma once
+
+#include "base/parallel.h"
+#include "photon/photon.h"
+#include "photon/share.h"
+#include "photon/trace/emit.h"
+
+/** After so many bounces, photons and paths from the eye go on by this chance at each,
+ * however white all is. */
+enum { LONG_WAY = 500 };
+#define LONG_WAY_SURVIVAL 0.995f
+
+/** @brief What to trace. A plain value; the pass is a pure function of it. */
+typedef struct trace_task {
+    const scene *scene;
+    const settings *how;
+    wavelengths w;
+    uint32_t pass;
+    photon_class photon_class;
+    const emission_guide *guide; /**< for EMISSION_GUIDED caustics; NULL: uniform */
+    const caustic_share *share;  /**< of caustics: what they leave to paths from the eye;
+                                    NULL: nothing. With it, photons that landed go on and
+                                    land again where specular or glossy bounces take them
+                                    next */
+    uint64_t n_photons;          /**< to emit */
+    uint64_t first;              /**< index of the first of them */
+    int slice, n_slices; /**< of the shutter's time, that they are emitted in; 0 of 0: all
+                            of it */
+    const cancel_flag *cancel; /**< may be NULL */
+} trace_task;
+
+/** @brief What came of it. */
+typedef struct trace_result {
+    photon_store photons; /**< in the order of emission; flux of each is its share of N */
+    photon_store in_media; /**< the same of those that were scattered in media; their
+                              homes are the media (medium_home) */
+    uint64_t n_rays;
+    uint64_t n_not_finite; /**< photons dropped since their flux was not finite */
+} trace_result;
+
+/**
+ * @brief Traces in parallel; the result does not depend on the number of threads.
+ * @param oriented photons keep their surfaces' normals
+ * @return false with ERROR_FAILED (memory) or ERROR_CANCELLED; result is then empty
+ */
+bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
+                  GError **error);
+void trace_result_clear(trace_result *result);
+
+/** @brief The six numbers that photon `index` of the task starts from, and their density:
+ * what the guide learns from. */
+float photon_start_point(const trace_task *task, uint64_t index,
+                         float u[EMISSION_DIMENSIONS]);
+
+/** @brief What happened to a photon at one place. */
+typedef enum photon_event_kind {
+    PHOTON_EMITTED,
+    PHOTON_STORED,
+    PHOTON_SCATTERED,
+    PHOTON_ABSORBED,
+    PHOTON_ENDED, /**< no lobe left for its class, or the bounce limit */
+    PHOTON_LEFT,  /**< the scene */
+} photon_event_kind;
+
+typedef struct photon_event {
+    photon_event_kind kind;
+    uint64_t index;         /**< of the photon, in order of emission */
+    vec3 p, direction;      /**< where, and whither it goes on */
+    const surface_hit *hit; /**< NULL for EMITTED and LEFT; in a medium on no shape */
+    int light;
+    unsigned lobe; /**< of SCATTERED */
+    spectrum flux; /**< of the photon after the event, its share alone */
+    float share;   /**< see trace_task.share */
+} photon_event;
+
+/** @brief A photon whose share is smaller than this is one of few that carry as much: its
+ * flux is multiplied by this instead, with a probability of their ratio. */
+#define PHOTON_LEAST_SHARE 0.25f
+
+/** @brief Hears of each event. */
+typedef void (*photon_listener)(const photon_event *event, void *data);
+
+/** @brief Traces photon `index` of the task alone and tells each event. */
+void photon_tell(const trace_task *task, uint64_t index, photon_listener tell,
+                 void *data);
+
+/** @brief Puts photons behind others of the same sort, which they leave. */
+bool trace_result_append(trace_result *to, trace_result *from, GError **error);

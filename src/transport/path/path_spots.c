@@ -1,0 +1,161 @@
+/*
+ * Bright spots as lamps: from surfaces of a camera path a ray is sent to a place that is
+ * brightly lit, as to a point on a lamp, and what photons and light sampling say of it
+ * there is weighed against what the path finds by scattering (photon/spots.h). So a room
+ * that is lit by what the sun throws through its window is no noisier than one with a
+ * lamp there.
+ */
+#include "transport/auto/budget.h"
+#include "transport/direct.h"
+#include "transport/path/path_walk.h"
+
+/* A look at a spot: the surface that the ray met, and how likely it was sent there. */
+typedef struct look {
+    vec3 wi;
+    surface_hit hit;
+    bsdf bsdf;
+    spectrum transmittance;
+    float pdf, pdf_scatter; /* solid angle; of looking, and of following the path */
+} look;
+
+static const photon_spots *spots_of(const path_walk *walk, float time)
+{
+    return walk->pass->spots[time_slice(time, walk->pass->n_slices)];
+}
+
+/* How much what is looked at counts in the picture. */
+static float importance(const camera_path *path)
+{
+    return minf(1.0f, spectrum_mean(path->beta) * path->eta2);
+}
+
+/* What a path meets after a glossy bounce behind a diffuse one is counted elsewhere
+   (path.c), so behind a diffuse bounce surfaces that have a glossy lobe do not look. */
+float path_looks(const path_walk *walk, const camera_path *path, const bsdf *b)
+{
+    const path_pass *pass = walk->pass;
+    bool looks = pass->p_spots > 0.0f && !b->is_phase &&
+                 (b->lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)) &&
+                 (path->n_diffuse == 0 || !(b->lobes & LOBE_GLOSSY)) &&
+                 !path_is_cut(walk, path, 3);
+    return looks ? pass->trial ? 1.0f : pass->p_spots * importance(path) : 0.0f;
+}
+
+/* Glossy lobes count differently behind a diffuse and a glossy bounce: where the surface
+   before has both, it is up to chance which of them it was. */
+static bool is_seen_alike(bool by_either, const bsdf *b)
+{
+    return !by_either || !(b->lobes & LOBE_GLOSSY);
+}
+
+/* Follows a ray to the first surface that scatters. */
+static bool meet_surface(path_walk *walk, const camera_path *path,
+                         const surface_hit *from, look *out)
+{
+    const path_pass *pass = walk->pass;
+    ray r = hit_ray(from, out->wi);
+    out->transmittance = spectrum_fill(1.0f);
+    for (;;) {
+        walk->scratch->shadow_rays++;
+        if (!scene_intersect(walk->scene, &r, &out->hit))
+            return false;
+        out->transmittance *= hit_transmittance(&out->hit, &pass->w);
+        if (r.medium)
+            out->transmittance *= medium_transmittance(r.medium, out->hit.t, &pass->w);
+        if (scene_bsdf(walk->scene, &out->hit, &pass->w, path->lane, &pass->options,
+                       &out->bsdf))
+            return true;
+        r = hit_ray(&out->hit, out->wi);
+    }
+}
+
+static bool look_at_spot(path_walk *walk, const camera_path *path, const surface_hit *hit,
+                         const bsdf *b, const light_numbers *u, look *out)
+{
+    int spot;
+    const photon_spots *spots = spots_of(walk, hit->time);
+    vec3 wo = -path->ray.direction;
+    if (!spots ||
+        !photon_spots_sample(spots, hit->p, u->light, u->place, &spot, &out->wi))
+        return false;
+    out->pdf_scatter = bsdf_pdf(b, wo, out->wi, LOBE_ALL, TRANSPORT_RADIANCE);
+    if (!(out->pdf_scatter > 0.0f) || !meet_surface(walk, path, hit, out) ||
+        !is_seen_alike(bsdf_has_both(b), &out->bsdf) ||
+        !photon_spots_landed(spots, spot, hit->p, out->wi, out->hit.p))
+        return false;
+    out->pdf = photon_spots_pdf(spots, hit->p, out->wi, out->hit.p,
+                                &walk->scratch->estimate.hits);
+    return true;
+}
+
+/* Turns the path into one that has come to the spot by scattering; u, uniform in [0,1),
+   chooses the lobe. */
+static camera_path path_to(const camera_path *path, const look *seen, const bsdf *b,
+                           float u)
+{
+    const vec3 wo = -path->ray.direction;
+    camera_path to = *path;
+    spectrum f;
+    unsigned lobe = bsdf_choose_class(b, wo, seen->wi, TRANSPORT_RADIANCE, u, &f);
+    float cosine = fabsf(dot3(seen->wi, b->shading.n));
+    to.beta *= f * seen->transmittance * (cosine / seen->pdf);
+    to.ray.direction = seen->wi;
+    to.by_either = bsdf_has_both(b);
+    camera_path_count(&to, lobe);
+    return to;
+}
+
+/* Notes what a look finds before it is weighed. */
+static void note_look(const path_walk *walk, const radiance_sample *before,
+                      const look *seen, float importance, float weight)
+{
+    spectrum found = {0};
+    for (int i = 0; i < N_LAYERS; i++) {
+        spectrum part = walk->out->layers[i] - before->layers[i];
+        found += part;
+        walk->out->layers[i] = before->layers[i] + part * weight;
+    }
+    const spot_look note = {
+        .importance = (double)importance,
+        .pdf = (double)seen->pdf,
+        .pdf_scatter = (double)seen->pdf_scatter,
+        .value = (double)spectrum_mean(found),
+    };
+    spot_trial_note(walk->pass->trial, &note);
+}
+
+void path_look_at_spots(path_walk *walk, const camera_path *path, const surface_hit *hit,
+                        const bsdf *b)
+{
+    spot_trial *trial = walk->pass->trial;
+    float p = path_looks(walk, path, b);
+    look seen;
+    if (!(p > 0.0f))
+        return;
+    const radiance_sample before = *walk->out;
+    const light_numbers u = sampler_light(walk->random);
+    if (!(u.primitive < p))
+        return;
+    if (trial)
+        trial->looks += (double)importance(path);
+    if (!look_at_spot(walk, path, hit, b, &u, &seen))
+        return;
+    camera_path to = path_to(path, &seen, b, u.primitive / p);
+    float weight = (1.0f - followed_weight(seen.pdf_scatter, seen.pdf * p)) / p;
+    to.beta *= trial ? 1.0f : weight;
+    path_sample_lights(walk, &to, &seen.hit, &seen.bsdf);
+    path_gather_caustics(walk, &to, &seen.hit, &seen.bsdf);
+    if (trial)
+        note_look(walk, &before, &seen, importance(path), weight);
+}
+
+float path_left_by_spots(path_walk *walk, const camera_path *path, const surface_hit *hit,
+                         const bsdf *b)
+{
+    const photon_spots *spots = path->looked > 0.0f ? spots_of(walk, hit->time) : NULL;
+    if (!spots || !(path->pdf > 0.0f) || !is_seen_alike(path->by_either, b))
+        return 1.0f;
+    float pdf = photon_spots_pdf(spots, path->from, path->ray.direction, hit->p,
+                                 &walk->scratch->estimate.hits);
+    return followed_weight(path->pdf, pdf * path->looked);
+}

@@ -1,0 +1,327 @@
+/*
+ * The camera path of photon mapping: Whitted recursion over the lobes that can be
+ * followed (specular and glossy), and at each surface what the maps and the lights have
+ * to say about the others (Whitted 1980; Jensen 2001, §8).
+ *
+ * Both sides of glass are followed at the first bounces, later one of them by chance. A
+ * lamp met after a glossy bounce is shared with light sampling by multiple importance
+ * sampling.
+ */
+#include "transport/direct.h"
+#include "transport/photonmap/photonmap_medium.h"
+
+enum {
+    SPLIT_BOUNCES = 3,    /* up to here reflection and refraction are both followed */
+    ROULETTE_BOUNCES = 4, /* from here on weak paths end by chance */
+};
+
+/* Shared by all branches of one camera ray. */
+typedef struct camera_tree {
+    const photonmap_pass *pass;
+    sampler *random;
+    transport_scratch *scratch;
+    radiance_sample *out;
+    uint32_t n_branches;
+} camera_tree;
+
+/* One branch: a ray, and what its radiance counts in the pixel. */
+typedef struct camera_branch {
+    ray ray;
+    spectrum beta;
+    int lane;
+    unsigned n_followed;
+    float eta2; /* product of squared relative indices: takes refraction's scale out of
+                   roulette */
+    float glossy_pdf; /* pdf_solid_angle of a glossy direction; 0: specular or from the
+                         camera */
+    vec3 from;        /* the point the ray left */
+} camera_branch;
+
+static bool add(camera_tree *tree, const camera_branch *branch, radiance_layer layer,
+                spectrum radiance)
+{
+    spectrum value = branch->beta * radiance;
+    if (!spectrum_is_finite(value)) {
+        tree->scratch->n_not_finite++;
+        return false;
+    }
+    tree->out->layers[branch->n_followed ? LAYER_SPECULAR : layer] += value;
+    return true;
+}
+
+/* Adds what came from one lamp. */
+static void add_from(camera_tree *tree, const camera_branch *branch, radiance_layer layer,
+                     spectrum radiance, int lamp)
+{
+    if (add(tree, branch, layer, radiance) && tree->out->groups)
+        tree->out->groups[scene_light_group(tree->pass->scene, lamp)] +=
+            branch->beta * radiance;
+}
+
+/* Adds what came from many, in parts by their groups. */
+static void add_parts(camera_tree *tree, const camera_branch *branch,
+                      radiance_layer layer, spectrum radiance, const spectrum *parts)
+{
+    if (!add(tree, branch, layer, radiance) || !tree->out->groups)
+        return;
+    for (int i = 0; i < tree->pass->scene->n_light_groups; i++)
+        tree->out->groups[i] += branch->beta * parts[i];
+}
+
+/* Weight of a light that the branch ran into. hit NULL: an environment. */
+static float met_light_weight(const camera_tree *tree, const camera_branch *branch,
+                              int lamp, const surface_hit *hit)
+{
+    const settings *how = tree->pass->how;
+    if (!(branch->glossy_pdf > 0.0f) || !how->direct_illumination)
+        return 1.0f;
+    if (!how->shadow_rays)
+        return 0.0f;
+    float pdf = direct_light_pdf(tree->pass->scene, true, lamp, branch->from,
+                                 branch->ray.direction, hit);
+    return followed_weight(branch->glossy_pdf, pdf);
+}
+
+static void see_sky(camera_tree *tree, const camera_branch *branch)
+{
+    const photonmap_pass *pass = tree->pass;
+    const scene *s = pass->scene;
+    for (int i = 0; i < s->n_environments; i++) {
+        int index = s->environments[i];
+        const light *l = scene_light(s, index);
+        spectrum radiance = l->kind->environment(l->self, branch->ray.origin,
+                                                 branch->ray.direction, &pass->w);
+        float weight = met_light_weight(tree, branch, index, NULL);
+        add_from(tree, branch, LAYER_EMISSION, radiance * weight, index);
+    }
+}
+
+static void see_lamp(camera_tree *tree, const camera_branch *branch,
+                     const surface_hit *hit)
+{
+    if (hit->light == NO_INDEX)
+        return;
+    const photonmap_pass *pass = tree->pass;
+    spectrum radiance = scene_emitted(pass->scene, hit, -branch->ray.direction, &pass->w);
+    if (!spectrum_is_black(radiance))
+        add_from(tree, branch, LAYER_EMISSION,
+                 radiance * met_light_weight(tree, branch, hit->light, hit), hit->light);
+}
+
+/* The probability that each side of the followed lobes is followed. */
+static void plan_sides(const camera_branch *branch, const bsdf *b, vec3 wo, float p[2])
+{
+    bool split = branch->n_followed < SPLIT_BOUNCES;
+    bool both = (b->lobes & LOBE_ANY_SIDE) == LOBE_ANY_SIDE;
+    p[0] = (b->lobes & LOBE_REFLECTION) ? 1.0f : 0.0f;
+    p[1] = (b->lobes & LOBE_TRANSMISSION) ? 1.0f : 0.0f;
+    if (split || !both)
+        return;
+    const unsigned classes = LOBE_SPECULAR | LOBE_GLOSSY;
+    float reflected = spectrum_mean(bsdf_albedo(b, wo, classes | LOBE_REFLECTION));
+    float transmitted = spectrum_mean(bsdf_albedo(b, wo, classes | LOBE_TRANSMISSION));
+    p[0] = reflected + transmitted > 0.0f ? reflected / (reflected + transmitted) : 0.5f;
+    p[0] = clampf(p[0], 0.05f, 0.95f);
+    p[1] = 1.0f - p[0];
+}
+
+static void shade_direct(camera_tree *tree, const camera_branch *branch,
+                         const surface_hit *hit, const bsdf *b, const float p_follow[2])
+{
+    const photonmap_pass *pass = tree->pass;
+    if (!(b->lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)))
+        return;
+    const direct_query query = {
+        .scene = pass->scene,
+        .w = &pass->w,
+        .hit = hit,
+        .bsdf = b,
+        .wo = -branch->ray.direction,
+        .every_light = true,
+        .shadow_rays = pass->how->shadow_rays,
+        .followed = LOBE_FOLLOWED,
+        .by_side = true,
+        .p_side = {p_follow[0], p_follow[1]},
+    };
+    direct_radiance found[FEW_LIGHTS];
+    int n = direct_light(&query, tree->random, found, &tree->scratch->shadow_rays);
+    for (int i = 0; i < n; i++) {
+        add_from(tree, branch, LAYER_DIRECT, found[i].diffuse, found[i].light);
+        add_from(tree, branch, LAYER_SPECULAR, found[i].glossy, found[i].light);
+    }
+}
+
+/* What the photons of one class give at a point. */
+static void add_gathered(camera_tree *tree, const camera_branch *branch,
+                         radiance_layer layer, photon_class c, const shading_point *at,
+                         unsigned delta)
+{
+    spectrum radiance = photonmap_gather(tree->pass, c, at, delta, tree->scratch);
+    add_parts(tree, branch, layer, radiance, tree->scratch->estimate.groups);
+}
+
+static void shade_indirect(camera_tree *tree, const camera_branch *branch,
+                           const shading_point *at)
+{
+    const photonmap_pass *pass = tree->pass;
+    if (!(at->bsdf->lobes & LOBE_DIFFUSE))
+        return;
+    float importance = spectrum_mean(branch->beta) * branch->eta2;
+    if (!pass->how->final_gather) {
+        add_gathered(tree, branch, LAYER_INDIRECT, PHOTON_INDIRECT, at, 0);
+        return;
+    }
+    spectrum radiance = final_gather(pass, at, importance, tree->random, tree->scratch);
+    add_parts(tree, branch, LAYER_INDIRECT, radiance, tree->scratch->gathered);
+}
+
+/* Everything that ends at this surface: direct, caustic and indirect light. */
+static void shade(camera_tree *tree, const camera_branch *branch, const surface_hit *hit,
+                  const bsdf *b, const float p_follow[2])
+{
+    const photonmap_pass *pass = tree->pass;
+    const shading_point at = {.hit = hit, .bsdf = b, .wo = -branch->ray.direction};
+    unsigned delta = pass->has_unmet_lights ? LOBE_GLOSSY : 0;
+    bool gathers = (b->lobes & (LOBE_DIFFUSE | delta)) != 0;
+    if (pass->how->direct_illumination)
+        shade_direct(tree, branch, hit, b, p_follow);
+    else if (gathers)
+        add_gathered(tree, branch, LAYER_DIRECT, PHOTON_DIRECT, &at, delta);
+    if (gathers)
+        add_gathered(tree, branch, LAYER_CAUSTIC, PHOTON_CAUSTIC, &at, delta);
+    shade_indirect(tree, branch, &at);
+}
+
+/* What light that is scattered in the medium sends along the branch's ray; what comes
+   from behind it is weakened. */
+static void shade_medium(camera_tree *tree, camera_branch *branch, float length)
+{
+    const photonmap_pass *pass = tree->pass;
+    const bool samples_lights = pass->how->direct_illumination;
+    static const radiance_layer layers[N_PHOTON_CLASSES] = {LAYER_DIRECT, LAYER_INDIRECT,
+                                                            LAYER_CAUSTIC};
+    const medium_look look = {&branch->ray, length, branch->beta, branch->lane, true};
+    const spectrum *parts = tree->scratch->estimate.groups;
+    if (samples_lights) {
+        spectrum direct =
+            photonmap_direct_in_medium(pass, &look, tree->random, tree->scratch);
+        add_parts(tree, branch, LAYER_DIRECT, direct, parts);
+    }
+    for (int c = samples_lights ? PHOTON_INDIRECT : PHOTON_DIRECT; c < N_PHOTON_CLASSES;
+         c++) {
+        spectrum radiance = photonmap_gather_medium(pass, (photon_class)c, &branch->ray,
+                                                    length, tree->scratch);
+        add_parts(tree, branch, layers[c], radiance, parts);
+    }
+    branch->beta *= medium_transmittance(branch->ray.medium, length, &pass->w);
+}
+
+/* Turns the branch into what follows by a lobe on the given sides. */
+static bool bounce(camera_tree *tree, camera_branch *branch, const surface_hit *hit,
+                   const bsdf *b, unsigned sides, float probability)
+{
+    float u_lobe = sampler_1d(tree->random);
+    vec2 u = sampler_2d(tree->random);
+    bsdf_sample next;
+    unsigned lobes = LOBE_SPECULAR | LOBE_GLOSSY | sides;
+    vec3 wo = -branch->ray.direction;
+    if (!bsdf_sample_direction(b, wo, u_lobe, u, lobes, TRANSPORT_RADIANCE, &next))
+        return false;
+    branch->beta *= next.weight / probability;
+    branch->lane = next.lane;
+    branch->eta2 *= next.eta * next.eta;
+    branch->glossy_pdf = (next.lobe & LOBE_GLOSSY) ? next.pdf * probability : 0.0f;
+    branch->from = hit->p;
+    branch->ray = hit_ray(hit, next.wi);
+    branch->n_followed++;
+    return !spectrum_is_black(branch->beta);
+}
+
+static bool survives(camera_tree *tree, camera_branch *branch)
+{
+    if (branch->n_followed < ROULETTE_BOUNCES)
+        return true;
+    float p = minf(1.0f, spectrum_mean(branch->beta) * branch->eta2);
+    if (branch->n_followed >= LONG_WAY)
+        p *= LONG_WAY_SURVIVAL;
+    if (!(sampler_1d(tree->random) < p))
+        return false;
+    branch->beta /= p;
+    return true;
+}
+
+static void follow(camera_tree *tree, camera_branch branch);
+
+/* Goes on by the lobes that can be followed. @return false if there is nothing to follow.
+ */
+static bool go_on(camera_tree *tree, camera_branch *branch, const surface_hit *hit,
+                  const bsdf *b, const float p_follow[2])
+{
+    const settings *how = tree->pass->how;
+    int64_t limit = how->max_backward_bounces;
+    bool followed = (b->lobes & (LOBE_SPECULAR | LOBE_GLOSSY)) != 0;
+    if (!followed || (limit >= 0 && branch->n_followed >= limit) ||
+        !survives(tree, branch))
+        return false;
+    if (p_follow[0] >= 1.0f && p_follow[1] >= 1.0f) {
+        camera_branch reflected = *branch;
+        sampler *outer = tree->random, own = sampler_split(outer, tree->n_branches++);
+        tree->random = &own;
+        if (bounce(tree, &reflected, hit, b, LOBE_REFLECTION, 1.0f))
+            follow(tree, reflected);
+        tree->random = outer;
+        return bounce(tree, branch, hit, b, LOBE_TRANSMISSION, 1.0f);
+    }
+    bool reflect = p_follow[0] >= 1.0f || sampler_1d(tree->random) < p_follow[0];
+    return bounce(tree, branch, hit, b, reflect ? LOBE_REFLECTION : LOBE_TRANSMISSION,
+                  p_follow[reflect ? 0 : 1]);
+}
+
+static void follow(camera_tree *tree, camera_branch branch)
+{
+    const photonmap_pass *pass = tree->pass;
+    for (bool first = branch.n_followed == 0; !cancelled(pass->plan->cancel);) {
+        surface_hit hit;
+        tree->scratch->camera_rays++;
+        bool met = branch.n_followed == 0
+                       ? scene_see(pass->scene, &branch.ray, &hit)
+                       : scene_intersect(pass->scene, &branch.ray, &hit);
+        if (branch.ray.medium)
+            shade_medium(
+                tree, &branch,
+                scene_medium_end(pass->scene, &branch.ray, met ? hit.t : INFINITY));
+        if (!met) {
+            see_sky(tree, &branch);
+            return;
+        }
+        branch.beta *= hit_transmittance(&hit, &pass->w);
+        see_lamp(tree, &branch, &hit);
+        bsdf b;
+        if (!scene_bsdf(pass->scene, &hit, &pass->w, branch.lane, &pass->options, &b)) {
+            branch.ray = hit_ray(&hit, branch.ray.direction);
+            continue;
+        }
+        if (first)
+            radiance_sample_note(tree->out, &hit, &b, -branch.ray.direction, branch.from);
+        first = false;
+        float p_follow[2];
+        plan_sides(&branch, &b, -branch.ray.direction, p_follow);
+        shade(tree, &branch, &hit, &b, p_follow);
+        if (!go_on(tree, &branch, &hit, &b, p_follow))
+            return;
+    }
+}
+
+void photonmap_radiance(const void *pass, const ray *r, sampler *random,
+                        transport_scratch *scratch, radiance_sample *out)
+{
+    *out = (radiance_sample){.groups = out->groups};
+    camera_tree tree = {.pass = pass, .random = random, .scratch = scratch, .out = out};
+    follow(&tree, (camera_branch){
+                      .ray = *r,
+                      .beta = spectrum_fill(1.0f),
+                      .lane = ALL_LANES,
+                      .eta2 = 1.0f,
+                      .from = r->origin,
+                  });
+}

@@ -1,0 +1,374 @@
+/*
+ * Final gathering (Jensen 1996; Christensen 1999): indirect light at a seen point is the
+ * mean over rays of what the maps say about the surfaces those rays meet, so that the
+ * map's blotches are averaged away.
+ *
+ * A gather ray never counts lamps it meets: light → here is the direct layer's, and light
+ * → specular → here the caustic map's.
+ *
+ * Kept irradiance is looked up nearby only. Where light falls off to nothing, as on a
+ * wall above its lamp, there are no photons, and the nearest place with any is far and in
+ * the light: what is dark would shine. There the maps are asked, which is quick, for few
+ * photons are in reach.
+ */
+#include "transport/photonmap/photonmap_medium.h"
+
+#include "base/memory.h"
+
+/* ---- Irradiance kept at photon positions ---- */
+
+/* Normals must agree this well (cosine) for a kept irradiance to be used. */
+#define NORMAL_AGREEMENT 0.9f
+enum { NEAREST_KEPT = 4 };
+
+/* How far off a kept irradiance may be, over the radius it was estimated with. */
+#define KEPT_REACH 0.5f
+
+typedef struct irradiance_loop {
+    const photonmap_pass *pass;
+    const photon_store *points;
+    photon_store *out;
+    spectrum *groups; /* of all points, by light groups; NULL: there are none */
+    size_t offset;
+    int slice;
+    bool *failed;
+} irradiance_loop;
+
+/* A place where the maps of a slice are asked. */
+typedef struct map_place {
+    const photonmap_pass *pass;
+    int slice;
+    vec3 p, n;
+} map_place;
+
+/* By the photons of one class; scratch->groups are its parts. */
+static spectrum class_irradiance(const map_place *at, int c, estimate_scratch *scratch)
+{
+    const photonmap_pass *pass = at->pass;
+    const photon_map *map = pass->maps[at->slice][c];
+    estimate_options options =
+        photonmap_options_at(pass, (photon_class)c, at->p, &scratch->hits);
+    options.scene = pass->how->edges ? pass->scene : NULL;
+    options.time = photonmap_slice_time(pass, at->slice);
+    if (map)
+        return photon_irradiance(map, at->p, at->n, &options, scratch, NULL);
+    for (size_t i = 0; i < scratch->n_groups; i++)
+        scratch->groups[i] = (spectrum){0};
+    return (spectrum){0};
+}
+
+/* groups, if there are any, get their parts of it. */
+static spectrum irradiance_at(const map_place *at, estimate_scratch *scratch,
+                              spectrum *groups)
+{
+    spectrum sum = {0};
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        sum += class_irradiance(at, c, scratch);
+        for (size_t i = 0; i < scratch->n_groups; i++)
+            groups[i] += scratch->groups[i];
+    }
+    return sum;
+}
+
+static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    irradiance_loop *loop = data;
+    estimate_scratch scratch = {0};
+    size_t n_groups = (size_t)loop->pass->scene->n_light_groups;
+    bool ready = estimate_scratch_init(&scratch, n_groups, NULL);
+    for (size_t i = begin; i < end && ready; i++) {
+        photon p = photon_store_get(loop->points, i);
+        size_t at = loop->offset + i;
+        loop->out->x[at] = p.p[0];
+        loop->out->y[at] = p.p[1];
+        loop->out->z[at] = p.p[2];
+        loop->out->wi[at] = loop->points->normal[i];
+        if (n_groups)
+            loop->out->tag[at] = (uint32_t)at;
+        spectrum *groups = n_groups > 0 ? loop->groups + at * n_groups : NULL;
+        const map_place place = {loop->pass, loop->slice, p.p, p.n};
+        loop->out->flux[at] = irradiance_at(&place, &scratch, groups);
+    }
+    if (scratch.failed || !ready)
+        loop->failed[begin / 256] = true;
+    estimate_scratch_clear(&scratch);
+}
+
+static bool add_points(photonmap_pass *pass, int slice, const trace_result *points,
+                       photon_store *out, GError **error)
+{
+    size_t n = points->photons.n, n_chunks = n / 256 + 1;
+    g_autofree bool *failed = g_new0(bool, n_chunks);
+    irradiance_loop loop = {.pass = pass,
+                            .points = &points->photons,
+                            .out = out,
+                            .groups = pass->irradiance_groups[slice],
+                            .offset = out->n,
+                            .slice = slice,
+                            .failed = failed};
+    if (!parallel_for(n, 256, (unsigned)pass->how->threads, pass->plan->cancel,
+                      irradiance_chunk, &loop)) {
+        error_set(error, ERROR_CANCELLED, "cancelled");
+        return false;
+    }
+    out->n += n;
+    for (size_t i = 0; i < n_chunks; i++) {
+        if (failed[i]) {
+            error_set(error, ERROR_FAILED, "out of memory for irradiance estimates");
+            return false;
+        }
+    }
+    return true;
+}
+
+bool irradiance_map_build(photonmap_pass *pass, int slice, const trace_result *points,
+                          size_t n, GError **error)
+{
+    spectrum **groups = &pass->irradiance_groups[slice];
+
+    size_t total = 0, n_groups = (size_t)pass->scene->n_light_groups;
+    for (size_t i = 0; i < n; i++)
+        total += points[i].photons.n;
+    photon_store store = {.tagged = n_groups > 0};
+    bool ok = photon_store_reserve(&store, total, error);
+    if (ok && n_groups > 0) {
+        *groups = big_alloc(total * n_groups, sizeof **groups, "light groups", error);
+        ok = *groups != NULL;
+    }
+    for (size_t i = 0; i < n && ok; i++)
+        ok = add_points(pass, slice, &points[i], &store, error);
+    if (!ok) {
+        photon_store_clear(&store);
+        return false;
+    }
+    pass->irradiance[slice] =
+        photon_map_build(MAP_KDTREE, &store, 0.0f, (unsigned)pass->how->threads, error);
+    return pass->irradiance[slice] != NULL;
+}
+
+/* What moves is looked up where its photons are kept. */
+static map_place place_of(const photonmap_pass *pass, const shading_point *at)
+{
+    map_place place = {pass, time_slice(at->hit->time, pass->n_slices), at->hit->p,
+                       face_forward(at->hit->n_geom, at->wo)};
+    if (scene_hit_moves(pass->scene, at->hit)) {
+        transform by = scene_motion_to(pass->scene, at->hit,
+                                       photonmap_slice_time(pass, place.slice));
+        place.p = transform_point(&by, place.p);
+        place.n = normalize3(transform_normal(&by, place.n));
+    }
+    return place;
+}
+
+static float kept_reach(const map_place *at, photon_hits *hits)
+{
+    float least = INFINITY;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        if (c != PHOTON_CAUSTIC && at->pass->plan->n_photons[c] > 0)
+            least =
+                minf(least,
+                     photonmap_options_at(at->pass, (photon_class)c, at->p, hits).radius);
+    }
+    return KEPT_REACH * least;
+}
+
+/* The nearest kept irradiance of a surface that lies alike, among the few nearest of all.
+   @return false: there is none within reach */
+static bool kept_irradiance(const map_place *at, estimate_scratch *scratch,
+                            spectrum *irradiance, const spectrum **groups)
+{
+    const photonmap_pass *pass = at->pass;
+    const photon_filter filter = {.n = at->n, .one_sided = true, .flatten = 1.0f};
+    photon_hits *hits = &scratch->hits;
+    const photon_map *kept = pass->irradiance[at->slice];
+    const photon_store *store = photon_map_store(kept);
+    float best = INFINITY, reach = kept_reach(at, hits);
+    if (!photon_map_nearest(kept, at->p, NEAREST_KEPT, reach, &filter, hits))
+        scratch->failed = true;
+    for (size_t i = 0; i < hits->n; i++) {
+        size_t k = hits->index[i];
+        bool alike = dot3(direction_unpack(store->wi[k]), at->n) >= NORMAL_AGREEMENT;
+        if (!alike || hits->distance2[i] >= best)
+            continue;
+        best = hits->distance2[i];
+        *irradiance = store->flux[k];
+        if (store->tagged)
+            *groups = pass->irradiance_groups[at->slice] +
+                      (size_t)pass->scene->n_light_groups * store->tag[k];
+    }
+    return isfinite(best);
+}
+
+/* ---- Gather rays ---- */
+
+typedef struct gather_path {
+    ray ray;
+    spectrum beta;
+    int lane;
+    int64_t bounces; /* since it left the point that gathers */
+} gather_path;
+
+/* Adds parts by light groups to scratch->gathered; parts may be NULL: none. */
+static void collect(const photonmap_pass *pass, transport_scratch *scratch,
+                    spectrum factor, const spectrum *parts)
+{
+    for (int i = 0; i < pass->scene->n_light_groups && parts; i++)
+        scratch->gathered[i] += factor * parts[i];
+}
+
+/* What a Lambertian surface sends out by all maps, kept or asked; beta times its parts by
+   light groups are collected. */
+static spectrum outgoing_by_maps(const photonmap_pass *pass, const shading_point *at,
+                                 spectrum beta, transport_scratch *scratch)
+{
+    const map_place place = place_of(pass, at);
+    const spectrum f = at->bsdf->rho * INV_PI_F, *parts = NULL;
+    spectrum irradiance = {0};
+    if (kept_irradiance(&place, &scratch->estimate, &irradiance, &parts)) {
+        collect(pass, scratch, beta * f, parts);
+        return irradiance * f;
+    }
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        irradiance += class_irradiance(&place, c, &scratch->estimate);
+        collect(pass, scratch, beta * f, scratch->estimate.groups);
+    }
+    return irradiance * f;
+}
+
+/* Outgoing radiance of the diffuse lobes at a point, from all that light does there; beta
+   times its parts by light groups are collected. */
+static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
+                         spectrum beta, sampler *random, transport_scratch *scratch)
+{
+    if (pass->irradiance[0] && at->bsdf->lambertian && !at->hit->turns)
+        return outgoing_by_maps(pass, at, beta, scratch);
+    spectrum radiance = {0};
+    if (pass->how->direct_illumination) {
+        const direct_query query = {
+            .scene = pass->scene,
+            .w = &pass->w,
+            .hit = at->hit,
+            .bsdf = at->bsdf,
+            .wo = at->wo,
+            .shadow_rays = pass->how->shadow_rays,
+        };
+        direct_radiance found[FEW_LIGHTS];
+        if (direct_light(&query, random, found, &scratch->shadow_rays) > 0) {
+            radiance = found[0].diffuse;
+            if (scratch->gathered)
+                scratch->gathered[scene_light_group(pass->scene, found[0].light)] +=
+                    beta * radiance;
+        }
+    }
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        if (c == PHOTON_DIRECT && pass->how->direct_illumination)
+            continue;
+        radiance += photonmap_gather(pass, (photon_class)c, at, 0, scratch);
+        collect(pass, scratch, beta, scratch->estimate.groups);
+    }
+    return radiance;
+}
+
+/* Goes on by a specular or glossy lobe; roulette ends weak paths and long ones. */
+static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b,
+                      sampler *random)
+{
+    scatter_numbers u = sampler_scatter(random);
+    bsdf_sample next;
+    if (!(b->lobes & (LOBE_SPECULAR | LOBE_GLOSSY)) ||
+        !bsdf_sample_direction(b, -path->ray.direction, u.lobe, u.direction,
+                               LOBE_FOLLOWED, TRANSPORT_RADIANCE, &next))
+        return false;
+    float p = minf(1.0f, spectrum_mean(next.weight) * next.eta * next.eta);
+    if (path->bounces >= LONG_WAY)
+        p *= LONG_WAY_SURVIVAL;
+    if (!(u.roulette < p))
+        return false;
+    path->beta *= next.weight / p;
+    path->lane = next.lane;
+    path->ray = hit_ray(hit, next.wi);
+    path->bounces++;
+    return true;
+}
+
+/* What the medium that the ray travels in sends along it; what comes from behind it is
+   weakened. */
+static spectrum cross_medium(const photonmap_pass *pass, gather_path *path, float length,
+                             sampler *random, transport_scratch *scratch)
+{
+    const bool samples_lights = pass->how->direct_illumination;
+    const medium_look look = {&path->ray, length, path->beta, path->lane, false};
+    spectrum sum = {0};
+    if (samples_lights) {
+        sum = path->beta * photonmap_direct_in_medium(pass, &look, random, scratch);
+        collect(pass, scratch, path->beta, scratch->estimate.groups);
+    }
+    for (int c = samples_lights ? PHOTON_INDIRECT : PHOTON_DIRECT; c < N_PHOTON_CLASSES;
+         c++) {
+        sum += path->beta * photonmap_gather_medium(pass, (photon_class)c, &path->ray,
+                                                    length, scratch);
+        collect(pass, scratch, path->beta, scratch->estimate.groups);
+    }
+    path->beta *= medium_transmittance(path->ray.medium, length, &pass->w);
+    return sum;
+}
+
+static spectrum gather_along(const photonmap_pass *pass, gather_path path,
+                             sampler *random, transport_scratch *scratch)
+{
+    spectrum sum = {0};
+    int64_t limit = pass->how->max_backward_bounces;
+    while ((limit < 0 || path.bounces <= limit) && !cancelled(pass->plan->cancel)) {
+        surface_hit hit;
+        scratch->camera_rays++;
+        bool met = scene_intersect(pass->scene, &path.ray, &hit);
+        if (path.ray.medium)
+            sum += cross_medium(
+                pass, &path,
+                scene_medium_end(pass->scene, &path.ray, met ? hit.t : INFINITY), random,
+                scratch);
+        if (!met)
+            break;
+        path.beta *= hit_transmittance(&hit, &pass->w);
+        bsdf b;
+        if (!scene_bsdf(pass->scene, &hit, &pass->w, path.lane, &pass->options, &b)) {
+            path.ray = hit_ray(&hit, path.ray.direction);
+            continue;
+        }
+        const shading_point at = {.hit = &hit, .bsdf = &b, .wo = -path.ray.direction};
+        if (b.lobes & LOBE_DIFFUSE)
+            sum += path.beta * outgoing(pass, &at, path.beta, random, scratch);
+        if (!gather_on(&path, &hit, &b, random))
+            break;
+    }
+    return sum;
+}
+
+spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
+                      float importance, sampler *random, transport_scratch *scratch)
+{
+    float wanted = ceilf((float)pass->how->gather_rays * clampf(importance, 0.0f, 1.0f));
+    uint32_t n = (uint32_t)maxf(1.0f, wanted);
+    sampler own = sampler_split(random, 0x6761u);
+    uint64_t key = hash_mix(own.key, own.index);
+    spectrum sum = {0};
+    int n_groups = pass->scene->n_light_groups;
+    for (int i = 0; i < n_groups; i++)
+        scratch->gathered[i] = (spectrum){0};
+    for (uint32_t i = 0; i < n && !cancelled(pass->plan->cancel); i++) {
+        sampler stream = sampler_make(key, i);
+        float u_lobe = sampler_1d(&stream);
+        vec2 u = sampler_2d(&stream);
+        bsdf_sample first;
+        if (!bsdf_sample_direction(at->bsdf, at->wo, u_lobe, u, LOBE_GATHERED,
+                                   TRANSPORT_RADIANCE, &first))
+            continue;
+        gather_path path = {
+            .ray = hit_ray(at->hit, first.wi), .beta = first.weight, .lane = first.lane};
+        sum += gather_along(pass, path, &stream, scratch);
+    }
+    for (int i = 0; i < n_groups; i++)
+        scratch->gathered[i] /= (float)n;
+    return sum / (float)n;
+}

@@ -1,0 +1,431 @@
+#include "transport/photonmap/photonmap.h"
+
+#include "base/memory.h"
+#include "transport/auto/aim.h"
+#include "transport/photonmap/photonmap_medium.h"
+#include "transport/places.h"
+
+double photonmap_radius(double radius, double alpha, uint32_t pass)
+{
+    double r2 = radius * radius;
+    for (uint32_t i = 1; i <= pass; i++)
+        r2 *= ((double)i - 1.0 + alpha) / (double)i;
+    return sqrt(r2);
+}
+
+estimate_options photonmap_estimate_options(const settings *how, photon_class c,
+                                            double radius)
+{
+    size_t nearest = (size_t)how->class_nearest[c];
+    bool unbounded = nearest > 0 && !(how->radius > 0.0);
+    return (estimate_options){
+        .kernel = {(kernel_choice)how->class_kernel[c], (float)how->class_cone_k[c]},
+        .nearest = nearest,
+        .radius = unbounded ? INFINITY : (float)radius,
+        .flatten = (float)how->flatten,
+        .lobes = LOBE_GATHERED,
+    };
+}
+
+/* ---- Planning: who gets how many photons ---- */
+
+static bool needs_direct_map(const settings *how)
+{
+    return !how->direct_illumination || (how->final_gather && how->precompute_radiance);
+}
+
+static bool class_needed(const transport_plan *plan, photon_class c)
+{
+    if (!scene_is_lit(plan->scene))
+        return false;
+    switch (c) {
+    case PHOTON_DIRECT:
+        return needs_direct_map(&plan->how);
+    case PHOTON_CAUSTIC:
+        return scene_may_cast_caustics(plan->scene);
+    default:
+        return plan->how.max_forward_bounces != 0;
+    }
+}
+
+/* Classes with a budget of their own keep it; the rest share `photons` evenly. */
+static void share_photons(transport_plan *plan)
+{
+    unsigned n_sharing = 0;
+    int64_t shared = settings_photons(&plan->how);
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        n_sharing +=
+            class_needed(plan, (photon_class)c) && plan->how.class_photons[c] == 0;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        int64_t own = plan->how.class_photons[c];
+        bool needed = class_needed(plan, (photon_class)c);
+        int64_t n = own > 0 ? own : n_sharing > 0 ? shared / n_sharing : 0;
+        plan->n_photons[c] = needed ? (uint64_t)MAX(n, 1) : 0;
+    }
+}
+
+static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
+{
+    share_photons(plan);
+    return aim_caustics(plan, NULL, NULL, cancel, error) &&
+           photonmap_choose_radii(plan, cancel, error);
+}
+
+/* ---- A pass ---- */
+
+static double seconds(void)
+{
+    return (double)g_get_monotonic_time() * 1e-6;
+}
+
+/* What one slice of a pass does for one class. */
+typedef struct slice_task {
+    const photonmap_pass *pass;
+    int slice;
+    photon_class c;
+} slice_task;
+
+static double radius_of(const transport_plan *plan, photon_class c, uint32_t index)
+{
+    return photonmap_radius(plan->radius[c], plan->how.alpha, index);
+}
+
+static uint64_t n_in_slice(const photonmap_pass *pass, photon_class c)
+{
+    uint64_t n = pass->plan->n_photons[c];
+    return n > 0 ? MAX(n / (uint64_t)pass->n_slices, 1) : 0;
+}
+
+static trace_task trace_task_for(const slice_task *s, const cancel_flag *cancel)
+{
+    const photonmap_pass *pass = s->pass;
+    uint64_t each = n_in_slice(pass, s->c);
+    return (trace_task){
+        .scene = pass->scene,
+        .how = pass->how,
+        .w = pass->w,
+        .pass = pass->index,
+        .photon_class = s->c,
+        .guide = pass->plan->guide,
+        .share = pass->plan->shares ? &pass->share : NULL,
+        .n_photons = each,
+        .first = each * (uint64_t)s->slice,
+        .slice = s->slice,
+        .n_slices = pass->n_slices,
+        .cancel = cancel,
+    };
+}
+
+static bool keeps_irradiance(const photonmap_pass *pass)
+{
+    return pass->how->final_gather && pass->how->precompute_radiance;
+}
+
+/* What a pass stores, and what it shows of itself where there is no picture. */
+static bool trace_class(const slice_task *s, const cancel_flag *cancel,
+                        trace_result *result, transport_counts *counts, GError **error)
+{
+    double start = seconds();
+    trace_task task = trace_task_for(s, cancel);
+    counts->radius[s->c] = radius_of(s->pass->plan, s->c, s->pass->index);
+    bool oriented = s->pass->how->edges || keeps_irradiance(s->pass);
+    if (!photon_trace(&task, oriented, result, error))
+        return false;
+    counts->time_trace += seconds() - start;
+    counts->photon_rays += result->n_rays;
+    counts->n_not_finite += result->n_not_finite;
+    counts->emitted[s->c] += task.n_photons;
+    counts->stored[s->c] += result->photons.n + result->in_media.n;
+    return true;
+}
+
+static bool build_class(photonmap_pass *pass, const slice_task *s, trace_result *result,
+                        transport_counts *counts, GError **error)
+{
+    double start = seconds();
+    photon_map **map = &pass->maps[s->slice][s->c];
+    float radius = pass->estimates[s->c].radius;
+    photon_store store = result->photons;
+    result->photons = (photon_store){0};
+    bool radii_differ =
+        pass->plan->radius_map[s->c] && pass->estimates[s->c].nearest == 0;
+    map_choice wanted = (map_choice)pass->how->photon_map;
+    *map = photon_map_build(photon_map_chosen(wanted, radii_differ), &store,
+                            isfinite(radius) ? radius : 0.0f,
+                            (unsigned)pass->how->threads, error);
+    bool ok =
+        *map && photonmap_keep_in_media(pass, s->slice, s->c, &result->in_media, error);
+    counts->time_build += seconds() - start;
+    const volume_map *in_media = pass->in_media[s->slice][s->c];
+    if (ok)
+        counts->memory_photons +=
+            photon_map_bytes(*map) + (in_media ? volume_map_bytes(in_media) : 0);
+    return ok;
+}
+
+/* Every fourth photon becomes a place to keep irradiance at; the others make the map and
+   carry the light of all. Places that were photons of the map would find themselves
+   there, and the estimate be too bright by one photon in so many. What flat curves get
+   depends on where one looks from, so it is kept nowhere on them. */
+static bool set_points_apart(trace_result *from, trace_result *points, GError **error)
+{
+    photon_store *photons = &from->photons;
+    size_t n = photons->n, n_points = n / 4;
+    points->photons.oriented = true;
+    if (!photon_store_reserve(&points->photons, n_points, error))
+        return false;
+    float share = (float)n / (float)MAX(n - n_points, 1);
+    photons->n = 0;
+    for (size_t i = 0; i < n; i++) {
+        photon p = photon_store_get(photons, i);
+        bool apart = i % 4 == 3;
+        p.flux *= share;
+        if (!apart)
+            photon_store_put(photons, &p);
+        else if (!p.home)
+            photon_store_put(&points->photons, &p);
+    }
+    return true;
+}
+
+static bool make_map(photonmap_pass *pass, const slice_task *s, const cancel_flag *cancel,
+                     trace_result *points, transport_counts *counts, GError **error)
+{
+    trace_result result = {0};
+    bool ok = trace_class(s, cancel, &result, counts, error);
+    if (ok && keeps_irradiance(pass) && s->c != PHOTON_CAUSTIC)
+        ok = set_points_apart(&result, points, error);
+    ok = ok && build_class(pass, s, &result, counts, error);
+    trace_result_clear(&result);
+    return ok;
+}
+
+/* The maps of one slice, and the irradiance at places that were photons of it. */
+static bool make_slice(photonmap_pass *pass, int slice, const cancel_flag *cancel,
+                       transport_counts *counts, GError **error)
+{
+    trace_result points[N_PHOTON_CLASSES] = {0};
+    bool ok = true;
+    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
+        const slice_task s = {pass, slice, (photon_class)c};
+        if (pass->plan->n_photons[c] > 0)
+            ok = make_map(pass, &s, cancel, &points[c], counts, error);
+    }
+    double start = seconds();
+    if (ok && keeps_irradiance(pass))
+        ok = irradiance_map_build(pass, slice, points, N_PHOTON_CLASSES, error);
+    counts->time_build += seconds() - start;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        trace_result_clear(&points[c]);
+    return ok;
+}
+
+static bool make_maps(photonmap_pass *pass, const cancel_flag *cancel,
+                      transport_counts *counts, GError **error)
+{
+    bool ok = true;
+    for (int slice = 0; slice < pass->n_slices && ok; slice++)
+        ok = make_slice(pass, slice, cancel, counts, error);
+    return ok;
+}
+
+static void end_pass(void *data)
+{
+    photonmap_pass *pass = data;
+    for (int i = 0; i < pass->n_slices; i++) {
+        for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+            photon_map_free(pass->maps[i][c]);
+            volume_map_free(pass->in_media[i][c]);
+        }
+        photon_map_free(pass->irradiance[i]);
+        big_free(pass->irradiance_groups[i]);
+    }
+    g_aligned_free(pass);
+}
+
+float caustic_discs(const transport_plan *plan, double radius)
+{
+    return (float)(G_PI * radius * radius * (double)plan->n_photons[PHOTON_CAUSTIC] /
+                   (double)plan->how.spp);
+}
+
+/* A pass without its photons. */
+static void *open_pass(const transport_plan *plan, uint32_t index)
+{
+    photonmap_pass *pass = g_aligned_alloc0(1, sizeof *pass, 64);
+    pass->plan = plan;
+    pass->index = index;
+    pass->scene = plan->scene;
+    pass->how = &plan->how;
+    pass->w = scene_wavelengths(plan->scene, &plan->how, index);
+    pass->options.deterministic = !plan->how.multiple_samples;
+    pass->has_unmet_lights = scene_has_unmet_lights(plan->scene);
+    pass->n_slices = scene_time_slices(plan->scene, &plan->how);
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        pass->estimates[c] = photonmap_estimate_options(
+            &plan->how, (photon_class)c, radius_of(plan, (photon_class)c, index));
+    pass->share = plan->share;
+    pass->share.discs = caustic_discs(plan, radius_of(plan, PHOTON_CAUSTIC, index));
+    return pass;
+}
+
+static void *begin_pass(const transport_plan *plan, uint32_t index,
+                        const cancel_flag *cancel, transport_counts *counts,
+                        GError **error)
+{
+    photonmap_pass *pass = open_pass(plan, index);
+    if (make_maps(pass, cancel, counts, error))
+        return pass;
+    end_pass(pass);
+    return NULL;
+}
+
+/* ---- The photons of a pass alone ---- */
+
+static int n_slices(const void *pass)
+{
+    return ((const photonmap_pass *)pass)->n_slices;
+}
+
+static uint64_t count_photons(const void *pass, photon_class c)
+{
+    return n_in_slice(pass, c) * (uint64_t)n_slices(pass);
+}
+
+static bool trace_photons(const void *pass, photon_class c, const cancel_flag *cancel,
+                          transport_counts *counts, trace_result *result, GError **error)
+{
+    bool ok = true;
+    for (int slice = 0; slice < n_slices(pass) && ok; slice++) {
+        const slice_task s = {pass, slice, c};
+        trace_result more = {0};
+        ok = trace_class(&s, cancel, slice == 0 ? result : &more, counts, error) &&
+             trace_result_append(result, &more, error);
+        trace_result_clear(&more);
+    }
+    return ok;
+}
+
+static void tell_photon(const void *pass, photon_class c, uint64_t i,
+                        photon_listener tell, void *data)
+{
+    const slice_task s = {pass, (int)(i / n_in_slice(pass, c)), c};
+    const trace_task task = trace_task_for(&s, NULL);
+    photon_tell(&task, i, tell, data);
+}
+
+const photon_sender photonmap_photons = {
+    .open = open_pass,
+    .count = count_photons,
+    .trace = trace_photons,
+    .tell = tell_photon,
+    .n_wholes = n_slices,
+    .close = end_pass,
+};
+
+static const wavelengths *pass_wavelengths(const void *pass)
+{
+    return &((const photonmap_pass *)pass)->w;
+}
+
+#define LARGEST_OVER_TYPICAL 6.0f
+
+/* A place further from its radius' own place than that radius reaches is emptier still.
+   No radius is so much larger than the typical one that a look-up gets slow. */
+static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
+                          photon_hits *hits)
+{
+    const photon_map *radii = pass->plan->radius_map[c];
+    float typical = pass->estimates[c].radius;
+    if (!radii || pass->estimates[c].nearest > 0)
+        return typical;
+    float r = places_at(radii, p, -1.0f, hits);
+    if (r < 0.0f)
+        return typical;
+    float shrunk = typical / (float)pass->plan->radius[c];
+    return minf(maxf(r, sqrtf(hits->distance2[0])) * shrunk,
+                LARGEST_OVER_TYPICAL * typical);
+}
+
+estimate_options photonmap_options_at(const photonmap_pass *pass, photon_class c, vec3 p,
+                                      photon_hits *hits)
+{
+    estimate_options options = pass->estimates[c];
+    options.radius = local_radius(pass, c, p, hits);
+    return options;
+}
+
+/* Turns a bsdf with the surface that it is of. */
+static void turn_bsdf(const transform *by, vec3 n_geom, bsdf *b)
+{
+    vec3 n = face_forward(normalize3(transform_normal(by, b->shading.n)), n_geom);
+    if (dot3(b->shading.n, b->n_geom) < 0.0f)
+        n = -n;
+    b->shading = frame_from_tangent(n, transform_vector(by, b->shading.s));
+    b->n_geom = n_geom;
+}
+
+/* What the map of a slice says: of what moves or turns, where its photons are kept. */
+static spectrum gather_at(const photonmap_pass *pass, const photon_map *map,
+                          const shading_point *at, const estimate_options *options,
+                          transport_scratch *scratch)
+{
+    const scene *s = pass->scene;
+    bool moves = scene_hit_moves(s, at->hit);
+    if (!moves && !at->hit->turns)
+        return photon_estimate(map, at->hit->p, at->bsdf, at->wo, options,
+                               &scratch->estimate, NULL);
+    surface_hit hit = *at->hit;
+    bsdf turned = *at->bsdf;
+    vec3 wo = at->wo;
+    if (moves) {
+        transform by = scene_motion_to(s, &hit, options->time);
+        instance_move_hit(&by, &hit);
+        hit.time = options->time;
+        turn_bsdf(&by, hit.n_geom, &turned);
+        wo = normalize3(transform_vector(&by, wo));
+    }
+    const flat_curve flat = {s, &hit};
+    estimate_options there = *options;
+    there.curve = hit.turns ? &flat : NULL;
+    return photon_estimate(map, scene_hit_place(s, &hit), &turned, wo, &there,
+                           &scratch->estimate, NULL);
+}
+
+float photonmap_slice_time(const photonmap_pass *pass, int slice)
+{
+    return pass->n_slices > 1 ? time_of_slice(slice, pass->n_slices) : 0.0f;
+}
+
+spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
+                          const shading_point *at, unsigned delta_lobes,
+                          transport_scratch *scratch)
+{
+    int slice = time_slice(at->hit->time, pass->n_slices);
+    const photon_map *map = pass->maps[slice][c];
+    if (!map) {
+        for (size_t i = 0; i < scratch->estimate.n_groups; i++)
+            scratch->estimate.groups[i] = (spectrum){0};
+        return (spectrum){0};
+    }
+    estimate_options options =
+        photonmap_options_at(pass, c, at->hit->p, &scratch->estimate.hits);
+    options.scene = pass->how->edges && !at->blurred ? pass->scene : NULL;
+    options.time = photonmap_slice_time(pass, slice);
+    options.delta_lobes = delta_lobes ? delta_lobes | LOBE_ANY_SIDE : 0;
+    double start = scratch->timed ? seconds() : 0.0;
+    spectrum radiance = gather_at(pass, map, at, &options, scratch);
+    if (scratch->timed)
+        scratch->time_gather += seconds() - start;
+    return radiance;
+}
+
+const transport_kind transport_photonmap = {
+    .name = "photonmap",
+    .prepare = prepare,
+    .begin_pass = begin_pass,
+    .radiance = photonmap_radiance,
+    .pass_wavelengths = pass_wavelengths,
+    .end_pass = end_pass,
+    .photons = &photonmap_photons,
+};

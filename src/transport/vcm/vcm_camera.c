@@ -1,0 +1,419 @@
+/* Camera subpaths: each vertex meets lamps, is connected, and merges. */
+#include "transport/vcm/vcm.h"
+
+enum { ROULETTE_BOUNCES = 4 };
+#define MOST_SURVIVAL 0.99f
+
+/* One camera subpath on its way. */
+typedef struct camera_walk {
+    vcm_walk walk;
+    const vcm_pass *pass;
+    sampler *random;
+    transport_scratch *scratch;
+    radiance_sample *out;
+    size_t first_light, end_light; /* the light subpath that it connects to */
+    partial_weights at_curve;      /* see leave_curve */
+} camera_walk;
+
+static void add(camera_walk *c, scattering_counts counts, int lamp, spectrum radiance)
+{
+    spectrum value = c->walk.carried * radiance;
+    if (!spectrum_is_finite(value)) {
+        c->scratch->n_not_finite++;
+        return;
+    }
+    c->out->layers[vcm_layer(counts)] += value;
+    if (c->out->groups)
+        c->out->groups[scene_light_group(c->pass->scene, lamp)] += value;
+}
+
+/* Which lamp light came from, and what it scattered by on its way. */
+typedef struct arrival {
+    scattering_counts before;
+    int lamp;
+} arrival;
+
+/* Adds what this surface scatters by its two classes of lobes, f, of light that itself
+   came by a light subpath. */
+static void add_scattered(camera_walk *c, const lobe_pair *f, arrival from,
+                          spectrum arriving)
+{
+    for (int i = 0; i < 2; i++) {
+        scattering_counts seen = vcm_count(c->walk.counts, i == 0);
+        if (!spectrum_is_black(f->value[i]))
+            add(c, vcm_join(seen, from.before), from.lamp, f->value[i] * arriving);
+    }
+}
+
+/* ---- The camera path runs into a lamp ---- */
+
+/* True if lamps that this path meets are counted, and by it alone. */
+static bool meets_alone(const camera_walk *c, bool *counted)
+{
+    const vcm_strategies *how = &c->pass->strategies;
+    bool seen_directly = c->walk.counts.n == 0;
+    *counted = how->connect || seen_directly || (how->merge && c->walk.mirrors_only);
+    return !how->connect || seen_directly;
+}
+
+static float met_weight(const camera_walk *c, int index, const surface_hit *hit)
+{
+    const scene *s = c->pass->scene;
+    const light *l = scene_light(s, index);
+    vec3 d = c->walk.ray.direction;
+    float connected = light_tree_probability(s->light_tree, c->walk.from, index) *
+                      l->kind->pdf(l->self, c->walk.from, d, hit);
+    if (hit)
+        connected *= fabsf(dot3(d, hit->n_geom)) / length3_2(hit->p - c->walk.from);
+    float position, direction;
+    l->kind->emit_pdf(l->self, hit ? hit->p : c->walk.from, hit ? hit->n_geom : -d, -d,
+                      &position, &direction);
+    float p_traced = distribution_pdf(&s->light_power, (size_t)index);
+    return weights_met(&c->walk.weights, connected, p_traced * position * direction);
+}
+
+static void meet_light(camera_walk *c, int index, const surface_hit *hit,
+                       spectrum radiance)
+{
+    bool counted, alone = meets_alone(c, &counted);
+    if (!counted || spectrum_is_black(radiance))
+        return;
+    add(c, c->walk.counts, index,
+        alone ? radiance : radiance * met_weight(c, index, hit));
+}
+
+static void meet_lamp(camera_walk *c, const surface_hit *hit, vec3 wo)
+{
+    const partial_weights before = c->walk.weights;
+    weights_arrive(&c->walk.weights, length3_2(hit->p - c->walk.from),
+                   fabsf(dot3(wo, hit->n_geom)));
+    meet_light(c, hit->light, hit, scene_emitted(c->pass->scene, hit, wo, &c->pass->w));
+    c->walk.weights = before;
+}
+
+static void meet_sky(camera_walk *c)
+{
+    const scene *s = c->pass->scene;
+    vec3 d = c->walk.ray.direction;
+    for (int i = 0; i < s->n_environments; i++) {
+        const light *l = scene_light(s, s->environments[i]);
+        meet_light(c, s->environments[i], NULL,
+                   l->kind->environment(l->self, c->walk.ray.origin, d, &c->pass->w));
+    }
+}
+
+/* ---- Connections ---- */
+
+static float lamp_weight(const camera_walk *c, const vcm_vertex *v, int index,
+                         const light_sample *to_light)
+{
+    const scene *s = c->pass->scene;
+    const light *l = scene_light(s, index);
+    bool far = isinf(to_light->distance);
+    const light_start start = {
+        .light = l,
+        .p_traced = distribution_pdf(&s->light_power, (size_t)index),
+        .p = far ? v->hit->p : v->hit->p + to_light->wi * to_light->distance,
+        .n = to_light->n,
+        .direction = -to_light->wi,
+        .distance2 = square(to_light->distance),
+        .pdf = to_light->pdf,
+        .cosine = hit_cosine(v->hit, to_light->wi),
+    };
+    float met =
+        l->is_unmet ? 0.0f : vcm_pdf(v, to_light->wi, TRANSPORT_RADIANCE) / to_light->pdf;
+    float reverse = vcm_pdf_reverse(v, to_light->wi, TRANSPORT_RADIANCE);
+    float traced =
+        weights_connected(&c->walk.weights, light_start_traced_over_connected(&start),
+                          reverse, &c->pass->ratios, v->alone);
+    return 1.0f / (met + 1.0f + traced);
+}
+
+static void connect_to_lamp(camera_walk *c, const vcm_vertex *v)
+{
+    float u_light = sampler_1d(c->random), u_primitive = sampler_1d(c->random);
+    vec2 u = sampler_2d(c->random);
+    int index;
+    light_sample to_light;
+    if (!scene_sample_light(c->pass->scene, &c->pass->w, v->hit->p, u_light, u_primitive,
+                            u, &index, &to_light))
+        return;
+    lobe_pair f = vcm_scatter(v, to_light.wi, TRANSPORT_RADIANCE);
+    if (lobe_pair_is_black(&f))
+        return;
+    c->scratch->shadow_rays++;
+    if (!vcm_visible(c->pass->scene, v->hit, to_light.wi, to_light.distance))
+        return;
+    float weight = lamp_weight(c, v, index, &to_light);
+    add_scattered(
+        c, &f, (arrival){.lamp = index},
+        to_light.radiance * (weight / to_light.pdf) *
+            hit_transmittance_to(v->hit, to_light.wi, to_light.distance, &c->pass->w));
+}
+
+/* Where a camera vertex and a light vertex face one another. */
+typedef struct vertex_pair {
+    const vcm_vertex *eye, *lamp;
+    const light_vertex *light;
+    vec3 direction; /* from eye to lamp */
+    float distance2;
+} vertex_pair;
+
+static float pair_weight(const camera_walk *c, const vertex_pair *p)
+{
+    vec3 d = p->direction;
+    float eye_area = hit_cosine(p->eye->hit, d) / p->distance2;
+    float lamp_area = fabsf(dot3(d, p->lamp->hit->n_geom)) / p->distance2;
+    float lamp_side = weights_connected(
+        &p->light->weights, lamp_area * vcm_pdf(p->eye, d, TRANSPORT_RADIANCE),
+        vcm_pdf_reverse(p->lamp, -d, TRANSPORT_IMPORTANCE), &c->pass->ratios,
+        p->lamp->alone);
+    float eye_side = weights_connected(
+        &c->walk.weights, eye_area * vcm_pdf(p->lamp, -d, TRANSPORT_IMPORTANCE),
+        vcm_pdf_reverse(p->eye, d, TRANSPORT_RADIANCE), &c->pass->ratios, p->eye->alone);
+    return 1.0f / (lamp_side + 1.0f + eye_side);
+}
+
+static void add_pair(camera_walk *c, const vertex_pair *p)
+{
+    lobe_pair f = vcm_scatter(p->eye, p->direction, TRANSPORT_RADIANCE);
+    lobe_pair g = vcm_scatter(p->lamp, -p->direction, TRANSPORT_IMPORTANCE);
+    if (lobe_pair_is_black(&f) || lobe_pair_is_black(&g))
+        return;
+    c->scratch->shadow_rays++;
+    if (!vcm_visible(c->pass->scene, p->eye->hit, p->direction, sqrtf(p->distance2)))
+        return;
+    spectrum scale = hit_transmittance_to(p->eye->hit, p->direction, sqrtf(p->distance2),
+                                          &c->pass->w) *
+                     (pair_weight(c, p) / p->distance2);
+    for (int i = 0; i < 2; i++) {
+        scattering_counts before = p->light->before;
+        before.n++;
+        before.n_diffuse += i == 0;
+        if (!spectrum_is_black(g.value[i]))
+            add_scattered(c, &f, (arrival){before, p->light->light},
+                          p->light->flux * g.value[i] * scale);
+    }
+}
+
+static void connect_to_vertex(camera_walk *c, const vcm_vertex *v, const light_vertex *l)
+{
+    static const bsdf_options options = {0};
+    const vcm_pass *pass = c->pass;
+    vec3 to = l->hit.p - v->hit->p;
+    float distance2 = length3_2(to);
+    if (!vcm_length_allowed(pass, c->walk.counts.n + l->before.n + 2) ||
+        !(distance2 > 0.0f) || vcm_ends_light(pass, &l->hit))
+        return;
+    vcm_vertex lamp = {.hit = &l->hit, .wo = l->wi, .alone = l->alone};
+    scene_bsdf(pass->scene, &l->hit, &pass->w, ALL_LANES, &options, &lamp.bsdf);
+    const vertex_pair p = {v, &lamp, l, to / sqrtf(distance2), distance2};
+    add_pair(c, &p);
+}
+
+/* What is connected where light subpaths end, nothing is merged (see leave_curve). */
+static void connect(camera_walk *c, const vcm_vertex *v)
+{
+    vcm_vertex at = *v;
+    if (vcm_ends_light(c->pass, v->hit))
+        at.alone = 0.0f;
+    connect_to_lamp(c, &at);
+    for (size_t i = c->first_light; i < c->end_light; i++)
+        connect_to_vertex(c, &at, &c->pass->light.vertices[i]);
+}
+
+/* ---- Merging ---- */
+
+static float merge_weight(const camera_walk *c, const vcm_vertex *v,
+                          const light_vertex *l, vec3 wi)
+{
+    if (c->pass->strategies.end_here)
+        return 1.0f;
+    float lamp_side = weights_merged(&l->weights, vcm_pdf(v, wi, TRANSPORT_RADIANCE),
+                                     &c->pass->ratios, v->alone);
+    float eye_side =
+        weights_merged(&c->walk.weights, vcm_pdf_reverse(v, wi, TRANSPORT_RADIANCE),
+                       &c->pass->ratios, v->alone);
+    return 1.0f / (lamp_side + 1.0f + eye_side);
+}
+
+/* Light vertices are a density over the true surface; light sees the shading normal by
+   the cosine that is in f. */
+static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *l,
+                       float kernel_over_area)
+{
+    int n_slices = c->pass->n_slices;
+    vec3 wi = l->wi;
+    if (vcm_ends_light(c->pass, v->hit) && c->pass->strategies.connect &&
+        l->weights.vcm > 0.0f)
+        return;
+    if (scene_hit_moves(c->pass->scene, &l->hit)) {
+        transform by = scene_motion_to(c->pass->scene, &l->hit, v->hit->time);
+        wi = normalize3(transform_vector(&by, wi));
+    }
+    float cosine = hit_cosine(v->hit, wi);
+    if (!(cosine > 0.0f) ||
+        time_slice(l->hit.time, n_slices) != time_slice(v->hit->time, n_slices) ||
+        !vcm_length_allowed(c->pass, c->walk.counts.n + l->before.n + 1))
+        return;
+    lobe_pair f = vcm_scatter(v, wi, TRANSPORT_RADIANCE);
+    if (lobe_pair_is_black(&f))
+        return;
+    float density =
+        kernel_over_area * (float)n_slices / ((float)c->pass->light.n * cosine);
+    add_scattered(c, &f, (arrival){l->before, l->light},
+                  l->flux * (merge_weight(c, v, l, wi) * density));
+}
+
+static void merge(camera_walk *c, const vcm_vertex *v)
+{
+    const vcm_pass *pass = c->pass;
+    const settings *how = &pass->plan->how;
+    const photon_hits *hits = &c->scratch->estimate.hits;
+    const kernel kappa = {(kernel_choice)how->class_kernel[PHOTON_INDIRECT],
+                          (float)how->class_cone_k[PHOTON_INDIRECT]};
+    float r2 = square(pass->radius);
+    float area = vcm_find_vertices(pass, v, &kappa, c->walk.counts.n_diffuse == 0,
+                                   &c->scratch->estimate);
+    const photon_store *store = photon_map_store(pass->map);
+    for (size_t i = 0; i < hits->n && area > 0.0f; i++) {
+        size_t vertex = vcm_payload_vertex(store->flux[hits->index[i]]);
+        merge_with(c, v, &pass->light.vertices[vertex],
+                   kernel_eval(&kappa, hits->distance2[i], r2) / area);
+    }
+}
+
+/* ---- The path ---- */
+
+static bool survives(camera_walk *c)
+{
+    if (c->walk.counts.n < ROULETTE_BOUNCES)
+        return true;
+    float p = fminf(MOST_SURVIVAL, spectrum_mean(c->walk.carried) * c->walk.eta2);
+    c->walk.carried /= p;
+    return sampler_1d(c->random) < p;
+}
+
+/* All that ends at v. */
+static void shade(camera_walk *c, const vcm_vertex *v)
+{
+    const vcm_strategies *how = &c->pass->strategies;
+    if (!(v->bsdf.lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)))
+        return;
+    if (how->connect)
+        connect(c, v);
+    if (how->merge)
+        merge(c, v);
+}
+
+/* Where light subpaths end, a curve that turns to face rays, connections find all light
+   but that which comes by a mirror: only that is merged, for rays to and from the curve
+   differ by its width. So what merging there adds to the weights, at_curve, counts once
+   the path has met a mirror next. */
+static void arrive_past_curve(camera_walk *c, const surface_hit *hit, float cosine)
+{
+    weights_arrive(&c->at_curve, length3_2(hit->p - c->walk.from), cosine);
+    if (vcm_ends_light(c->pass, hit))
+        c->walk.weights = c->at_curve = (partial_weights){0};
+}
+
+static void leave_curve(camera_walk *c, const vcm_vertex *v)
+{
+    partial_weights *w = &c->walk.weights;
+    if (!(w->vcm > 0.0f)) {
+        weights_bounce_specular(&c->at_curve, hit_cosine(v->hit, c->walk.ray.direction));
+        w->vc += c->at_curve.vc;
+        w->vm += c->at_curve.vm;
+    }
+    c->at_curve = (partial_weights){0};
+    if (vcm_ends_light(c->pass, v->hit) && c->pass->strategies.connect) {
+        c->at_curve = (partial_weights){.vc = w->vc, .vm = w->vm};
+        w->vc = w->vm = 0.0f;
+    }
+}
+
+/* Goes on from v, by mirrors only if all else has been merged. */
+static bool go_on(camera_walk *c, const vcm_vertex *v)
+{
+    const vcm_strategies *how = &c->pass->strategies;
+    unsigned lobes = how->end_here ? LOBE_SPECULAR | LOBE_ANY_SIDE : LOBE_ALL;
+    if ((!how->connect && !how->merge) ||
+        !vcm_bounce(c->pass, &c->walk, v, lobes, c->random))
+        return false;
+    leave_curve(c, v);
+    return survives(c);
+}
+
+static void follow(camera_walk *c)
+{
+    static const bsdf_options options = {0};
+    const vcm_pass *pass = c->pass;
+    vcm_walk *walk = &c->walk;
+    while (!cancelled(pass->plan->cancel)) {
+        surface_hit hit;
+        c->scratch->camera_rays++;
+        bool met = walk->counts.n == 0 ? scene_see(pass->scene, &walk->ray, &hit)
+                                       : scene_intersect(pass->scene, &walk->ray, &hit);
+        if (!met) {
+            meet_sky(c);
+            return;
+        }
+        walk->carried *= hit_transmittance(&hit, &pass->w);
+        vcm_vertex v = {.hit = &hit, .wo = -walk->ray.direction};
+        float cosine = hit_cosine(&hit, v.wo);
+        bool surface =
+            scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf);
+        if (hit.light != NO_INDEX)
+            meet_lamp(c, &hit, v.wo);
+        if (!surface) {
+            walk->ray = hit_ray(&hit, walk->ray.direction);
+            continue;
+        }
+        if (walk->counts.n == 0)
+            radiance_sample_note(c->out, v.hit, &v.bsdf, v.wo, walk->from);
+        if (!vcm_length_allowed(pass, walk->counts.n + 1) || !(cosine > 0.0f))
+            return;
+        weights_arrive(&walk->weights, length3_2(hit.p - walk->from), cosine);
+        arrive_past_curve(c, &hit, cosine);
+        v.alone = walk->mirrors_only
+                      ? 1.0f
+                      : vcm_alone_at(pass, &hit, &c->scratch->estimate.hits);
+        shade(c, &v);
+        if (!go_on(c, &v))
+            return;
+    }
+}
+
+/* The light subpath that this camera path connects to. */
+static void choose_light_path(camera_walk *c)
+{
+    const light_paths *paths = &c->pass->light;
+    size_t i =
+        hash_mix(hash_mix(c->random->key, c->random->index), c->pass->index) % paths->n;
+    if (c->pass->scene->moves)
+        i = MIN((size_t)((double)c->walk.ray.time * (double)paths->n), paths->n - 1);
+    c->first_light = i > 0 ? paths->end[i - 1] : 0;
+    c->end_light = paths->end[i];
+}
+
+void vcm_radiance(const void *data, const ray *r, sampler *random,
+                  transport_scratch *scratch, radiance_sample *out)
+{
+    const vcm_pass *pass = data;
+    *out = (radiance_sample){.groups = out->groups};
+    camera_walk c = {.pass = pass, .random = random, .scratch = scratch, .out = out};
+    c.walk = (vcm_walk){.ray = *r,
+                        .from = r->origin,
+                        .carried = spectrum_fill(1.0f),
+                        .lane = ALL_LANES,
+                        .eta2 = 1.0f,
+                        .mirrors_only = true,
+                        .mode = TRANSPORT_RADIANCE};
+    if (pass->strategies.splat) {
+        float pdf = camera_pdf_direction(&pass->scene->camera, r->direction, r->time);
+        c.walk.weights.vcm = 1.0f / (pdf * pass->camera_per_light);
+    }
+    if (pass->strategies.connect)
+        choose_light_path(&c);
+    follow(&c);
+}

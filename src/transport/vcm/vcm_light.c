@@ -1,0 +1,457 @@
+/*
+ * Light subpaths: traced in chunks that are joined in order, so that a pass is the same
+ * on any number of threads. Every vertex that scatters not only as a mirror is kept, and
+ * connected to the eye on the spot.
+ */
+#include "base/memory.h"
+#include "transport/vcm/vcm.h"
+
+#include <string.h>
+
+/* Light subpaths per parallel piece of work. */
+enum { CHUNK = 1024 };
+
+/* The most a light subpath is likely to survive a bounce with: it ends also in a box of
+   mirrors. */
+#define MOST_SURVIVAL 0.99f
+
+/* What the eye sees this close to its target, as a share of the way, is the target. */
+#define SHORTENING 1e-4f
+
+/* What one chunk found, until the chunks are joined. */
+typedef struct light_chunk {
+    light_vertex *vertices;
+    splat *splats;
+    size_t n_vertices, vertex_capacity, n_splats, splat_capacity;
+    uint64_t n_rays, n_shadow_rays, n_not_finite;
+    photon_hits hits; /* scratch */
+    GError *error;
+} light_chunk;
+
+/* One light subpath. */
+typedef struct light_walk {
+    vcm_walk walk;
+    const vcm_pass *pass;
+    sampler random;
+    light_chunk *out;
+    float time;           /* of the shutter */
+    light_start start;    /* of the first vertex, which is still to be found */
+    int light;            /* that it left */
+    uint32_t primitive;   /* of its mesh */
+    uint64_t index;       /* of the subpath */
+    photon_listener tell; /* NULL: nobody listens */
+    void *tell_data;
+} light_walk;
+
+static void tell(const light_walk *l, photon_event_kind kind, const surface_hit *hit)
+{
+    if (!l->tell)
+        return;
+    const photon_event event = {
+        .kind = kind,
+        .index = l->index,
+        .p = hit ? hit->p : l->walk.ray.origin,
+        .direction = l->walk.ray.direction,
+        .hit = hit,
+        .light = l->light,
+        .lobe = l->walk.lobe,
+        .flux = l->walk.carried / (float)l->pass->light.n,
+        .share = 1.0f,
+    };
+    l->tell(&event, l->tell_data);
+}
+
+/* ---- What is kept ---- */
+
+static void *grown(void *array, size_t n, size_t *capacity, size_t size, GError **error)
+{
+    if (n < *capacity)
+        return array;
+    size_t room = MAX(2 * *capacity, CHUNK);
+    void *grown_array = big_grow(array, n, room, size, "light vertices", error);
+    if (grown_array)
+        *capacity = room;
+    return grown_array;
+}
+
+static void keep(light_walk *l, const vcm_vertex *v)
+{
+    light_chunk *out = l->out;
+    light_vertex *room = grown(out->vertices, out->n_vertices, &out->vertex_capacity,
+                               sizeof *room, &out->error);
+    if (!room)
+        return;
+    out->vertices = room;
+    room[out->n_vertices++] = (light_vertex){
+        .hit = *v->hit,
+        .wi = v->wo,
+        .flux = l->walk.carried,
+        .weights = l->walk.weights,
+        .before = l->walk.counts,
+        .light = l->light,
+        .alone = v->alone,
+    };
+}
+
+static void keep_splat(light_walk *l, const splat *s)
+{
+    light_chunk *out = l->out;
+    if (!spectrum_is_finite(s->value)) {
+        out->n_not_finite++;
+        return;
+    }
+    splat *room = grown(out->splats, out->n_splats, &out->splat_capacity, sizeof *room,
+                        &out->error);
+    if (!room)
+        return;
+    out->splats = room;
+    room[out->n_splats++] = *s;
+}
+
+/* ---- To the eye ---- */
+
+static bool hidden(const scene *s, const surface_hit *hit)
+{
+    const shape *on = s->shapes->pdata[hit->shape];
+    return on->camera_hidden;
+}
+
+/* True if the eye sees the hit, past what it does not see and through interfaces. */
+static bool seen(const vcm_pass *pass, const surface_hit *hit,
+                 const camera_connection *eye)
+{
+    const scene *s = pass->scene;
+    if (vcm_visible(s, hit, eye->direction, eye->distance))
+        return true;
+    if (!pass->camera_hides)
+        return false;
+    vec3 target = hit_offset(hit, eye->direction);
+    ray r = {.origin = target + eye->direction * eye->distance,
+             .direction = -eye->direction,
+             .time = hit->time};
+    surface_hit between;
+    for (;;) {
+        r.t_max = dot3(target - r.origin, r.direction);
+        if (!(r.t_max > 0.0f) || !scene_see(s, &r, &between))
+            return true;
+        if (between.t > r.t_max * (1.0f - SHORTENING))
+            return true;
+        if (between.material != NO_INDEX)
+            return false;
+        r = hit_ray(&between, r.direction);
+    }
+}
+
+/* The weight of this connection among all ways to find the path. */
+static float weight_to_eye(const light_walk *l, const vcm_vertex *v,
+                           const camera_connection *eye, float pdf_area)
+{
+    const vcm_pass *pass = l->pass;
+    if (!pass->strategies.connect)
+        return 1.0f;
+    float reverse = vcm_pdf_reverse(v, eye->direction, TRANSPORT_IMPORTANCE);
+    return 1.0f /
+           (1.0f + weights_connected(&l->walk.weights, pdf_area * pass->camera_per_light,
+                                     reverse, &pass->ratios, 1.0f));
+}
+
+static void connect_to_eye(light_walk *l, const vcm_vertex *v)
+{
+    const vcm_pass *pass = l->pass;
+    camera_connection eye;
+    vec2 u_lens = sampler_2d(&l->random);
+    if (hidden(pass->scene, v->hit) ||
+        !camera_connect(&pass->scene->camera, v->hit->p, u_lens, v->hit->time, &eye) ||
+        !filter_reaches(&pass->scene->filter, eye.raster, pass->scene->film.width,
+                        pass->scene->film.height))
+        return;
+    lobe_pair f = vcm_scatter(v, eye.direction, TRANSPORT_IMPORTANCE);
+    if (lobe_pair_is_black(&f))
+        return;
+    l->out->n_shadow_rays++;
+    if (!seen(pass, v->hit, &eye))
+        return;
+    spectrum left = hit_transmittance_to(v->hit, eye.direction, eye.distance, &pass->w);
+    float density = eye.pdf / square(eye.distance);
+    float cosine = hit_cosine(v->hit, eye.direction);
+    float weight = weight_to_eye(l, v, &eye, density * cosine);
+    for (int i = 0; i < 2; i++) {
+        scattering_counts scattered = vcm_count((scattering_counts){0}, i == 0);
+        splat s = {
+            .value = l->walk.carried * left * f.value[i] *
+                     (weight * density / (float)pass->light.n),
+            .raster = eye.raster,
+            .layer = vcm_layer(vcm_join(scattered, l->walk.counts)),
+            .group = scene_light_group(pass->scene, l->light),
+        };
+        if (!spectrum_is_black(s.value))
+            keep_splat(l, &s);
+    }
+}
+
+/* ---- One subpath ---- */
+
+static uint64_t stream_key(const vcm_pass *pass)
+{
+    uint64_t key = hash_mix((uint64_t)pass->plan->how.seed, pass->index);
+    return hash_mix(key, 0x76636du);
+}
+
+/* The i-th part of the shutter's time; 0 where nothing moves. */
+static float time_of(const vcm_pass *pass, size_t i)
+{
+    if (!pass->scene->moves)
+        return 0.0f;
+    uint64_t h = hash_mix(stream_key(pass) ^ 0x74696d65u, i);
+    double at = ((double)i + (double)(h >> 11) * 0x1p-53) / (double)pass->light.n;
+    return minf((float)at, 0x1.fffffep-1f);
+}
+
+static bool emit(light_walk *l)
+{
+    const vcm_pass *pass = l->pass;
+    const distribution *power = &pass->scene->light_power;
+    float u_light = sampler_1d(&l->random), u_primitive = sampler_1d(&l->random);
+    vec2 u_position = sampler_2d(&l->random), u_direction = sampler_2d(&l->random);
+    if (!scene_is_lit(pass->scene))
+        return false;
+    size_t index = distribution_sample(power, &u_light);
+    const light *from = scene_light(pass->scene, (int)index);
+    light_emission e = {.primitive = 0};
+    if (!from->kind->emit(from->self, &pass->w, u_primitive, u_position, u_direction, &e))
+        return false;
+    float p_light = distribution_pdf(power, index);
+    l->light = (int)index;
+    l->primitive = e.primitive;
+    l->start = (light_start){.light = from,
+                             .p_traced = p_light,
+                             .p = e.ray.origin,
+                             .n = e.n,
+                             .direction = e.ray.direction};
+    e.ray.time = l->time;
+    e.ray.solids = scene_light(l->pass->scene, l->light)->solids;
+    l->walk = (vcm_walk){.ray = e.ray,
+                         .from = e.ray.origin,
+                         .carried = e.flux / p_light,
+                         .lane = ALL_LANES,
+                         .eta2 = 1.0f,
+                         .mode = TRANSPORT_IMPORTANCE};
+    return !spectrum_is_black(l->walk.carried);
+}
+
+static void arrive_first(light_walk *l, const surface_hit *hit, float cosine,
+                         float distance2)
+{
+    light_start *start = &l->start;
+    const light *from = start->light;
+    const surface_hit on_light = {
+        .p = start->p, .n_geom = start->n, .primitive = l->primitive};
+    start->cosine = cosine;
+    start->distance2 = distance2;
+    start->pdf = light_tree_probability(l->pass->scene->light_tree, hit->p, l->light);
+    if (!from->kind->is_delta)
+        start->pdf *= from->kind->pdf(from->self, hit->p, -start->direction, &on_light);
+    l->walk.weights = weights_from_light(start, &l->pass->ratios);
+}
+
+static void arrive(light_walk *l, const surface_hit *hit)
+{
+    float cosine = hit_cosine(hit, l->walk.ray.direction);
+    float distance2 = length3_2(hit->p - l->walk.from);
+    if (l->walk.counts.n == 0)
+        arrive_first(l, hit, cosine, distance2);
+    else
+        weights_arrive(&l->walk.weights, distance2, cosine);
+}
+
+/* Keeps the power of subpaths even. */
+static bool survives(light_walk *l, spectrum before)
+{
+    float p =
+        fminf(MOST_SURVIVAL, spectrum_mean(l->walk.carried) / spectrum_mean(before));
+    l->walk.carried /= p;
+    return sampler_1d(&l->random) < p;
+}
+
+static void land(light_walk *l, const vcm_vertex *v)
+{
+    unsigned lobes = scene_lobes_around(l->pass->scene, v->hit, &v->bsdf);
+    if (!(lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)) ||
+        !vcm_length_allowed(l->pass, l->walk.counts.n + 1))
+        return;
+    bool ends = vcm_ends_light(l->pass, v->hit);
+    if ((l->pass->strategies.connect && !ends) || l->pass->strategies.merge) {
+        keep(l, v);
+        tell(l, PHOTON_STORED, v->hit);
+    }
+    if (l->pass->strategies.splat && !ends)
+        connect_to_eye(l, v);
+}
+
+/* Goes on from v. @return false: the subpath ends there */
+static bool go_on(light_walk *l, const vcm_vertex *v)
+{
+    const vcm_pass *pass = l->pass;
+    spectrum before = l->walk.carried;
+    if (vcm_ends_light(pass, v->hit) || !vcm_length_allowed(pass, l->walk.counts.n + 2)) {
+        tell(l, PHOTON_ENDED, v->hit);
+        return false;
+    }
+    bool scattered =
+        vcm_bounce(pass, &l->walk, v, LOBE_ALL, &l->random) && survives(l, before);
+    tell(l, scattered ? PHOTON_SCATTERED : PHOTON_ABSORBED, v->hit);
+    return scattered;
+}
+
+static void follow(light_walk *l)
+{
+    static const bsdf_options options = {0};
+    const vcm_pass *pass = l->pass;
+    tell(l, PHOTON_EMITTED, NULL);
+    while (!l->out->error) {
+        surface_hit hit;
+        l->out->n_rays++;
+        if (!scene_intersect(pass->scene, &l->walk.ray, &hit)) {
+            tell(l, PHOTON_LEFT, NULL);
+            return;
+        }
+        l->walk.carried *= hit_transmittance(&hit, &pass->w);
+        vcm_vertex v = {.hit = &hit, .wo = -l->walk.ray.direction};
+        if (!scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf)) {
+            l->walk.ray = hit_ray(&hit, l->walk.ray.direction);
+            continue;
+        }
+        if (!(fabsf(dot3(v.wo, hit.n_geom)) > 0.0f))
+            return;
+        arrive(l, &hit);
+        v.alone = vcm_alone_at(pass, &hit, &l->out->hits);
+        land(l, &v);
+        if (!go_on(l, &v))
+            return;
+    }
+}
+
+static light_walk walk_of(const vcm_pass *pass, size_t i)
+{
+    return (light_walk){.pass = pass,
+                        .random = sampler_make(stream_key(pass), i),
+                        .time = time_of(pass, i),
+                        .index = i};
+}
+
+/* ---- All of them ---- */
+
+typedef struct light_loop {
+    vcm_pass *pass;
+    light_chunk *chunks;
+} light_loop;
+
+static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    light_loop *loop = data;
+    light_chunk *out = &loop->chunks[begin / CHUNK];
+    const cancel_flag *cancel = loop->pass->plan->cancel;
+    for (size_t i = begin; i < end && !out->error && !cancelled(cancel); i++) {
+        light_walk l = walk_of(loop->pass, i);
+        l.out = out;
+        if (emit(&l))
+            follow(&l);
+        loop->pass->light.end[i] = out->n_vertices;
+    }
+    photon_hits_clear(&out->hits);
+}
+
+/* Puts chunk c's vertices and splats behind those before it. */
+static void append(light_paths *to, light_chunk *from, size_t c)
+{
+    if (from->n_vertices > 0)
+        memcpy(to->vertices + to->n_vertices, from->vertices,
+               from->n_vertices * sizeof *from->vertices);
+    if (from->n_splats > 0)
+        memcpy(to->splats + to->n_splats, from->splats,
+               from->n_splats * sizeof *from->splats);
+    for (size_t i = c * CHUNK; i < MIN((c + 1) * CHUNK, to->n); i++)
+        to->end[i] += to->n_vertices;
+    to->n_vertices += from->n_vertices;
+    to->n_splats += from->n_splats;
+}
+
+static void chunk_clear(light_chunk *chunk)
+{
+    big_free(chunk->vertices);
+    big_free(chunk->splats);
+    g_clear_error(&chunk->error);
+    *chunk = (light_chunk){0};
+}
+
+static bool join(light_paths *to, light_chunk *chunks, size_t n, transport_counts *counts,
+                 GError **error)
+{
+    size_t n_vertices = 0, n_splats = 0;
+    for (size_t c = 0; c < n; c++) {
+        if (chunks[c].error) {
+            g_propagate_error(error, g_steal_pointer(&chunks[c].error));
+            return false;
+        }
+        n_vertices += chunks[c].n_vertices;
+        n_splats += chunks[c].n_splats;
+        counts->photon_rays += chunks[c].n_rays;
+        counts->n_not_finite += chunks[c].n_not_finite;
+    }
+    to->vertices = big_alloc(n_vertices, sizeof *to->vertices, "light vertices", error);
+    to->splats = big_alloc(n_splats, sizeof *to->splats, "splats", error);
+    if (!to->vertices || !to->splats)
+        return false;
+    for (size_t c = 0; c < n; c++) {
+        append(to, &chunks[c], c);
+        chunk_clear(&chunks[c]);
+    }
+    return true;
+}
+
+void vcm_tell_light(const vcm_pass *pass, uint64_t i, photon_listener listener,
+                    void *data)
+{
+    light_chunk unused = {0};
+    light_walk l = walk_of(pass, (size_t)i);
+    l.out = &unused;
+    l.tell = listener;
+    l.tell_data = data;
+    if (emit(&l))
+        follow(&l);
+    photon_hits_clear(&unused.hits);
+    chunk_clear(&unused);
+}
+
+bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts *counts,
+                     GError **error)
+{
+    light_paths *paths = &pass->light;
+    size_t n_chunks = (paths->n + CHUNK - 1) / CHUNK;
+    light_chunk *chunks = big_alloc(n_chunks, sizeof *chunks, "light subpaths", error);
+    paths->end =
+        chunks ? big_alloc(paths->n, sizeof *paths->end, "light subpaths", error) : NULL;
+    if (!paths->end) {
+        big_free(chunks);
+        return false;
+    }
+    light_loop loop = {pass, chunks};
+    bool done = parallel_for(paths->n, CHUNK, (unsigned)pass->plan->how.threads, cancel,
+                             trace_chunk, &loop);
+    if (!done)
+        error_set(error, ERROR_CANCELLED, "cancelled");
+    bool joined = done && join(paths, chunks, n_chunks, counts, error);
+    for (size_t c = 0; c < n_chunks; c++)
+        chunk_clear(&chunks[c]);
+    big_free(chunks);
+    return joined;
+}
+
+void light_paths_clear(light_paths *paths)
+{
+    big_free(paths->vertices);
+    big_free(paths->end);
+    big_free(paths->splats);
+    *paths = (light_paths){0};
+}

@@ -1,0 +1,84 @@
+/* What light and camera subpaths have in common. */
+#include "transport/vcm/vcm.h"
+
+lobe_pair vcm_scatter(const vcm_vertex *v, vec3 wi, transport_mode mode)
+{
+    static const unsigned classes[2] = {LOBE_DIFFUSE, LOBE_GLOSSY};
+    float cosine = fabsf(dot3(wi, v->bsdf.shading.n));
+    lobe_pair out = {{{0}, {0}}};
+    for (int i = 0; i < 2; i++) {
+        if (v->bsdf.lobes & classes[i])
+            out.value[i] =
+                cosine * bsdf_eval(&v->bsdf, v->wo, wi, classes[i] | LOBE_ANY_SIDE, mode);
+    }
+    return out;
+}
+
+scattering_counts vcm_count(scattering_counts from_eye, bool diffuse)
+{
+    if (from_eye.n == 0)
+        from_eye.first_diffuse = diffuse;
+    from_eye.n++;
+    from_eye.n_diffuse += diffuse;
+    return from_eye;
+}
+
+radiance_layer vcm_layer(scattering_counts counts)
+{
+    if (counts.n == 0)
+        return LAYER_EMISSION;
+    if (!counts.first_diffuse)
+        return LAYER_SPECULAR;
+    if (counts.n_diffuse > 1)
+        return LAYER_INDIRECT;
+    return counts.n > 1 ? LAYER_CAUSTIC : LAYER_DIRECT;
+}
+
+bool vcm_visible(const scene *s, const surface_hit *from, vec3 direction, float distance)
+{
+    ray r = hit_ray_to(from, direction, distance);
+    return !scene_occluded(s, &r);
+}
+
+/* By the bsdf that samples: v's own, or that of the lane which the path has kept. */
+static bool sample_direction(const vcm_pass *pass, const vcm_walk *walk,
+                             const vcm_vertex *v, unsigned lobes, sampler *random,
+                             bsdf_sample *out)
+{
+    static const bsdf_options options = {0};
+    float u_lobe = sampler_1d(random);
+    vec2 u = sampler_2d(random);
+    bsdf one_lane;
+    const bsdf *b = walk->lane == ALL_LANES ? &v->bsdf : &one_lane;
+    if (b == &one_lane &&
+        !scene_bsdf(pass->scene, v->hit, &pass->w, walk->lane, &options, &one_lane))
+        return false;
+    if (!bsdf_sample_direction(b, v->wo, u_lobe, u, lobes, walk->mode, out))
+        return false;
+    if (lobes == LOBE_ALL && bsdf_has_both(b))
+        bsdf_settle_class(b, v->wo, walk->mode, sampler_1d(random), out);
+    return true;
+}
+
+bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsigned lobes,
+                sampler *random)
+{
+    bsdf_sample next;
+    if (!sample_direction(pass, walk, v, lobes, random, &next))
+        return false;
+    float cosine = hit_cosine(v->hit, next.wi);
+    if (next.lobe & LOBE_SPECULAR)
+        weights_bounce_specular(&walk->weights, cosine);
+    else
+        weights_bounce(&walk->weights, cosine, vcm_pdf(v, next.wi, walk->mode),
+                       vcm_pdf_reverse(v, next.wi, walk->mode), &pass->ratios, v->alone);
+    walk->carried *= next.weight;
+    walk->lane = next.lane;
+    walk->lobe = next.lobe;
+    walk->mirrors_only &= (next.lobe & LOBE_SPECULAR) != 0;
+    walk->eta2 *= next.eta * next.eta;
+    walk->from = v->hit->p;
+    walk->ray = hit_ray(v->hit, next.wi);
+    walk->counts = vcm_count(walk->counts, (next.lobe & LOBE_DIFFUSE) != 0);
+    return cosine > 0.0f && !spectrum_is_black(walk->carried);
+}
