@@ -103,7 +103,7 @@ void write_tiles(const exr_kind *kind, Imf::LevelMode mode, const char *path)
 {
     planes pixels(kind);
     Imf::Header header = header_of(kind);
-    header.setTileDescription({EXR_TILE, EXR_TILE, mode});
+    header.setTileDescription({EXR_TILE_WIDTH, EXR_TILE_HEIGHT, mode});
     Imf::TiledOutputFile file(path, header, 0);
     for (int ly = 0; ly < file.numYLevels(); ly++)
         for (int lx = 0; lx < file.numXLevels(); lx++) {

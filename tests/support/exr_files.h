@@ -10,7 +10,14 @@
 extern "C" {
 #endif
 
-enum { EXR_WIDTH = 45, EXR_HEIGHT = 38, EXR_TILE = 16, EXR_N_COMPRESSIONS = 10 };
+/* Small, yet more than one tile either way and one chunk of lines, the last ones cut. */
+enum {
+    EXR_WIDTH = 15,
+    EXR_HEIGHT = 34,
+    EXR_TILE_WIDTH = 8,
+    EXR_TILE_HEIGHT = 32,
+    EXR_N_COMPRESSIONS = 10
+};
 
 typedef enum exr_values {
     EXR_UINT,
