@@ -370,45 +370,76 @@ def damage(r, data, other):
 
 # --- running ---
 
-CGROUPS = '/sys/fs/cgroup'
+GROUPS = ('/sys/fs/cgroup', 'memory.max'), ('/sys/fs/cgroup/memory', 'memory.limit_in_bytes')
+SCOPE = ['systemd-run', '--user', '--scope', '--quiet', '--collect', '-p', 'MemoryMax=%d' % MEMORY,
+         '-p', 'MemorySwapMax=0', '--']
+
+
+def new_group():
+    """A control group of MEMORY, of either version of them; None where none can be made."""
+    for mount, limit in GROUPS:
+        if not os.path.exists(os.path.join(mount, 'cgroup.procs')):
+            continue
+        try:
+            group = tempfile.mkdtemp(prefix='nephroid-mutate-', dir=mount)
+        except OSError:
+            continue
+        try:
+            with open(os.path.join(group, limit), 'w') as file:
+                file.write(str(MEMORY))
+            return group
+        except OSError:
+            os.rmdir(group)
+    return None
+
+
+def remove_group(group):
+    """Not at once possible where the last of its processes has only just ended."""
+    for _ in range(50):
+        try:
+            os.rmdir(group)
+            return
+        except OSError:
+            time.sleep(0.02)
+
+
+def memory_limiter():
+    """How memory can be limited on this machine: as 'control group', 'scope' of the user's
+    session, or 'address space', which is stricter."""
+    group = new_group()
+    if group:
+        remove_group(group)
+        return 'control group'
+    if shutil.which(SCOPE[0]) and subprocess.run(SCOPE + ['true'], stdin=subprocess.DEVNULL,
+                                                 stderr=subprocess.DEVNULL).returncode == 0:
+        return 'scope'
+    return 'address space'
 
 
 class Limits:
-    """Of one run: a control group of 1 GiB where one can be made, else that much address space;
-    and 20 seconds, of work where it works, three times as many where it waits."""
+    """Of one run: 1 GiB of memory; and 20 seconds, of work where it works, three times as many
+    where it waits."""
 
-    def __init__(self):
-        self.group = None
-        if not os.path.exists(os.path.join(CGROUPS, 'cgroup.controllers')):
-            return
-        try:
-            group = tempfile.mkdtemp(prefix='nephroid-mutate-', dir=CGROUPS)
-        except OSError:
-            return
-        try:
-            with open(os.path.join(group, 'memory.max'), 'w') as file:
-                file.write(str(MEMORY))
-            self.group = group
-        except OSError:
-            os.rmdir(group)
+    def __init__(self, limiter):
+        self.limiter = limiter
+        self.group = new_group() if limiter == 'control group' else None
+
+    def around(self, command):
+        return SCOPE + command if self.limiter == 'scope' else command
 
     def enter(self):
         """In the child, before the program begins."""
         if self.group:
             with open(os.path.join(self.group, 'cgroup.procs'), 'w') as file:
                 file.write('0')
-        else:
+        elif self.limiter != 'scope':
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         resource.setrlimit(resource.RLIMIT_CPU, (PATIENCE, PATIENCE + 5))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
     def leave(self):
-        for _ in range(50 if self.group else 0):
-            try:
-                os.rmdir(self.group)
-                return
-            except OSError:
-                time.sleep(0.02)
+        if self.group:
+            remove_group(self.group)
 
 
 def command_of(r, example, program):
@@ -434,10 +465,10 @@ def write_files(folder, example, data):
             file.write(text)
 
 
-def run(command, folder):
+def run(command, folder, limiter):
     """What went wrong, or None, and what the program said."""
-    limits = Limits()
-    process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL,
+    limits = Limits(limiter)
+    process = subprocess.Popen(limits.around(command), cwd=folder, stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                preexec_fn=limits.enter, start_new_session=True)
     try:
@@ -467,7 +498,7 @@ def run_case(number, options, examples):
     try:
         write_files(folder, example, data)
         command = command_of(r, example, os.path.abspath(options.program))
-        fault, output = run(command, folder)
+        fault, output = run(command, folder, options.limiter)
         if options.only is not None:
             sys.stdout.buffer.write(output)
         if fault:
@@ -492,10 +523,11 @@ def main():
     parser.add_argument('--keep', default='mutate-found')
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
     options = parser.parse_args()
+    options.limiter = memory_limiter()
     examples = all_examples(options.sources)
     numbers = [options.only] if options.only is not None else range(options.cases)
-    print('mutate: seed %d, %d cases of %d examples' % (
-        options.seed, len(numbers), len(examples)), flush=True)
+    print('mutate: seed %d, %d cases of %d examples, memory limited by %s' % (
+        options.seed, len(numbers), len(examples), options.limiter), flush=True)
     faults = 0
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for fault in pool.map(lambda n: run_case(n, options, examples), numbers):
