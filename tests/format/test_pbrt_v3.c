@@ -3,6 +3,7 @@
  * render alike. And what tells one from the other.
  */
 #include "format/pbrt/pbrt_v3.h"
+#include "refused_scene.h"
 #include "rooms.h"
 
 #include <math.h>
@@ -294,6 +295,9 @@ static void test_what_is_not_there(void)
     };
     for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
         check_alike(&pairs[i]);
+    refuse(WORLD3("Material \"mix\" \"string materials\" [\"gone\" \"none\"] " BALL),
+           "%s:6:16: parameter 'materials': expected the name of a material made before, "
+           "found 'gone'");
 }
 
 static void test_include_among_parameters(void)

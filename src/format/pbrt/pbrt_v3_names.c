@@ -210,10 +210,12 @@ void pbrt_v3_add_texture(pbrt_parser *parser, const char *name, bool is_spectrum
         pbrt_make_texture(parser, n->actual, is_spectrum, a->kind, n->given);
 }
 
+/* The name may be the one that is there. */
 static void set_name(param *q, size_t i, const char *name)
 {
+    char *copy = g_strdup(name);
     g_free(q->strings[i]);
-    q->strings[i] = g_strdup(name);
+    q->strings[i] = copy;
 }
 
 /* @return false: there is no such texture */
