@@ -182,6 +182,8 @@ static void fill_instance(const accel *a, const struct RTCRayHit *query, const r
 static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit *hit)
 {
     struct RTCRayHit query = {.ray = embree_ray(r)};
+    if (!embree_takes(&query.ray, WORLD_REACH))
+        return false;
     query.ray.flags = flags;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -219,6 +221,8 @@ bool accel_intersect_solid(const accel *a, const ray *r, surface_hit *hit)
 bool accel_occluded(const accel *a, const ray *r)
 {
     struct RTCRay query = embree_ray(r);
+    if (!embree_takes(&query, WORLD_REACH))
+        return false;
     embree_any(a->world.scene, &query);
     return query.tfar < 0.0f;
 }

@@ -11,6 +11,7 @@
 #include "accel/accel.h"
 
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 #if __has_include(<embree4/rtcore.h>)
@@ -42,6 +43,21 @@ static inline struct RTCRay embree_ray(const ray *r)
     memcpy(&to.org_x, &origin, sizeof origin);
     memcpy(&to.dir_x, &direction, sizeof direction);
     return to;
+}
+
+/** How far from the origin a ray of the world may begin, m; and one in the space of an
+ * object. Embree ends the program for what is beyond 1.8e18, or not a number. */
+#define WORLD_REACH 1e12f
+#define OBJECT_REACH 1e18f
+
+/** @brief Whether a ray begins within reach; one that does not meets nothing. */
+static inline bool embree_takes(const struct RTCRay *r, float reach)
+{
+    const vec3 most = {reach, reach, reach, 0.0f};
+    const vec3 steepest = {OBJECT_REACH, OBJECT_REACH, OBJECT_REACH, 0.0f};
+    const vec3_bits fits = (abs3(vec3_make(r->org_x, r->org_y, r->org_z)) <= most) &
+                           (abs3(vec3_make(r->dir_x, r->dir_y, r->dir_z)) <= steepest);
+    return (fits[0] & fits[1] & fits[2]) && !isnan(r->tfar);
 }
 
 /** @brief Where it is at a time of the shutter, 0..1. */

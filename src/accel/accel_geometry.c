@@ -213,6 +213,8 @@ static void moving_intersect(const struct RTCIntersectFunctionNArguments *args)
     if (!args->valid[0])
         return;
     struct RTCRayHit inner = {.ray = taken_to_object(p, &query->ray)};
+    if (!embree_takes(&inner.ray, OBJECT_REACH))
+        return;
     inner.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     embree_nearest(p->object, &inner);
     if (inner.hit.geomID == RTC_INVALID_GEOMETRY_ID)
@@ -229,6 +231,8 @@ static void moving_occluded(const struct RTCOccludedFunctionNArguments *args)
     if (!args->valid[0])
         return;
     struct RTCRay inner = taken_to_object(p, query);
+    if (!embree_takes(&inner, OBJECT_REACH))
+        return;
     embree_any(p->object, &inner);
     if (inner.tfar < 0.0f)
         query->tfar = -INFINITY;
@@ -257,7 +261,24 @@ static RTCGeometry moving_geometry(RTCDevice device, placed *p)
     return g;
 }
 
+/* Embree inverts the matrix in single precision, and hands rays on unasked: those of the
+   whole world must stay within an object's reach. */
+static bool may_be_embrees(const transform *to_world)
+{
+    const double largest = 1e9, most_reach = (double)(OBJECT_REACH / WORLD_REACH) / 10.0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++)
+            if (!(fabs(to_world->m[i][k]) <= largest) ||
+                !(fabs(to_world->inverse[i][k]) <= most_reach))
+                return false;
+        if (!(fabs(to_world->inverse[i][3]) <= (double)OBJECT_REACH / 10.0))
+            return false;
+    }
+    return true;
+}
+
 RTCGeometry placed_geometry(RTCDevice device, placed *p)
 {
-    return p->moves ? moving_geometry(device, p) : still_geometry(device, p);
+    bool asks_us = p->moves || !may_be_embrees(&p->still);
+    return asks_us ? moving_geometry(device, p) : still_geometry(device, p);
 }

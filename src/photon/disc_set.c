@@ -115,7 +115,8 @@ bool disc_set_cross(const disc_set *set, const ray *r, disc_crossings *out)
     disc_query query = {.set = set, .out = out};
     struct RTCRay along = embree_ray(r);
     out->n = 0;
-    embree_any_within(set->scene, &query.context, &along);
+    if (embree_takes(&along, WORLD_REACH))
+        embree_any_within(set->scene, &query.context, &along);
     if (out->n > 1)
         qsort(out->at, out->n, sizeof *out->at, by_index);
     return !query.failed;

@@ -113,6 +113,59 @@ static void test_instances_are_copies(void)
     }
 }
 
+/* A ball and a triangle that are as large as a world in their own space, and as small as
+ * a grain, are what they are at their own size. What is beyond single precision may be
+ * missed, but is asked. */
+static void test_strange_sizes(void)
+{
+    static const char body[] =
+        "ObjectBegin \"a\"\nAttributeBegin\nScale %g %g %g\nShape \"sphere\"\n"
+        "Shape \"trianglemesh\" \"point3 P\" [-3 -3 0 3 -3 0 0 3 0]\nAttributeEnd\n"
+        "ObjectEnd\nScale %g %g %g\nObjectInstance \"a\"\n";
+    static const double sizes[] = {1.0, 1e4, 1e7, 1e15, 1e-4, 1e-7, 1e-12, 1e17};
+    g_autoptr(scene) plain = NULL;
+    for (size_t i = 0; i < G_N_ELEMENTS(sizes); i++) {
+        double k = sizes[i], l = 1.0 / k;
+        g_autofree char *world = g_strconcat(START, body, NULL);
+        g_autofree char *text = g_strdup_printf(world, k, k, k, l, l, l);
+        g_autoptr(scene) s = scene_of(text);
+        unsigned differ = 0, met = 0;
+        for (uint32_t n = 0; n < 500; n++) {
+            ray r = random_ray(11, n, 0.0f);
+            surface_hit x, y;
+            bool meets = scene_intersect(s, &r, &x);
+            g_assert_cmpint(scene_occluded(s, &r), ==, meets);
+            met += meets;
+            if (plain && (scene_intersect(plain, &r, &y) != meets ||
+                          (meets && fabsf(x.t - y.t) > 1e-4f * y.t)))
+                differ++;
+        }
+        g_assert_cmpuint(met, >, 100);
+        g_assert_true(differ < 3 || k > 1e9);
+        if (!plain)
+            plain = g_steal_pointer(&s);
+    }
+}
+
+/* From beyond all reach, and from nowhere, nothing is met. */
+static void test_rays_from_nowhere(void)
+{
+    g_autoptr(scene) s = scene_of(START "Shape \"sphere\"\n");
+    static const float from[] = {1e13f, 1e20f, INFINITY, NAN};
+    for (size_t i = 0; i < G_N_ELEMENTS(from); i++)
+        for (int k = 0; k < 3; k++) {
+            ray r = {.direction = {0.0f, 0.0f, -1.0f}, .t_max = INFINITY};
+            surface_hit hit;
+            r.origin[k] = from[i];
+            g_assert_false(scene_intersect(s, &r, &hit));
+            g_assert_false(scene_occluded(s, &r));
+            r = (ray){.origin = {0.0f, 0.0f, 5.0f}, .t_max = INFINITY};
+            r.direction[k] = isnan(from[i]) ? NAN : INFINITY;
+            g_assert_false(scene_intersect(s, &r, &hit));
+            g_assert_false(scene_occluded(s, &r));
+        }
+}
+
 /* Places for aimed photons, where instances are not stretched: the same number, area and
  * sphere as copies have, and a density whose integral is one. */
 static void test_casters_are_found(void)
@@ -285,6 +338,8 @@ static void test_motion_by_its_definition(void)
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/instance/strange-sizes", test_strange_sizes);
+    g_test_add_func("/instance/rays-from-nowhere", test_rays_from_nowhere);
     g_test_add_func("/instance/copies", test_instances_are_copies);
     g_test_add_func("/instance/casters", test_casters_are_found);
     g_test_add_func("/instance/motion/times", test_motion_at_every_time);
