@@ -1,66 +1,133 @@
 /*
  * What photons and paths from the eye share is neither lost nor counted twice, whatever
  * the share: it is moved from next to nothing to nearly all by the number of photons, and
- * the picture stays as bright.
+ * the picture stays as bright as closed forms and paths alone say. That is seen to a few
+ * per cent, so that an error of 15 % in what any one of the ways brings is not missed.
  */
 #include "rooms.h"
 
 #include "transport/photonmap/photonmap.h"
 
-/* A floor with something upon it, lamps apart. */
-#define FLOOR                                                                            \
-    "LookAt 0 -3 3  0 0 0.2  0 0 1 Camera \"perspective\" \"float fov\" 45\n" SIZE(      \
-        12) "WorldBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"       \
-            "Shape \"trianglemesh\" \"point3 P\" [-2 -2 0 2 -2 0 2 2 0 -2 2 0] "         \
-            "\"integer indices\" [0 1 2 0 2 3]\n"
-#define WALL                                                                             \
-    "Shape \"trianglemesh\" \"point3 P\" [-2 1.5 0 2 1.5 0 2 1.5 2 -2 1.5 2] "           \
-    "\"integer indices\" [0 2 1 0 3 2]\n"
-#define BALL "Translate 0 0 0.6 Shape \"sphere\" \"float radius\" 0.4\n"
+/* A patch of the floor seen from close by, so that every sample lies in the caustic. */
+#define PATCH                                                                            \
+    "LookAt 0 -0.7 0.7  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 45\n" SIZE(    \
+        4) "WorldBegin\nMaterial \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"        \
+           "Shape \"trianglemesh\" \"point3 P\" [-2 -2 0 2 -2 0 2 2 0 -2 2 0] "          \
+           "\"integer indices\" [0 1 2 0 2 3]\n"
+#define REFLECTANCE 0.6
+/* It reflects nothing, so that what it sends is all there is. */
 #define LAMP(size)                                                                       \
-    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [8 8 8] Translate 1 0 3 "      \
-    "Rotate 180 1 0 0 Shape \"disk\" \"float radius\" " #size " AttributeEnd\n"
+    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [8 8 8] Material \"diffuse\" " \
+    "\"rgb reflectance\" [0 0 0] Translate 0 -0.5 3 Rotate 180 1 0 0 "                   \
+    "Shape \"disk\" \"float radius\" " #size " AttributeEnd\n"
 #define SKY "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
+#define POINT "LightSource \"point\" \"point3 from\" [1 0 2] \"rgb I\" [2 2 2]\n"
+#define SPOT                                                                             \
+    "LightSource \"spot\" \"point3 from\" [0 -0.5 3] \"point3 to\" [0 1 1] "             \
+    "\"rgb I\" [9 9 9]\n"
+/* A ball of glass around patch and eye; where it bends nothing all light through it is a
+   caustic, and known. */
+#define AROUND "Shape \"sphere\" \"float radius\" 1.2\n"
+#define CLEAR "Material \"dielectric\" \"float eta\" 1 " AROUND
+#define GLASS                                                                            \
+    "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\" \"float roughness\" 0.2 "    \
+    "\"bool remaproughness\" false " AROUND
+#define METAL(roughness)                                                                 \
+    "Material \"conductor\" \"bool remaproughness\" false \"float "                      \
+    "roughness\" " #roughness                                                            \
+    " Shape \"trianglemesh\" \"point3 P\" [-3 1 0 3 1 0 3 1 3 -3 1 3] "                  \
+    "\"integer indices\" [0 1 2 0 2 3]\n"
 
-/* Noise is 3 %; a share that one side has wrong shows by tens of per cent. */
-#define TOLERANCE 0.2
+/* Irradiance on the floor at (x, y). */
+typedef double (*known_irradiance)(double x, double y);
+
+static double by_sky(double x, double y)
+{
+    (void)x, (void)y;
+    return G_PI;
+}
+
+static double by_point(double x, double y)
+{
+    double d2 = (x - 1.0) * (x - 1.0) + y * y + 4.0;
+    return 2.0 * 2.0 / (d2 * sqrt(d2));
+}
+
+/* A disk above and parallel to what it lights (e.g. Gershbein, Schröder & Hanrahan 1994):
+   radius 1.5, height 3. */
+static double by_disk(double x, double y)
+{
+    const double r2 = 1.5 * 1.5, h2 = 3.0 * 3.0;
+    double d2 = x * x + (y + 0.5) * (y + 0.5), sum = h2 + d2 + r2;
+    return 8.0 * G_PI * 0.5 * (1.0 - (h2 + d2 - r2) / sqrt(sum * sum - 4.0 * r2 * d2));
+}
 
 typedef struct shared_scene {
     const char *name, *text;
+    known_irradiance known; /* NULL: paths alone tell */
 } shared_scene;
 
 static const shared_scene scenes[] = {
-    {"metal",
-     FLOOR WALL LAMP(1.5) "Material \"conductor\" \"float roughness\" 0.05 " BALL},
-    {"rough-dispersive-glass",
-     FLOOR LAMP(1.5) "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\" "
-                     "\"float roughness\" 0.05 " BALL},
-    {"sky", FLOOR WALL SKY "Material \"dielectric\" " BALL},
-    {"spot", FLOOR WALL
-     "LightSource \"spot\" \"point3 from\" [1 0 3] \"point3 to\" [0 0 0.6] "
-     "\"rgb I\" [9 9 9] Material \"conductor\" \"float roughness\" 0.05 " BALL},
-    {"lamps", FLOOR WALL LAMP(1) SKY
-     "LightSource \"point\" \"point3 from\" [-1 -1 2] \"rgb I\" [2 2 2] "
-     "Material \"conductor\" \"float roughness\" 0.05 " BALL},
+    {"sky-through-glass", PATCH SKY CLEAR, by_sky},
+    {"lamp-through-glass", PATCH LAMP(1.5) CLEAR, by_disk},
+    {"point-through-glass", PATCH POINT CLEAR, by_point},
+    {"large-lamp-metal", PATCH LAMP(1.5) METAL(0.1), NULL},
+    {"small-lamp-metal", PATCH LAMP(0.4) METAL(0.2), NULL},
+    {"spot-metal", PATCH SPOT METAL(0.2), NULL},
+    {"rough-dispersive-glass", PATCH LAMP(1) GLASS, NULL},
+    {"lamps-metal", PATCH LAMP(1) SKY POINT METAL(0.2), NULL},
+};
+
+/* Mean over the picture of what the floor reflects. */
+static double known_mean(const scene *s, known_irradiance known)
+{
+    enum { STEPS = 16 };
+    double sum = 0.0;
+    for (int i = 0; i < STEPS * STEPS; i++) {
+        vec2 raster = {((float)(i % STEPS) + 0.5f) / STEPS * (float)s->film.width,
+                       ((float)(i / STEPS) + 0.5f) / STEPS * (float)s->film.height};
+        ray r = camera_ray(&s->camera, raster, (vec2){0.5f, 0.5f}, 0.5f);
+        vec3 p = r.origin - r.direction * (r.origin[2] / r.direction[2]);
+        sum += known((double)p[0], (double)p[1]);
+    }
+    return REFLECTANCE / G_PI * sum / (STEPS * STEPS);
+}
+
+/* What photons bring to the patch by way of a diffuse surface counts as caustic light,
+   what paths do as indirect. */
+static double shared_light(const scene *s, const char *words)
+{
+    g_autoptr(image) img = render_with(s, words);
+    return mean_of(img, "caustic") + mean_of(img, "indirect");
+}
+
+/* A standard error, by the scatter over seeds, is below 1.2 % for each of these (of glass
+   0.3 %), and half a per cent for what paths alone tell. */
+#define TOLERANCE 0.05
+
+/* Photons have a few per cent of the light, some of it and nearly all. Densities of the
+   emission, on which the shares depend, are the light's own or learned. */
+static const char *const ways[] = {
+    "integrator=auto passes=8 spp=128 caustic_photons=500 radius=0.05 alpha=1 "
+    "caustic_emission=uniform",
+    "integrator=auto passes=24 spp=64 caustic_photons=4000 radius=0.05 alpha=1",
+    "integrator=auto passes=16 spp=16 caustic_photons=8000 radius=0.08 alpha=1",
 };
 
 static void test_nothing_is_lost_or_counted_twice(gconstpointer data)
 {
     const shared_scene *of = data;
     g_autoptr(scene) s = scene_of(of->text);
-    g_autoptr(image) path = render_with(s, "integrator=path passes=8 spp=128 seed=1");
-    const char *const ways[] = {
-        "integrator=auto passes=8 spp=64 caustic_photons=100 radius=0.03 alpha=1",
-        "integrator=auto passes=8 spp=16 caustic_photons=2000 radius=0.03 alpha=1",
-        "integrator=auto passes=8 spp=16 caustic_photons=20000 radius=0.03 alpha=1",
-    };
+    double expected = of->known
+                          ? known_mean(s, of->known)
+                          : shared_light(s, "integrator=path passes=8 spp=768 seed=1");
+    unsigned n_wrong = 0;
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
-        g_autoptr(image) shared = render_with(s, ways[i]);
-        double a = mean_of(shared, "caustic"), b = mean_of(path, "caustic");
-        g_test_message("%s: %s: %g, path %g (%+.2f %%)", of->name, ways[i], a, b,
-                       100 * (a / b - 1));
-        g_assert_cmpfloat(fabs(a / b - 1.0), <, TOLERANCE);
+        double error = shared_light(s, ways[i]) / expected - 1.0;
+        g_test_message("%s: %s: %+.2f %%", of->name, ways[i], 100 * error);
+        n_wrong += !(fabs(error) < TOLERANCE);
     }
+    g_assert_cmpuint(n_wrong, ==, 0);
 }
 
 /* A ball of glass on its way past: in each slice of time its caustic has few photons, and
@@ -68,7 +135,7 @@ static void test_nothing_is_lost_or_counted_twice(gconstpointer data)
    it wants it is a quarter too bright. */
 #define PASSING                                                                          \
     "LookAt 0 -4 1.6  0 0 0.6  0 0 1 Camera \"perspective\" \"float fov\" 42\n" SIZE(    \
-        40) "WorldBegin\nMaterial \"diffuse\" Shape \"disk\" \"float radius\" 6\n"       \
+        28) "WorldBegin\nMaterial \"diffuse\" Shape \"disk\" \"float radius\" 6\n"       \
             "LightSource \"infinite\" \"rgb L\" [0.1 0.1 0.12] AttributeBegin "          \
             "Translate 1.5 -1 4 "                                                        \
             "AreaLightSource \"diffuse\" \"rgb L\" [40 40 40] Shape \"sphere\" \"float " \
@@ -83,7 +150,7 @@ static void test_few_photons_do_not_shine_afar(void)
     g_autoptr(scene) s = scene_of(PASSING);
     g_autoptr(image) few = render_with(s, "integrator=auto passes=24 spp=4 seed=1");
     g_autoptr(image) many =
-        render_with(s, "integrator=photonmap passes=4 spp=16 caustic_photons=100000 "
+        render_with(s, "integrator=photonmap passes=4 spp=8 caustic_photons=100000 "
                        "photons=1000 radius=0.03 alpha=1 seed=2");
     double a = mean_of(few, "caustic"), b = mean_of(many, "caustic");
     g_test_message("few photons %g, many %g (%+.2f %%)", a, b, 100 * (a / b - 1));
