@@ -44,8 +44,8 @@ NEPH_API GQuark neph_error_quark(void);
 NEPH_API const char *neph_version(void);
 
 /** @brief A copy of a text that came from a file, such as a material's name, fit for a
- * terminal: control characters, line ends and what is not UTF-8 are spelt out. Errors, logs
- * and descriptions have been through it. @return owned by the caller (g_free) */
+ * terminal: control characters, line ends and what is not UTF-8 are spelt out. Errors,
+ * logs and descriptions have been through it. @return owned by the caller (g_free) */
 NEPH_API char *neph_text_printable(const char *text);
 
 typedef enum { NEPH_LOG_NOTE, NEPH_LOG_WARNING } NephLogLevel;
@@ -519,7 +519,8 @@ NEPH_API bool neph_scene_pick(const NephScene *scene, const double origin[3],
                               const double direction[3], NephSurfacePoint *out);
 /** @brief The edges of the scene's shapes as *n line segments, six floats each; edges
  * within a plane are left out, and if there are more than `most` an even choice is made.
- * Curved shapes show lines on their surface. Owned by the caller (g_free). */
+ * Curved shapes show lines on their surface, and meshes for whose edges memory is short
+ * nothing. Owned by the caller (g_free); NULL if there is no memory for it. */
 NEPH_API float *neph_scene_wireframe(const NephScene *scene, size_t most, size_t *n);
 
 NEPH_API size_t neph_scene_n_materials(const NephScene *scene);

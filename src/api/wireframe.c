@@ -7,6 +7,7 @@
  * and meridians on a sphere, circles and spokes on a disc.
  */
 #include "api/objects.h"
+#include "base/memory.h"
 
 #include <math.h>
 #include <string.h>
@@ -22,7 +23,8 @@ typedef struct edge {
 } edge;
 
 typedef struct wire {
-    GArray *segments;          /* of float, NUMBERS each */
+    float *segments;           /* NUMBERS each */
+    size_t n, most;            /* that are there, and that there is room for */
     size_t stride, at;         /* every stride-th edge is kept */
     const transform *to_world; /* of the instance; NULL: already there */
 } wire;
@@ -37,8 +39,8 @@ static void put_segment(wire *w, vec3 a, vec3 b)
     bool finite = true;
     for (int i = 0; i < NUMBERS; i++)
         finite &= isfinite(line[i]);
-    if (finite)
-        g_array_append_vals(w->segments, line, NUMBERS);
+    if (finite && w->n < w->most)
+        memcpy(&w->segments[NUMBERS * w->n++], line, sizeof line);
 }
 
 /* ---- Meshes ---- */
@@ -66,18 +68,19 @@ static int by_ends(const void *x, const void *y)
     return (e->triangle > f->triangle) - (e->triangle < f->triangle);
 }
 
-static GArray *list_edges(const mesh *m)
+/* NULL: memory is short. */
+static edge *list_edges(const mesh *m)
 {
-    GArray *edges = g_array_sized_new(FALSE, FALSE, sizeof(edge),
-                                      (guint)MIN(3 * m->n_triangles, G_MAXINT));
+    edge *edges = big_alloc(3 * m->n_triangles, sizeof *edges, "edges", NULL);
+    if (!edges)
+        return NULL;
     for (size_t t = 0; t < m->n_triangles; t++)
-        for (int k = 0; k < 3; k++) {
-            uint32_t a = m->indices[3 * t + (size_t)k];
-            uint32_t b = m->indices[3 * t + (size_t)((k + 1) % 3)];
-            edge e = {MIN(a, b), MAX(a, b), (uint32_t)t};
-            g_array_append_val(edges, e);
+        for (size_t k = 0; k < 3; k++) {
+            uint32_t a = m->indices[3 * t + k];
+            uint32_t b = m->indices[3 * t + (k + 1) % 3];
+            edges[3 * t + k] = (edge){MIN(a, b), MAX(a, b), (uint32_t)t};
         }
-    g_array_sort(edges, by_ends);
+    qsort(edges, 3 * m->n_triangles, sizeof *edges, by_ends);
     return edges;
 }
 
@@ -94,16 +97,16 @@ static bool is_flat(const mesh *m, const edge *e, size_t n)
 
 static void put_mesh(wire *w, const mesh *m)
 {
-    g_autoptr(GArray) edges = list_edges(m);
-    const edge *all = (const edge *)(void *)edges->data;
-    for (size_t i = 0, next; i < edges->len; i = next) {
-        for (next = i + 1;
-             next < edges->len && all[next].a == all[i].a && all[next].b == all[i].b;
+    size_t n = 3 * m->n_triangles;
+    edge *all = list_edges(m);
+    for (size_t i = 0, next; i < n && all; i = next) {
+        for (next = i + 1; next < n && all[next].a == all[i].a && all[next].b == all[i].b;
              next++)
             ;
         if (!is_flat(m, &all[i], next - i) && w->at++ % w->stride == 0)
             put_segment(w, corner(m, all[i].a), corner(m, all[i].b));
     }
+    big_free(all);
 }
 
 /* ---- Curved shapes ---- */
@@ -163,16 +166,22 @@ static void each_shape(const scene *s, wire *w, void (*put)(wire *w, const shape
 static void count_edges(wire *w, const shape *one)
 {
     const mesh *m = one->kind->triangles ? one->kind->triangles(one->self) : NULL;
-    w->at += m ? 3 * m->n_triangles / 2 : 2 * CURVED_LINES * CURVED_STEPS;
+    w->at += m ? (3 * m->n_triangles + 1) / 2 : 2 * CURVED_LINES * CURVED_STEPS;
 }
 
 float *neph_scene_wireframe(const NephScene *s, size_t most, size_t *n)
 {
-    wire w = {.segments = g_array_new(FALSE, FALSE, sizeof(float))};
+    wire w = {.n = 0};
+    *n = 0;
     each_shape(s->scene, &w, count_edges);
     w.stride = MAX(w.at / MAX(most, 1), 1);
+    w.most = MIN(2 * w.at, most); /* where no two triangles share an edge */
+    if (!memory_ask(w.most * NUMBERS * sizeof(float), "a wireframe", NULL))
+        return NULL;
+    w.segments = g_try_malloc_n(MAX(w.most, 1), NUMBERS * sizeof(float));
     w.at = 0;
-    each_shape(s->scene, &w, put_shape);
-    *n = MIN(w.segments->len / NUMBERS, most);
-    return (float *)(void *)g_array_free(w.segments, FALSE);
+    if (w.segments)
+        each_shape(s->scene, &w, put_shape);
+    *n = w.n;
+    return w.segments;
 }

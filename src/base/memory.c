@@ -2,6 +2,7 @@
 
 #include "base/machine.h"
 
+#include <malloc.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -19,6 +20,7 @@ static atomic_uint fail_countdown;
 /* ---- The limit ---- */
 
 static atomic_size_t used, limit /* 0: not asked for yet */;
+static atomic_size_t in_arrays, asked;
 
 void memory_set_limit(size_t bytes)
 {
@@ -46,16 +48,21 @@ static void write_size(size_t bytes, char *out, size_t size)
     g_snprintf(out, (gulong)size, unit ? "%.1f %s" : "%.0f %s", x, units[unit]);
 }
 
-static void refuse(size_t bytes, const char *what, GError **error)
+static void refuse_beside(size_t in_use, size_t bytes, const char *what, GError **error)
 {
     char wanted[32], left[32], most[32];
-    size_t in_use = atomic_load(&used), all = memory_limit();
+    size_t all = memory_limit();
     write_size(bytes, wanted, sizeof wanted);
     write_size(all - MIN(in_use, all), left, sizeof left);
     write_size(all, most, sizeof most);
     error_set(error, ERROR_FAILED,
               "out of memory: %s for %s, where %s are left of the limit of %s", wanted,
               what, left, most);
+}
+
+static void refuse(size_t bytes, const char *what, GError **error)
+{
+    refuse_beside(atomic_load(&used), bytes, what, error);
 }
 
 static bool reserve(size_t bytes)
@@ -84,6 +91,27 @@ void memory_count(size_t bytes)
 void memory_release(size_t bytes)
 {
     atomic_fetch_sub(&used, bytes);
+}
+
+/* What malloc has given for other things than arrays. */
+static size_t in_small_things(void)
+{
+    struct mallinfo2 info = mallinfo2();
+    size_t all = info.uordblks + info.hblkhd, arrays = atomic_load(&in_arrays);
+    return all - MIN(all, arrays);
+}
+
+bool memory_ask(size_t bytes, const char *what, GError **error)
+{
+    const size_t step = 1 << 20;
+    size_t before = atomic_fetch_add(&asked, bytes);
+    if (bytes < step && before / step == (before + bytes) / step)
+        return true;
+    size_t in_use = atomic_load(&used) + in_small_things(), all = memory_limit();
+    if (in_use <= all && bytes <= all - in_use)
+        return true;
+    refuse_beside(in_use, bytes, what, error);
+    return false;
 }
 
 /* ---- Arrays ---- */
@@ -138,6 +166,7 @@ void *big_alloc(size_t n, size_t size, const char *what, GError **error)
     }
     if (rounded >= HUGE_ARRAY)
         use_huge_pages(base, rounded);
+    atomic_fetch_add(&in_arrays, total);
     uintptr_t array = ((uintptr_t)base + alignment) & ~(uintptr_t)(alignment - 1);
     ((array_head *)array)[-1] = (array_head){total, base};
     return (void *)array;
@@ -160,6 +189,7 @@ void big_free(void *array)
         return;
     const array_head head = ((array_head *)array)[-1];
     memory_release(head.bytes);
+    atomic_fetch_sub(&in_arrays, head.bytes);
     free(head.base);
 }
 

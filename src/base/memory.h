@@ -2,8 +2,8 @@
  * Big arrays: aligned to a cache line, checked for overflow, and reported when refused.
  *
  * Small things (strings, lists) use GLib, which aborts when a few bytes are not to be
- * had; arrays whose size depends on the input (photons, meshes, images) come from here
- * and may fail.
+ * had; who makes very many of them for a file asks memory_ask first. Arrays whose size
+ * depends on the input (photons, meshes, images) come from here and may fail.
  *
  * All of them together stay below a limit, so that a file of a few bytes that asks for
  * all the memory there is gets a message and not the machine. What libraries allocate
@@ -39,6 +39,12 @@ bool memory_reserve(size_t bytes, const char *what, GError **error);
 void memory_count(size_t bytes);
 /** @brief Gives back what memory_reserve or memory_count took. */
 void memory_release(size_t bytes);
+
+/** @brief Asks for about so many bytes in small pieces that GLib will allocate, which
+ * ends the program where they are not to be had. They are not counted one by one: at
+ * every mebibyte that was asked for it is looked at how much the process has in all.
+ * @return false with ERROR_FAILED if that is too much */
+bool memory_ask(size_t bytes, const char *what, GError **error);
 
 /** @brief Limits the process. What is in use stays. @param bytes 0: as at first, 80 % of
  * what the machine, the process's cgroup and ulimit -v have, whichever is least */

@@ -13,9 +13,9 @@
 /* JSON-GLib parses by recursion. */
 enum { MAX_NESTING = 200 };
 
-/* What JSON-GLib makes of a value of two characters, and how it ends the program where
- * that is not to be had. */
-enum { BYTES_A_VALUE = 128 };
+/* What JSON-GLib makes of a value of two characters, of an object and of a name; it ends
+ * the program where that is not to be had. */
+enum { VALUE_SIZE = 96, OBJECT_SIZE = 256, NAME_SIZE = 128 };
 
 /* Line of the first bracket that nests too deep, or 0. */
 static int line_too_deep(const char *text, size_t size)
@@ -43,12 +43,20 @@ static int line_too_deep(const char *text, size_t size)
 /* Asks for as much memory as the values will take, and gives it back. */
 static bool has_room(const char *text, size_t size, GError **error)
 {
-    size_t n = 1;
+    size_t bytes = VALUE_SIZE;
     for (size_t i = 0; i < size; i++)
-        n += text[i] == ',' || text[i] == '[' || text[i] == '{';
-    void *room = big_alloc(n, BYTES_A_VALUE, "JSON", error);
-    big_free(room);
-    return room != NULL;
+        switch (text[i]) {
+        case '{':
+        case '[':
+            bytes += OBJECT_SIZE;
+            break;
+        case ':':
+            bytes += NAME_SIZE;
+            break;
+        case ',':
+            bytes += VALUE_SIZE;
+        }
+    return memory_ask(bytes, "JSON", error);
 }
 
 /* JSON-GLib's message "<data>:LINE:COLUMN: Parse error: ..." with our place. */

@@ -134,6 +134,9 @@ bool params_add_integers(params *p, source_place place, param_type type, const c
 bool params_add_strings(params *p, source_place place, param_type type, const char *name,
                         const char *const *strings, size_t n, GError **error)
 {
+    const size_t each = 32 + sizeof(char *);
+    if (!memory_ask(n * each, name, error))
+        return false;
     param *q = add(p, place, type, name, n, error);
     if (!q)
         return false;

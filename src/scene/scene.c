@@ -6,6 +6,7 @@
  */
 #include "scene/scene.h"
 
+#include "base/memory.h"
 #include "scene/scene_commit.h"
 #include "scene/scene_film.h"
 #include "scene/scene_geometry.h"
@@ -88,12 +89,24 @@ void scene_free(scene *s)
 
 /* ---- Adding ---- */
 
+/* About what a thing takes, beside arrays. */
+enum { THING_SIZE = 1024 };
+
+static bool has_room(const char *what, source_place place, GError **error)
+{
+    GError *refused = NULL;
+    if (memory_ask(THING_SIZE, what, &refused))
+        return true;
+    error_move_at(error, place, refused);
+    return false;
+}
+
 bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spectrum,
                        const params *p, GError **error)
 {
     GHashTable *table =
         is_spectrum ? s->build.spectrum_textures : s->build.float_textures;
-    if (!scene_may_change(s, error))
+    if (!scene_may_change(s, error) || !has_room("textures", p->place, error))
         return false;
     if (g_hash_table_contains(table, name)) {
         error_at(error, p->place, "texture \"%s\" is there already", name);
@@ -130,7 +143,7 @@ static int take_material(scene *s, material *m, const char *name)
 int scene_add_material(scene *s, const char *name, const char *kind, const params *p,
                        GError **error)
 {
-    if (!scene_may_change(s, error))
+    if (!scene_may_change(s, error) || !has_room("materials", p->place, error))
         return NO_INDEX;
     int index = name ? scene_find_material(s, name) : NO_INDEX;
     if (index != NO_INDEX && s->materials->pdata[index]) {
@@ -181,7 +194,7 @@ int scene_find_material(const scene *s, const char *name)
 bool scene_add_light(scene *s, const char *kind, const params *p,
                      const transform *to_world, GError **error)
 {
-    if (!scene_may_change(s, error))
+    if (!scene_may_change(s, error) || !has_room("lights", p->place, error))
         return false;
     LISTENER_TELL(s, light, kind, p, to_world);
     light *l = light_new(&s->build, kind, p, to_world, NULL, error);
@@ -233,7 +246,7 @@ static bool take_shape(scene *s, shape *made, const shape_place *at, GError **er
 bool scene_add_shape(scene *s, const char *kind, const params *p, const shape_place *at,
                      GError **error)
 {
-    if (!scene_may_change(s, error))
+    if (!scene_may_change(s, error) || !has_room("shapes", p->place, error))
         return false;
     LISTENER_TELL(s, shape, kind, p, at);
     return take_shape(s, shape_new(kind, p, at, error), at, error);
@@ -242,7 +255,7 @@ bool scene_add_shape(scene *s, const char *kind, const params *p, const shape_pl
 bool scene_add_mesh(scene *s, mesh *m, const shape_place *at, source_place place,
                     GError **error)
 {
-    if (!scene_may_change(s, error)) {
+    if (!scene_may_change(s, error) || !has_room("shapes", place, error)) {
         mesh_clear(m);
         return false;
     }

@@ -31,11 +31,11 @@ typedef struct film_settings {
     float iso;      /**< pbrt's sensor speed; radiance is scaled by iso / 100 */
     bool is_unexposed; /**< the file's format has no words for how bright its picture is
                           to be */
-    float most;     /**< the largest of X, Y, Z of a sample on the sensor; 0: any */
-    float kelvin;   /**< daylight that is to look white; 0: no white balance */
-    bool gbuffer;   /**< with the layers that pbrt's film of that name has */
-    bool in_camera; /**< places and normals in camera space */
-    float crop[4];  /**< x0, x1, y0, y1 in 0..1; pixels ceil(crop * size) as in pbrt */
+    float most;        /**< the largest of X, Y, Z of a sample on the sensor; 0: any */
+    float kelvin;      /**< daylight that is to look white; 0: no white balance */
+    bool gbuffer;      /**< with the layers that pbrt's film of that name has */
+    bool in_camera;    /**< places and normals in camera space */
+    float crop[4];     /**< x0, x1, y0, y1 in 0..1; pixels ceil(crop * size) as in pbrt */
     const color_space *space;
 } film_settings;
 
@@ -70,6 +70,7 @@ typedef struct scene {
     GHashTable *medium_names;   /**< name -> index + 1 */
     medium_interface around;    /**< what is added from here on */
     GArray *objects;            /**< scene_object */
+    GHashTable *object_names;   /**< theirs -> index + 1 */
     GArray *instances;          /**< instance */
     size_t instance_room;       /**< as many have their memory reserved */
     int open_object; /**< that shapes are added to now, or NO_INDEX: the world */

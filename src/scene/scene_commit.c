@@ -26,10 +26,15 @@ static bool check_strength(const scene *s, GError **error)
     return true;
 }
 
+/* What the tree of lights takes for one, while it is built. */
+#define LIGHT_SIZE ((size_t)512)
+
 static bool find_lights(scene *s, GError **error)
 {
     light_lines lines = {.n = 0};
     guint n = s->lights->len;
+    if (!memory_ask(n * LIGHT_SIZE, "lights", error))
+        return false;
     s->environments = g_new0(int, MAX(n, 1));
     float *power = big_alloc(n, sizeof(float), "lights", error);
     light_bound *bounds = power ? big_alloc(n, sizeof *bounds, "lights", error) : NULL;
@@ -154,7 +159,7 @@ void scene_forget_commit(scene *s)
     distribution_clear(&s->caustic_power);
     g_clear_pointer(&s->environments, g_free);
     g_clear_pointer(&s->light_groups, g_strfreev);
-    g_clear_pointer(&s->casters, g_free);
+    g_clear_pointer(&s->casters, big_free);
     g_clear_pointer(&s->interiors, g_free);
     s->n_environments = s->n_casters = 0;
 }

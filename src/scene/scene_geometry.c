@@ -18,6 +18,9 @@
 /* An array that grows holds up to twice what is in it. */
 #define INSTANCE_SIZE (2 * sizeof(instance))
 
+/* About what an object takes in lists. */
+enum { OBJECT_SIZE = 256 };
+
 static void clear_object(void *data)
 {
     g_free(((scene_object *)data)->name);
@@ -27,12 +30,14 @@ void scene_open_objects(scene *s)
 {
     s->objects = g_array_new(FALSE, TRUE, sizeof(scene_object));
     g_array_set_clear_func(s->objects, clear_object);
+    s->object_names = g_hash_table_new(g_str_hash, g_str_equal);
     s->instances = g_array_new(FALSE, TRUE, sizeof(instance));
     s->open_object = NO_INDEX;
 }
 
 void scene_close_objects(scene *s)
 {
+    g_hash_table_unref(s->object_names);
     g_array_unref(s->objects);
     memory_release(s->instance_room * INSTANCE_SIZE);
     g_array_unref(s->instances);
@@ -48,9 +53,14 @@ int scene_object_begin(scene *s, const char *name, source_place place, GError **
         error_at(error, place, "object \"%s\" is there already", name);
         return NO_INDEX;
     }
+    if (!memory_ask(OBJECT_SIZE, "objects", error))
+        return NO_INDEX;
     scene_object made = {g_strdup(name), place};
     g_array_append_val(s->objects, made);
     s->open_object = (int)s->objects->len - 1;
+    if (made.name)
+        g_hash_table_insert(s->object_names, made.name,
+                            GINT_TO_POINTER(s->open_object + 1));
     LISTENER_TELL(s, object_begin, s->open_object, name);
     return s->open_object;
 }
@@ -64,12 +74,8 @@ void scene_object_end(scene *s)
 
 int scene_find_object(const scene *s, const char *name)
 {
-    for (guint i = 0; i < s->objects->len; i++) {
-        const scene_object *o = &g_array_index(s->objects, scene_object, i);
-        if (o->name && g_str_equal(o->name, name))
-            return (int)i;
-    }
-    return NO_INDEX;
+    int found = GPOINTER_TO_INT(g_hash_table_lookup(s->object_names, name));
+    return found ? found - 1 : NO_INDEX;
 }
 
 bool scene_expect_instances(scene *s, size_t n, source_place place, GError **error)
@@ -172,12 +178,11 @@ static bool casts_caustics(const scene *s, const shape *on)
            material_casts_caustics(s->materials->pdata[on->material]);
 }
 
-static void add_caster(scene *s, GArray *areas, int i, int of_instance, double factor)
+static void add_caster(scene *s, float *areas, int i, int of_instance, double factor)
 {
     const shape *on = s->shapes->pdata[i];
-    float area = (float)((double)on->area * factor);
+    areas[s->n_casters] = (float)((double)on->area * factor);
     s->casters[s->n_casters++] = (caustic_caster){i, of_instance};
-    g_array_append_val(areas, area);
 }
 
 /* The shapes of each object, or (first) of the world, that cast caustics. */
@@ -197,7 +202,7 @@ static GArray **casters_by_object(const scene *s)
 }
 
 /* Those of the world, if is is NULL, or of an instance. */
-static void list_casters(scene *s, const GArray *list, int of_instance, GArray *areas,
+static void list_casters(scene *s, const GArray *list, int of_instance, float *areas,
                          box3 *box)
 {
     const instance *is = of_instance == NO_INDEX ? NULL : instance_at(s, of_instance);
@@ -215,30 +220,51 @@ static void list_casters(scene *s, const GArray *list, int of_instance, GArray *
     }
 }
 
-static void list_all_casters(scene *s, GArray *areas, box3 *box)
+static size_t count_casters(const scene *s, GArray **lists)
 {
-    GArray **lists = casters_by_object(s);
     size_t n = lists[0]->len;
     for (guint i = 0; i < s->instances->len; i++)
         n += lists[instance_at(s, (int)i)->object + 1]->len;
-    s->casters = g_new(caustic_caster, MAX(n, 1));
+    return n;
+}
+
+/* A shape is one as often as there are instances of it: many can be asked for by few
+   words. @param areas owned by the caller (big_free); NULL: memory is short */
+static float *list_all_casters(scene *s, GArray **lists, box3 *box, GError **error)
+{
+    size_t n = count_casters(s, lists);
+    if (n > INT_MAX) {
+        error_set(error, ERROR_FAILED,
+                  "expected at most %d casters of caustics, found %zu", INT_MAX, n);
+        return NULL;
+    }
+    float *areas = big_alloc(n, sizeof *areas, "casters of caustics", error);
+    if (areas)
+        s->casters = big_alloc(n, sizeof *s->casters, "casters of caustics", error);
+    if (!s->casters) {
+        big_free(areas);
+        return NULL;
+    }
     list_casters(s, lists[0], NO_INDEX, areas, box);
     for (guint i = 0; i < s->instances->len; i++)
         list_casters(s, lists[instance_at(s, (int)i)->object + 1], (int)i, areas, box);
-    for (size_t i = 0; i < (size_t)s->objects->len + 1; i++)
-        g_clear_pointer(&lists[i], g_array_unref);
-    g_free(lists);
+    return areas;
 }
 
 bool scene_find_casters(scene *s, GError **error)
 {
     box3 box = box3_empty();
-    g_autoptr(GArray) areas = g_array_new(FALSE, FALSE, sizeof(float));
-    list_all_casters(s, areas, &box);
+    GArray **lists = casters_by_object(s);
+    float *areas = list_all_casters(s, lists, &box, error);
+    for (guint i = 0; i <= s->objects->len; i++)
+        g_array_unref(lists[i]);
+    g_free(lists);
     s->caustic_center = box3_is_empty(box) ? s->center : box3_center(box);
     s->caustic_radius = 1.001f * box3_radius(box);
-    return distribution_init(&s->caustic_area, (const float *)(void *)areas->data,
-                             (size_t)s->n_casters, error);
+    bool done =
+        areas && distribution_init(&s->caustic_area, areas, (size_t)s->n_casters, error);
+    big_free(areas);
+    return done;
 }
 
 vec3 scene_caustic_target(const scene *s, float u_shape, vec2 u, float time)

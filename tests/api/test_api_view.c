@@ -311,6 +311,33 @@ static void test_wireframe(void)
     }
 }
 
+/* Of a mesh of many triangles, with little memory: nothing, or nothing of the mesh. */
+static void test_wireframe_out_of_memory(void)
+{
+    enum { SIDE = 200, MOST = 1000000 };
+    g_autoptr(GString) text = g_string_new(
+        "Camera \"perspective\"\nWorldBegin\nShape \"trianglemesh\" \"point3 P\" [");
+    for (int i = 0; i < SIDE * SIDE; i++)
+        g_string_append_printf(text, "%d %d %d ", i % SIDE, i / SIDE, i * 7919 % 100);
+    g_string_append(text, "] \"integer indices\" [");
+    for (int i = 0; i + SIDE + 1 < SIDE * SIDE; i++)
+        g_string_append_printf(text, "%d %d %d ", i, i + 1, i + SIDE);
+    g_string_append(text, "]\n");
+    g_autofree char *path = g_build_filename(folder, "scene.pbrt", NULL);
+    g_assert_true(g_file_set_contents(path, text->str, -1, NULL));
+    g_autoptr(NephScene) mesh = load(path);
+    size_t n;
+    g_autofree float *all = neph_scene_wireframe(mesh, MOST, &n);
+    g_assert_cmpuint(n, ==, 3 * (SIDE * SIDE - SIDE - 1));
+    g_assert_true(neph_memory_set_limit("1M", NULL));
+    g_assert_null(neph_scene_wireframe(mesh, MOST, &n));
+    g_assert_cmpuint(n, ==, 0);
+    g_autofree float *few = neph_scene_wireframe(mesh, 10, &n);
+    g_assert_nonnull(few);
+    g_assert_cmpuint(n, ==, 0);
+    g_assert_true(neph_memory_set_limit(NULL, NULL));
+}
+
 /* Two instances of a cube have twice its edges, where they stand. */
 static void test_wireframe_instances(void)
 {
@@ -438,6 +465,7 @@ int main(int argc, char **argv)
     g_test_add_func("/api-view/bounds", test_bounds);
     g_test_add_func("/api-view/pick", test_pick);
     g_test_add_func("/api-view/wireframe", test_wireframe);
+    g_test_add_func("/api-view/wireframe-out-of-memory", test_wireframe_out_of_memory);
     g_test_add_func("/api-view/wireframe-instances", test_wireframe_instances);
     g_test_add_func("/api-view/camera/orthographic", test_camera_orthographic);
     g_test_add_func("/api-view/bsdf/diffuse", test_bsdf_diffuse);

@@ -198,6 +198,69 @@ static void test_copies(void)
     folder_remove(&f);
 }
 
+#define WORLD "Camera \"perspective\" WorldBegin\n"
+
+/* Small things that a file may have very many of. */
+static const struct {
+    const char *name, *head, *unit, *tail; /* the file; "%d" in a unit is its number */
+    int n;
+} swarms[] = {
+    {"spheres.pbrt", WORLD, "Shape\"sphere\"\n", "", 50000},
+    {"materials.pbrt", WORLD, "Material\"diffuse\"\n", "", 110000},
+    {"textures.pbrt", WORLD, "Texture\"%d\"\"float\"\"constant\"\n", "", 100000},
+    {"lights.pbrt", WORLD, "LightSource\"point\"", "", 50000},
+    {"systems.pbrt", WORLD, "CoordinateSystem\"%d\"\n", "", 50000},
+    {"attributes.pbrt", WORLD, "Attribute\"shape\"\"float a\"1\n", "", 60000},
+    {"objects.pbrt", WORLD, "ObjectBegin\"%d\"ObjectEnd ", "Shape\"sphere\"", 12000},
+    {"strings.pbrt", WORLD "Shape\"sphere\"\"string a\"[", "\"\"", "]", 300000},
+    {"v3.pbrt", "Sampler\"random\"" WORLD, "Texture\"%d\"\"color\"\"constant\"\n",
+     "WorldEnd", 50000},
+    {"field.pbrt",
+     "Sampler\"random\"" WORLD "Shape\"heightfield\"\"integer nu\"1000\"integer "
+     "nv\"500\"float Pz\"[",
+     "0 ", "]WorldEnd", 500000},
+    {"numbers.gltf", "{\"asset\":{\"version\":\"2.0\"},\"extras\":[", "0,", "0]}",
+     400000},
+    {"nodes.gltf", "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[", "{},", "{}]}", 120000},
+};
+
+static char *swarm_text(size_t i)
+{
+    GString *text = g_string_new(swarms[i].head);
+    bool numbered = strchr(swarms[i].unit, '%') != NULL;
+    g_auto(GStrv) around = g_strsplit(swarms[i].unit, "%d", 2);
+    for (int n = 0; n < swarms[i].n; n++) {
+        g_string_append(text, around[0]);
+        if (numbered)
+            g_string_append_printf(text, "%d%s", n, around[1]);
+    }
+    return g_string_free(g_string_append(text, swarms[i].tail), FALSE);
+}
+
+/* They are refused before GLib has to end the program, and all that was had is given
+ * back. */
+static void test_small_things(void)
+{
+    enum { LIMIT = 16 };
+    for (size_t i = 0; i < G_N_ELEMENTS(swarms); i++) {
+        g_autofree char *text = swarm_text(i);
+        scene_folder f = folder_new("");
+        folder_write(&f, swarms[i].name, text, -1);
+        g_clear_pointer(&text, g_free);
+        const char *path = f.files->pdata[f.files->len - 1];
+        GError *error = NULL;
+        memory_set_limit(LIMIT * MIB);
+        g_autoptr(scene) s = format_load(path, 1, NULL, &error);
+        g_assert_null(s);
+        g_assert_nonnull(strstr(error->message, swarms[i].name));
+        assert_refused(error, " for ");
+        g_assert_true(is_left(LIMIT * MIB));
+        g_assert_true(memory_ask((LIMIT - 6) * MIB, "a trial", NULL));
+        memory_set_limit(0);
+        folder_remove(&f);
+    }
+}
+
 static const char picture_scene[] =
     "Film \"rgb\" \"integer xresolution\" 300 \"integer yresolution\" 300\n"
     "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\n"
@@ -273,6 +336,7 @@ int main(int argc, char **argv)
     g_test_add_func("/memory/machine", test_machine);
     g_test_add_func("/memory/images", test_images);
     g_test_add_func("/memory/copies", test_copies);
+    g_test_add_func("/memory/small-things", test_small_things);
     g_test_add_func("/memory/picture-is-reserved", test_picture_is_reserved);
     g_test_add_func("/memory/search-structure", test_search_structure);
     return g_test_run();

@@ -19,6 +19,9 @@ typedef struct directive {
     directive_handler handle;
 } directive;
 
+/* About what a directive leaves behind, beside arrays. */
+enum { DIRECTIVE_SIZE = 1024 };
+
 static bool handle_include(pbrt_parser *parser, source_place place);
 static bool handle_import(pbrt_parser *parser, source_place place);
 
@@ -82,6 +85,18 @@ void pbrt_report(pbrt_parser *parser, GError *error)
         return;
     }
     parser->fatal = error;
+}
+
+bool pbrt_has_room(pbrt_parser *parser, source_place place, size_t bytes,
+                   const char *what)
+{
+    GError *error = NULL;
+    if (memory_ask(bytes, what, &error))
+        return true;
+    GError *placed = NULL;
+    error_move_at(&placed, place, error);
+    pbrt_report(parser, placed);
+    return false;
 }
 
 void pbrt_error(pbrt_parser *parser, source_place place, const char *format, ...)
@@ -162,7 +177,9 @@ static void read_directive(pbrt_parser *parser)
     if (!d)
         fine = pbrt_expected(parser, "a directive", &t);
     else
-        fine = phase_fits(parser, d, t.place) && d->handle(parser, t.place);
+        fine = phase_fits(parser, d, t.place) &&
+               pbrt_has_room(parser, t.place, DIRECTIVE_SIZE, d->name) &&
+               d->handle(parser, t.place);
     if (!fine)
         resynchronise(parser);
 }

@@ -40,7 +40,7 @@ static bool add_medium(pbrt_parser *parser, const char *name, const char *type, 
     GError *error = NULL;
     g_autofree char *kind = g_strdup(type);
     if (parser->is_v3)
-        pbrt_v3_translate(V3_MEDIUM, &kind, p, &parser->scene->build.log);
+        pbrt_v3_translate(V3_MEDIUM, &kind, p, &parser->scene->build.log, NULL);
     bool is_empty = lenient_medium(&parser->scene->build, name, kind, p, &error);
     int index = is_empty || error
                     ? NO_INDEX

@@ -20,7 +20,7 @@ static bool keep(pbrt_parser *parser, pending *d, pbrt_v3_target target,
         return false;
     }
     if (parser->is_v3)
-        pbrt_v3_translate(target, &kind, p, &parser->scene->build.log);
+        pbrt_v3_translate(target, &kind, p, &parser->scene->build.log, NULL);
     g_free(d->kind);
     params_free(d->p);
     *d = (pending){kind, p, at, parser->state.ctm, parser->state.ctm_end};
@@ -265,7 +265,7 @@ static const params *given_or_default(pbrt_parser *parser, pending *d, const cha
         d->p = params_new(place, parser->base_directory, parser->state.space);
         d->place = place;
         if (parser->is_v3 && d == &parser->film)
-            pbrt_v3_translate(V3_FILM, &d->kind, d->p, &parser->scene->build.log);
+            pbrt_v3_translate(V3_FILM, &d->kind, d->p, &parser->scene->build.log, NULL);
     }
     return d->p;
 }

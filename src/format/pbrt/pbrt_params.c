@@ -144,8 +144,11 @@ static bool push_bool(pbrt_parser *parser, const declaration *d, const token *t)
 static bool push_string(pbrt_parser *parser, const declaration *d, const token *t,
                         GPtrArray *strings)
 {
+    const size_t each = 32 + 2 * sizeof(char *);
     if (t->kind != TOKEN_STRING)
         return wrong_value(parser, d, "a string in quotes", t);
+    if (!pbrt_has_room(parser, t->place, t->length + each, "strings"))
+        return false;
     g_ptr_array_add(strings, token_string(t));
     return true;
 }

@@ -146,6 +146,9 @@ typedef bool (*directive_handler)(pbrt_parser *parser, source_place place);
 
 /** @brief Takes an error into the list. */
 void pbrt_report(pbrt_parser *parser, GError *error);
+/** @brief memory_ask with a place; what is refused is reported. */
+bool pbrt_has_room(pbrt_parser *parser, source_place place, size_t bytes,
+                   const char *what);
 /** @brief "expected `what`, found <the word>" at the word. @return false */
 bool pbrt_expected(pbrt_parser *parser, const char *what, const token *found);
 /** @brief An error of the reader's own at a place. */

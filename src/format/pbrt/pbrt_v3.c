@@ -9,6 +9,7 @@
 #include "format/pbrt/pbrt_v3_words.h"
 
 #include "base/intern.h"
+#include "base/memory.h"
 #include "medium/medium_presets.h"
 
 #include <math.h>
@@ -159,27 +160,63 @@ static void translate_area_light(const translation *t)
 
 /* ---- Shapes ---- */
 
-/* Over the unit square, two triangles a cell. */
-static void add_grid(const translation *t, int nu, int nv, const float *z)
+/* Of the unit square, two triangles a cell. */
+typedef struct grid {
+    size_t nu, nv;
+    const float *z;
+    float *points, *uv;
+    int *indices;
+} grid;
+
+static size_t n_corners(const grid *g)
 {
-    size_t n = (size_t)nu * (size_t)nv;
-    g_autofree float *points = g_new(float, 3 * n);
-    g_autofree float *uv = g_new(float, 2 * n);
-    g_autoptr(GArray) indices = g_array_new(FALSE, FALSE, sizeof(int));
-    for (int y = 0; y < nv; y++)
-        for (int x = 0; x < nu; x++) {
-            int i = y * nu + x;
-            points[3 * i] = uv[2 * i] = (float)x / (float)(nu - 1);
-            points[3 * i + 1] = uv[2 * i + 1] = (float)y / (float)(nv - 1);
-            points[3 * i + 2] = z[i];
-            const int cell[] = {i, i + 1, i + nu + 1, i, i + nu + 1, i + nu};
-            if (x + 1 < nu && y + 1 < nv)
-                g_array_append_vals(indices, cell, 6);
+    return 6 * (g->nu - 1) * (g->nv - 1);
+}
+
+static bool has_arrays(grid *g, GError **error)
+{
+    size_t n = g->nu * g->nv;
+    g->points = big_alloc(n, 3 * sizeof(float), "a heightfield", error);
+    if (g->points)
+        g->uv = big_alloc(n, 2 * sizeof(float), "a heightfield", error);
+    if (g->uv)
+        g->indices = big_alloc(n_corners(g), sizeof(int), "a heightfield", error);
+    return g->indices != NULL;
+}
+
+static void fill_grid(grid *g)
+{
+    int *corner = g->indices;
+    for (size_t y = 0; y < g->nv; y++)
+        for (size_t x = 0; x < g->nu; x++) {
+            size_t i = y * g->nu + x;
+            g->points[3 * i] = g->uv[2 * i] = (float)x / (float)(g->nu - 1);
+            g->points[3 * i + 1] = g->uv[2 * i + 1] = (float)y / (float)(g->nv - 1);
+            g->points[3 * i + 2] = g->z[i];
+            const size_t up = i + g->nu, cell[] = {i, i + 1, up + 1, i, up + 1, up};
+            if (x + 1 < g->nu && y + 1 < g->nv)
+                for (int k = 0; k < 6; k++)
+                    *corner++ = (int)cell[k];
         }
-    params_add_numbers(t->p, t->p->place, PARAM_POINT3, "P", points, 3 * n, NULL);
-    params_add_numbers(t->p, t->p->place, PARAM_POINT2, "uv", uv, 2 * n, NULL);
-    params_add_integers(t->p, t->p->place, PARAM_INTEGER, "indices",
-                        (const int *)(const void *)indices->data, indices->len, NULL);
+}
+
+static bool add_grid(const translation *t, grid *g)
+{
+    size_t n = g->nu * g->nv;
+    bool done = has_arrays(g, t->error);
+    if (done) {
+        fill_grid(g);
+        done = params_add_numbers(t->p, t->p->place, PARAM_POINT3, "P", g->points, 3 * n,
+                                  t->error) &&
+               params_add_numbers(t->p, t->p->place, PARAM_POINT2, "uv", g->uv, 2 * n,
+                                  t->error) &&
+               params_add_integers(t->p, t->p->place, PARAM_INTEGER, "indices",
+                                   g->indices, n_corners(g), t->error);
+    }
+    big_free(g->points);
+    big_free(g->uv);
+    big_free(g->indices);
+    return done;
 }
 
 static int count_of(const translation *t, const char *name)
@@ -197,8 +234,10 @@ static void translate_heightfield(const translation *t)
     if (nu < 2 || nv < 2 || nu > MOST || nv > MOST || !z || z->type != PARAM_FLOAT ||
         z->n != (size_t)nu * (size_t)nv)
         return;
+    grid g = {.nu = (size_t)nu, .nv = (size_t)nv, .z = z->numbers};
+    if (!add_grid(t, &g))
+        return;
     set_kind(t, "trianglemesh");
-    add_grid(t, nu, nv, z->numbers);
     drop(t, "nu");
     drop(t, "nv");
     drop(t, "Pz");
@@ -324,7 +363,8 @@ static void translate_camera(const translation *t)
     }
 }
 
-void pbrt_v3_translate(pbrt_v3_target target, char **kind, params *p, const log_sink *log)
+bool pbrt_v3_translate(pbrt_v3_target target, char **kind, params *p, const log_sink *log,
+                       GError **error)
 {
     static void (*const translators[N_V3_TARGETS])(const translation *t) = {
         [V3_MATERIAL] = pbrt_v3_material,
@@ -339,5 +379,9 @@ void pbrt_v3_translate(pbrt_v3_target target, char **kind, params *p, const log_
         [V3_INTEGRATOR] = translate_integrator,
         [V3_CAMERA] = translate_camera,
     };
-    translators[target](&(translation){kind, p, log});
+    GError *refused = NULL;
+    translators[target](&(translation){kind, p, log, &refused});
+    if (refused)
+        error_move_at(error, p->place, refused);
+    return !refused;
 }

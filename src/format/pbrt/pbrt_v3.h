@@ -30,6 +30,7 @@ bool pbrt_v3_recognises(const char *text, size_t size);
 
 /** @brief Makes a directive's kind and parameters those of pbrt-v4 that come closest.
  * What is lost is noted; what v4 does not know stays, to be refused by name.
- * @param kind may be replaced; owned by the caller (g_free) */
-void pbrt_v3_translate(pbrt_v3_target target, char **kind, params *p,
-                       const log_sink *log);
+ * @param kind may be replaced; owned by the caller (g_free)
+ * @return false with ERROR_FAILED if memory is short */
+bool pbrt_v3_translate(pbrt_v3_target target, char **kind, params *p, const log_sink *log,
+                       GError **error);

@@ -17,6 +17,7 @@ typedef struct translation {
     char **kind;
     params *p;
     const log_sink *log;
+    GError **error; /* of what there is no memory for */
 } translation;
 
 static inline void note(const translation *t, const param *q, const char *text)

@@ -28,7 +28,9 @@ static void translate(pbrt_parser *parser, pbrt_v3_target target, arguments *a)
 {
     if (!parser->is_v3)
         return;
-    pbrt_v3_translate(target, &a->kind, a->p, &parser->scene->build.log);
+    GError *error = NULL;
+    if (!pbrt_v3_translate(target, &a->kind, a->p, &parser->scene->build.log, &error))
+        pbrt_report(parser, error);
     if (target != V3_TEXTURE) /* which asks what type it is of */
         pbrt_v3_resolve(parser, a->p, true);
 }
