@@ -15,7 +15,24 @@ enum { HUGE_ARRAY = 4 << 20 }; /* bytes, from which on huge pages are worth aski
 
 #define DEFAULT_SHARE 0.8
 
+/* ---- For tests ---- */
+
 static atomic_uint fail_countdown;
+
+static bool must_fail(void)
+{
+    unsigned left = atomic_load(&fail_countdown);
+    while (left > 0) {
+        if (atomic_compare_exchange_weak(&fail_countdown, &left, left - 1))
+            return left == 1;
+    }
+    return false;
+}
+
+void big_alloc_fail_at(unsigned n)
+{
+    atomic_store(&fail_countdown, n);
+}
 
 /* ---- The limit ---- */
 
@@ -105,31 +122,17 @@ bool memory_ask(size_t bytes, const char *what, GError **error)
 {
     const size_t step = 1 << 20;
     size_t before = atomic_fetch_add(&asked, bytes);
-    if (bytes < step && before / step == (before + bytes) / step)
+    bool fails = must_fail();
+    if (!fails && bytes < step && before / step == (before + bytes) / step)
         return true;
     size_t in_use = atomic_load(&used) + in_small_things(), all = memory_limit();
-    if (in_use <= all && bytes <= all - in_use)
+    if (!fails && in_use <= all && bytes <= all - in_use)
         return true;
     refuse_beside(in_use, bytes, what, error);
     return false;
 }
 
 /* ---- Arrays ---- */
-
-static bool must_fail(void)
-{
-    unsigned left = atomic_load(&fail_countdown);
-    while (left > 0) {
-        if (atomic_compare_exchange_weak(&fail_countdown, &left, left - 1))
-            return left == 1;
-    }
-    return false;
-}
-
-void big_alloc_fail_at(unsigned n)
-{
-    atomic_store(&fail_countdown, n);
-}
 
 /* Fewer page faults while an array fills, fewer misses of the TLB when it is read in no
    order. Only a hint. */

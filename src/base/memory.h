@@ -51,7 +51,8 @@ bool memory_ask(size_t bytes, const char *what, GError **error);
 void memory_set_limit(size_t bytes);
 size_t memory_limit(void);
 
-/** @brief For tests: the n-th call from now (1 = next) fails once; 0 = never. */
+/** @brief For tests: the n-th call of big_alloc, big_grow or memory_ask from now (1 =
+ * next) fails once; 0 = never. */
 void big_alloc_fail_at(unsigned n);
 
 /** @brief Largest resident size of this process so far, in bytes. */
