@@ -394,7 +394,7 @@ static spectrum gather_at(const photonmap_pass *pass, const photon_map *map,
 
 float photonmap_slice_time(const photonmap_pass *pass, int slice)
 {
-    return pass->n_slices > 1 ? time_of_slice(slice, pass->n_slices) : 0.0f;
+    return pass->scene->moves ? time_of_slice(slice, pass->n_slices) : 0.0f;
 }
 
 spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,

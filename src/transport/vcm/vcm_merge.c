@@ -22,7 +22,7 @@ typedef struct vertex_search {
 static surface_hit place_in_map(const vcm_pass *pass, const surface_hit *hit, vec3 *wo)
 {
     surface_hit at = *hit;
-    if (pass->n_slices > 1)
+    if (pass->scene->moves)
         at.time = time_of_slice(time_slice(hit->time, pass->n_slices), pass->n_slices);
     if (scene_hit_moves(pass->scene, hit)) {
         transform by = vcm_motion_to_map(pass, hit);
