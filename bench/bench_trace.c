@@ -115,7 +115,7 @@ static double intersect_time(const scene *s, const GArray *rays)
 /* Every ray that photons travel, as their story tells it. */
 static void note_ray(const photon_event *event, void *data)
 {
-    ray r = {event->p, event->direction, INFINITY, 0.0f, {{NULL}}, NULL};
+    ray r = {event->p, event->direction, INFINITY, 0.0f, {{0}, 0}};
     if (event->kind == PHOTON_SCATTERED)
         r = hit_ray(event->hit, event->direction);
     else if (event->kind != PHOTON_EMITTED)

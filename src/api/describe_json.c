@@ -112,8 +112,8 @@ static void put_camera(json *j, const scene *s, const summary *all)
     json_float(j, "lens_radius", s->camera.lens_radius);
     if (s->camera.lens_radius > 0.0f)
         json_float(j, "focal_distance", s->camera.focal_distance);
-    if (s->camera.medium)
-        json_string(j, "medium", s->camera.medium->name);
+    if (s->camera.media.participating)
+        json_string(j, "medium", scene_medium(s, s->camera.media.participating)->name);
     json_object_end(j);
 }
 

@@ -105,8 +105,9 @@ static void put_camera(GString *out, const scene *s, const summary *all)
                                (double)s->camera.focal_distance);
     else
         g_string_append_printf(out, "  %-14s pinhole\n", "lens");
-    if (s->camera.medium) {
-        put_name(out, "  in medium      ", s->camera.medium->name);
+    const medium *in = scene_medium(s, s->camera.media.participating);
+    if (in) {
+        put_name(out, "  in medium      ", in->name);
         g_string_append_c(out, '\n');
     }
 }

@@ -6,6 +6,7 @@
  */
 #include "api/describe.h"
 
+#include "scene/advance.h"
 #include "scene/scene_media.h"
 #include "shape/mesh_closed.h"
 
@@ -206,8 +207,9 @@ static void inspect_sky(inspection *in, guint i)
          i, l->kind->name);
 }
 
-static const char *medium_name(const medium *m)
+static const char *medium_name(const scene *s, uint32_t number)
 {
+    const medium *m = scene_medium(s, number);
     return m ? m->name : "none";
 }
 
@@ -219,7 +221,7 @@ static void inspect_lamp_in_medium(inspection *in, guint i)
     const wavelengths w = wavelengths_at(0.5f);
     const light *l = s->lights->pdata[i];
     ray r = {.origin = transform_point(&s->camera.to_world, (vec3){0}),
-             .medium = s->camera.medium};
+             .media.participating = s->camera.media.participating};
     light_sample seen;
     if (!scene_has_media(s) ||
         !l->kind->sample(l->self, &w, r.origin, 0.5f, (vec2){0.4f, 0.3f}, &seen) ||
@@ -227,14 +229,14 @@ static void inspect_lamp_in_medium(inspection *in, guint i)
         return;
     r.direction = seen.wi;
     r.t_max = seen.distance * (1.0f - 1e-3f);
-    const medium *behind = scene_medium_behind(s, r);
-    const medium *is = scene_light_medium(s, (int)i, seen.n, -seen.wi);
+    uint32_t behind = scene_medium_behind(s, r);
+    uint32_t is = scene_light_medium(s, (int)i, seen.n, -seen.wi);
     if (behind == is || scene_occluded(s, &r))
         return;
     warn(in,
          "light %u (%s) is in medium '%s', but the way to it from the camera ends in "
          "'%s': a MediumInterface is missing on it, at the light or before the camera",
-         i, l->kind->name, medium_name(is), medium_name(behind));
+         i, l->kind->name, medium_name(s, is), medium_name(s, behind));
 }
 
 /* Less of a light is as good as none. */
@@ -253,14 +255,14 @@ static void inspect_fog(inspection *in, guint i)
         ray r = {.origin = transform_point(&s->camera.to_world, (vec3){0}),
                  .direction = way_out(k),
                  .t_max = INFINITY,
-                 .medium = s->camera.medium};
+                 .media.participating = s->camera.media.participating};
         if (spectrum_mean(scene_transmittance(s, &r, &w)) > LEAST_LEFT)
             return;
     }
     warn(in,
          "light %u (%s) hardly reaches the camera through medium '%s', which no surface "
          "bounds",
-         i, l->kind->name, s->outer_medium->name);
+         i, l->kind->name, medium_name(s, s->outer_medium));
 }
 
 /* ---- All of it ---- */

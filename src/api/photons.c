@@ -95,9 +95,7 @@ const char *neph_photons_medium(const NephPhotons *photons, size_t i)
     if (!photons_locate(photons, &i, &c) || i < traced->stores[c].n)
         return "";
     size_t n = traced->stores[c].n;
-    const GPtrArray *media = traced->plan.scene->media;
-    const medium *in = media->pdata[medium_of_home(traced->in_media[c].home[i - n])];
-    return in->name;
+    return scene_medium(traced->plan.scene, traced->in_media[c].home[i - n])->name;
 }
 
 void neph_photons_statistics(const NephPhotons *photons, NephStatistics *out)

@@ -46,7 +46,7 @@ static const char *material_of(const scene *s, const photon_event *event)
         return event->kind == PHOTON_EMITTED ? scene_light(s, event->light)->kind->name
                                              : "";
     if (event->hit->shape == NO_INDEX)
-        return event->hit->medium->name;
+        return scene_medium(s, event->hit->media.participating)->name;
     if (event->hit->material == NO_INDEX)
         return "";
     const material *m = s->materials->pdata[event->hit->material];

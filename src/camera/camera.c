@@ -350,8 +350,7 @@ ray camera_ray(const camera *c, vec2 raster, vec2 u_lens, float u_time)
         .direction = normalize3(transform_vector(&to_world, normalize3(direction))),
         .t_max = INFINITY,
         .time = u_time,
-        .solids = c->solids,
-        .medium = c->medium,
+        .media = c->media,
     };
 }
 

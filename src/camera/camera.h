@@ -24,14 +24,13 @@ typedef struct camera {
     float shutter_open, shutter_close; /**< s */
     int width, height;                 /**< of the film, pixels */
 
-    float half_screen; /**< tan(fov / 2): half the shorter side of the screen */
-    float aspect;      /**< frameaspectratio; 0 = the film's */
-    bool has_window;   /**< a screenwindow is given, and the film's shape ignored */
-    float window[4];   /**< x_min, x_max, y_min, y_max in half_screens */
-    solids solids;     /**< the solids that it is in; found by the scene */
-    const struct medium *medium; /**< the participating medium that it is in */
-    vec3 medium_at;              /**< a place in medium_there, where the scene put it */
-    const struct medium *medium_there;
+    float half_screen;     /**< tan(fov / 2): half the shorter side of the screen */
+    float aspect;          /**< frameaspectratio; 0 = the film's */
+    bool has_window;       /**< a screenwindow is given, and the film's shape ignored */
+    float window[4];       /**< x_min, x_max, y_min, y_max in half_screens */
+    medium_stack media;    /**< that it is in; found by the scene */
+    vec3 medium_at;        /**< a place in medium_there, where the scene put it */
+    uint32_t medium_there; /**< a participating medium, as in a medium_stack */
     bool equal_area; /**< a spherical camera's mapping; else latitude and longitude */
 } camera;
 

@@ -94,7 +94,7 @@ struct light {
     source_place place;
     char *group;            /**< light group's name, NULL: the default one */
     int group_index;        /**< in scene->light_groups, if there are any */
-    solids solids;          /**< the solids that it shines in */
+    medium_stack solids;    /**< that it shines in; no participating medium */
     medium_interface media; /**< around it */
     bool is_unmet;          /**< no ray can meet it: without an extent, or of alpha 0 */
     bool is_apart; /**< stands outside the sphere around what casts caustics: from it,

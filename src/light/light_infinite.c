@@ -52,7 +52,7 @@ static light_bound bound(const void *self, const wavelengths *w)
 static light_emission leave(const infinite_light *l, vec3 origin, vec3 direction,
                             spectrum flux)
 {
-    return (light_emission){.ray = {origin, direction, INFINITY, 0.0f, {{NULL}}, NULL},
+    return (light_emission){.ray = {origin, direction, INFINITY, 0.0f, {{0}, 0}},
                             .n = direction,
                             .flux = flux,
                             .pdf_position = 1.0f / light_disk_area(&l->disk),

@@ -6,7 +6,7 @@
 #include "math/frame.h"
 #include "math/mesh.h"
 #include "math/vec.h"
-#include "medium/solids.h"
+#include "medium/medium_stack.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -16,16 +16,17 @@ typedef struct ray {
     vec3 origin;
     vec3 direction; /**< unit */
     float t_max;
-    float time;                  /**< of the shutter: 0 when it opens, 1 when it closes */
-    solids solids;               /**< the solids that it travels in */
-    const struct medium *medium; /**< the participating medium that it travels in; NULL:
-                                    none */
+    float time;         /**< of the shutter: 0 when it opens, 1 when it closes */
+    medium_stack media; /**< that it travels in */
 } ray;
 
-/** @brief Where a surface parts two participating media (pbrt's MediumInterface). */
+_Static_assert(sizeof(ray) <= 64, "a ray is at most a cache line");
+
+/** @brief Where a surface parts two participating media (pbrt's MediumInterface): as
+ * medium_stack.participating has them. */
 typedef struct medium_interface {
-    const struct medium *inside;  /**< against n_geom; NULL: none */
-    const struct medium *outside; /**< toward n_geom */
+    uint32_t inside;  /**< against n_geom; 0: none */
+    uint32_t outside; /**< toward n_geom */
 } medium_interface;
 
 enum { NO_INDEX = -1 };
@@ -50,17 +51,15 @@ typedef struct surface_hit {
     int shape;       /**< index in scene->shapes */
     int instance;    /**< index in scene->instances, or NO_INDEX */
     uint32_t primitive; /**< triangle of a mesh, else 0 */
-    int material;  /**< index in scene->materials, or NO_INDEX: an invisible interface */
-    int light;     /**< index in scene->lights of the area light here, or NO_INDEX */
-    solids solids; /**< the solids that the ray came through */
-    const mesh *mesh;         /**< that the triangle is of (mesh_attributes.h); NULL: on
-                                 another shape */
-    vec2 corners;             /**< weights of the triangle's second and third corner */
-    const interior *interior; /**< behind the surface, against n_geom; NULL: it bounds no
-                                 solid */
-    bool from_inside;         /**< the ray came from behind; only where interior is set */
-    const struct medium *medium;      /**< the participating medium that the ray came
-                                         through */
+    int material; /**< index in scene->materials, or NO_INDEX: an invisible interface */
+    int light;    /**< index in scene->lights of the area light here, or NO_INDEX */
+    medium_stack media; /**< that the ray came through */
+    const mesh *mesh;   /**< that the triangle is of (mesh_attributes.h); NULL: on
+                           another shape */
+    vec2 corners;       /**< weights of the triangle's second and third corner */
+    uint32_t solid;     /**< behind the surface, against n_geom, as in a
+                           medium_stack; 0: it bounds none */
+    bool from_inside;   /**< the ray came from behind; only where solid is set */
     const medium_interface *boundary; /**< what the surface parts; NULL: on both sides is
                                          what the ray came through */
 } surface_hit;
@@ -90,23 +89,17 @@ static inline vec3 hit_offset(const surface_hit *hit, vec3 direction)
     return offset_point(hit->p, hit->n_geom, hit->t, hit->error, direction);
 }
 
-/** @brief The solids that a ray which leaves the hit in a direction travels in. */
-static inline solids hit_solids(const surface_hit *hit, vec3 direction)
+/** @brief The media that a ray which leaves the hit in a direction travels in. */
+static inline medium_stack hit_media(const surface_hit *hit, vec3 direction)
 {
     bool inside = dot3(direction, hit->n_geom) < 0.0f;
-    if (!hit->interior || inside == hit->from_inside)
-        return hit->solids;
-    return inside ? solids_enter(hit->solids, hit->interior)
-                  : solids_leave(hit->solids, hit->interior);
-}
-
-/** @brief The participating medium that it travels in. */
-static inline const struct medium *hit_medium(const surface_hit *hit, vec3 direction)
-{
-    if (!hit->boundary)
-        return hit->medium;
-    return dot3(direction, hit->n_geom) < 0.0f ? hit->boundary->inside
-                                               : hit->boundary->outside;
+    medium_stack media = hit->media;
+    if (hit->solid && inside != hit->from_inside)
+        media = inside ? medium_stack_enter(media, hit->solid)
+                       : medium_stack_leave(media, hit->solid);
+    if (hit->boundary)
+        media.participating = inside ? hit->boundary->inside : hit->boundary->outside;
+    return media;
 }
 
 /** @brief A point on a ray within the medium that it travels in, as a hit on nothing: it
@@ -120,19 +113,14 @@ static inline surface_hit hit_in_medium(const ray *r, float t)
                          .instance = NO_INDEX,
                          .material = NO_INDEX,
                          .light = NO_INDEX,
-                         .solids = r->solids,
-                         .medium = r->medium};
+                         .media = r->media};
 }
 
 /** @brief The ray that leaves a hit. */
 static inline ray hit_ray(const surface_hit *hit, vec3 direction)
 {
-    return (ray){hit_offset(hit, direction),
-                 direction,
-                 INFINITY,
-                 hit->time,
-                 hit_solids(hit, direction),
-                 hit_medium(hit, direction)};
+    return (ray){hit_offset(hit, direction), direction, INFINITY, hit->time,
+                 hit_media(hit, direction)};
 }
 
 /** @brief The ray from a hit to a point at distance in direction. It ends short of the

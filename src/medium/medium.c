@@ -23,6 +23,8 @@ spectrum medium_extinction(const medium *m, const wavelengths *w)
 spectrum medium_transmittance(const medium *m, float t, const wavelengths *w)
 {
     spectrum out = spectrum_fill(1.0f);
+    if (!m)
+        return out;
     if (m->absorption || m->scattering)
         out = left_after(medium_extinction(m, w), t);
     if (m->color) {

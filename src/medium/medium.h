@@ -2,8 +2,8 @@
  * Media: what light meets on its way between surfaces.
  *
  * Two kinds of things are filled with one. A solid of coloured glass absorbs light and
- * scatters none (Beer-Lambert's law); a ray knows the solids it travels in (solids.h). It
- * enters and leaves one where it crosses a surface whose material bounds a solid; all
+ * scatters none (Beer-Lambert's law); a ray knows those it travels in (medium_stack.h).
+ * It enters and leaves one where it crosses a surface whose material bounds a solid; all
  * other surfaces leave it where it is. Participating media, as fog or milk, scatter too,
  * and fill what surfaces with a medium_interface (hit.h) bound.
  *
@@ -45,16 +45,10 @@ const char *medium_kind_name(size_t i);
 const char *medium_kind_parameters(size_t i);
 void medium_free(medium *m);
 
-/** @brief What photons in a medium have as their home. */
+/** @brief Its number in a medium_stack, and the home of photons in it; of none 0. */
 static inline uint32_t medium_home(const medium *m)
 {
-    return (uint32_t)m->index + 1;
-}
-
-/** @brief The index of the medium that has this home. */
-static inline size_t medium_of_home(uint32_t home)
-{
-    return home - 1;
+    return m ? (uint32_t)m->index + 1 : 0;
 }
 
 /** @brief σs by wavelength. */
@@ -78,34 +72,12 @@ static inline float phase_henyey_greenstein(float g, float cosine)
     return (1.0f - g * g) / (4.0f * (float)G_PI * d * sqrtf(d));
 }
 
-/** @brief Share of light left after t metres; INFINITY is allowed. */
+/** @brief Share of light left after t metres; INFINITY is allowed. All of it where m is
+ * NULL. */
 spectrum medium_transmittance(const medium *m, float t, const wavelengths *w);
 
 /** @brief True if it scatters. */
 static inline bool medium_scatters(const medium *m)
 {
     return m->scattering != NULL;
-}
-
-/** @brief Share of light left after t metres in these solids. */
-static inline spectrum solids_transmittance(const solids *in, float t,
-                                            const wavelengths *w)
-{
-    const interior *first = in->of[0];
-    return first && first->medium ? medium_transmittance(first->medium, t, w)
-                                  : spectrum_fill(1.0f);
-}
-
-/** @brief Share of light left by solids on the way from the ray's origin to the hit. */
-static inline spectrum hit_transmittance(const surface_hit *hit, const wavelengths *w)
-{
-    return solids_transmittance(&hit->solids, hit->t, w);
-}
-
-/** @brief The same on the straight way from a hit to a point that nothing hides. */
-static inline spectrum hit_transmittance_to(const surface_hit *hit, vec3 direction,
-                                            float distance, const wavelengths *w)
-{
-    const solids in = hit_solids(hit, direction);
-    return solids_transmittance(&in, distance, w);
 }

@@ -78,7 +78,10 @@ static vec3 lifted(const neighbourhood *hood, vec3 p)
 static float surface_height(const neighbourhood *hood, vec3 q)
 {
     float slab = NEIGHBOURHOOD_FLATTEN * hood->radius, height = hood->lift;
-    ray down = {lifted(hood, q), -hood->n, height + slab, hood->time, {{NULL}}, NULL};
+    const ray down = {.origin = lifted(hood, q),
+                      .direction = -hood->n,
+                      .t_max = height + slab,
+                      .time = hood->time};
     surface_hit hit;
     bool found = scene_intersect(hood->scene, &down, &hit) &&
                  fabsf(dot3(hit.n_geom, hood->n)) > LEAST_ALIKE;
@@ -162,12 +165,10 @@ static bool whole_rim(const neighbourhood *hood)
 static bool stay_below(neighbourhood *hood)
 {
     float least = LEAST_LIFT * hood->radius;
-    ray up = {hood->p + hood->n * (0.5f * least),
-              hood->n,
-              2.0f * hood->lift,
-              hood->time,
-              {{NULL}},
-              NULL};
+    const ray up = {.origin = hood->p + hood->n * (0.5f * least),
+                    .direction = hood->n,
+                    .t_max = 2.0f * hood->lift,
+                    .time = hood->time};
     surface_hit hit;
     if (!scene_intersect(hood->scene, &up, &hit))
         return false;

@@ -64,7 +64,7 @@ static bool all_alike(spectrum s)
 spectrum volume_map_radiance(const volume_map *map, const volume_query *query,
                              bool *failed)
 {
-    const medium *m = query->ray->medium;
+    const medium *m = query->medium;
     const photon_store *store = &map->store;
     spectrum sum = {0}, sigma_t = medium_extinction(m, query->w);
     bool is_grey = all_alike(sigma_t);
@@ -84,7 +84,7 @@ spectrum volume_map_radiance(const volume_map *map, const volume_query *query,
         float weight = phase * kernel_eval(&query->kernel, at->distance2, r2) /
                        kernel_area(&query->kernel, r2);
         spectrum part = weakened(sigma_t, is_grey, at->t) *
-                        solids_transmittance(&r.solids, at->t, query->w) * weight *
+                        medium_transmittance(query->solid, at->t, query->w) * weight *
                         store->flux[at->index];
         sum += part;
         if (query->n_groups > 0)

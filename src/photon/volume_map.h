@@ -32,8 +32,10 @@ const photon_store *volume_map_store(const volume_map *map);
 
 /** @brief What to ask for. */
 typedef struct volume_query {
-    const ray *ray; /**< in a medium */
-    float length;   /**< m: how far the medium reaches on it */
+    const ray *ray;
+    const medium *medium; /**< that it is in, ... */
+    const medium *solid;  /**< ... and the solid, if that absorbs; else NULL */
+    float length;         /**< m: how far the medium reaches on it */
     const wavelengths *w;
     kernel kernel;
     disc_crossings *crossings; /**< scratch */

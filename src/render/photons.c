@@ -217,7 +217,8 @@ static char *surface_name(const story *st, const photon_event *event)
                    : g_strdup_printf("light %d (%s)", event->light,
                                      scene_light(st->scene, event->light)->kind->name);
     if (event->hit->shape == NO_INDEX)
-        return g_strdup_printf("medium %s", event->hit->medium->name);
+        return g_strdup_printf(
+            "medium %s", scene_medium(st->scene, event->hit->media.participating)->name);
     const shape *on = st->scene->shapes->pdata[event->hit->shape];
     const material *m = event->hit->material == NO_INDEX
                             ? NULL

@@ -294,7 +294,8 @@ bool scene_set_camera(scene *s, const char *kind, const params *p,
         camera_init(&s->camera, kind, p, to_world, s->film.width, s->film.height, error);
     if (!s->has_camera)
         return false;
-    s->camera.medium = s->camera.medium_there = s->around.outside;
+    s->camera.media = (medium_stack){.participating = s->around.outside};
+    s->camera.medium_there = s->around.outside;
     s->camera.medium_at = transform_point(to_world, vec3_make(0.0f, 0.0f, 0.0f));
     LISTENER_TELL(s, camera, kind, p, to_world);
     return true;
@@ -334,8 +335,8 @@ bool scene_see(const scene *s, const ray *r, surface_hit *hit)
             return true;
         }
         left = hit_ray(hit, r->direction);
-        left.solids = r->solids; /* what is not seen absorbs nothing */
-        left.medium = r->medium;
+        left.media = r->media; /* what is not seen absorbs nothing */
+        left.t_max = r->t_max - length3(left.origin - r->origin);
     }
     return false;
 }

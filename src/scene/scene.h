@@ -100,11 +100,13 @@ typedef struct scene {
     int n_light_groups;        /**< 0: no light names one */
     int *environments;         /**< indices of lights that are environments */
     int n_environments;
-    interior *interiors;        /**< per material; NULL: nothing in the scene absorbs */
-    const medium *outer_medium; /**< around the scene: of no bounds; NULL: none */
-    float media_radius;         /**< m, around center: where such a medium ends */
-    bool moves;                 /**< some instance does while the shutter is open */
-    bool turns;                 /**< some shape may (surface_hit.turns) */
+    const medium **solids; /**< what those of a medium_stack's rank are filled with,
+                              from [1]; NULL: clear. NULL: nothing absorbs */
+    uint32_t outer_medium; /**< around the scene: of no bounds; as in a medium_stack
+                            */
+    float media_radius;    /**< m, around center: where such a medium ends */
+    bool moves;            /**< some instance does while the shutter is open */
+    bool turns;            /**< some shape may (surface_hit.turns) */
     caustic_caster *casters;
     int n_casters;
     distribution caustic_area;  /**< over casters, by area */
@@ -195,10 +197,9 @@ static inline void scene_fill_hit(const scene *s, const ray *r, surface_hit *hit
     const shape *on = s->shapes->pdata[hit->shape];
     hit->material = on->material;
     hit->light = on->light;
-    hit->solids = r->solids;
-    hit->interior = on->interior;
-    hit->from_inside = on->interior && dot3(r->direction, hit->n_geom) > 0.0f;
-    hit->medium = r->medium;
+    hit->media = r->media;
+    hit->solid = on->solid;
+    hit->from_inside = on->solid && dot3(r->direction, hit->n_geom) > 0.0f;
     hit->boundary = on->parts_media ? &on->media : NULL;
 }
 
@@ -233,7 +234,7 @@ static inline bool scene_occluded(const scene *s, const ray *r)
 /** @brief The solids that a point is in: those that more surfaces of are left than
  * entered on the way out, by most of a few ways. Bodies that are not closed may be
  * missed. */
-solids scene_solids_at(const scene *s, vec3 p);
+medium_stack scene_solids_at(const scene *s, vec3 p);
 
 /** @brief True if something in the scene may be in a participating medium. */
 static inline bool scene_has_media(const scene *s)
@@ -241,20 +242,24 @@ static inline bool scene_has_media(const scene *s)
     return s->media->len > 0;
 }
 
-/** @brief How far the medium that a ray starts in reaches on it. A medium that no surface
- * bounds ends where the ray leaves a sphere twice as large as scene and camera need, so
- * that light of the sky comes to them (pbrt-v4 too has lamps beyond all shine from
- * there).
- *  @param length m: to the surface that the ray meets; INFINITY: it meets none */
-float scene_medium_end(const scene *s, const ray *r, float length);
+/** @brief The participating medium of that number (medium_stack); NULL of 0. */
+static inline const medium *scene_medium(const scene *s, uint32_t number)
+{
+    return number ? s->media->pdata[number - 1] : NULL;
+}
 
-/** @brief Puts a ray that comes from beyond the scene into the medium around it, if there
- * is one. */
-void scene_come_from_outside(const scene *s, ray *r);
+/** @brief What absorbs light in the smallest of the solids; NULL: nothing. */
+static inline const medium *scene_solid_medium(const scene *s, const medium_stack *in)
+{
+    return in->solid[0] ? s->solids[in->solid[0]] : NULL;
+}
 
-/** @brief Share of light that participating media leave on a ray that nothing stands on
- * (scene_occluded): it goes through interfaces between them. */
-spectrum scene_transmittance(const scene *s, const ray *r, const wavelengths *w);
+/** @brief Share of light that the solids leave after t metres. */
+static inline spectrum scene_solid_transmittance(const scene *s, const medium_stack *in,
+                                                 float t, const wavelengths *w)
+{
+    return medium_transmittance(scene_solid_medium(s, in), t, w);
+}
 
 /** @brief True unless all is dark: there is no light, or all that there is is black. */
 static inline bool scene_is_lit(const scene *s)
@@ -326,14 +331,18 @@ static inline const light *scene_light(const scene *s, int i)
     return s->lights->pdata[i];
 }
 
-/** @brief The participating medium that light leaves a lamp into. @param n normal there,
- * as light_emission has it */
-static inline const medium *scene_light_medium(const scene *s, int i, vec3 n,
-                                               vec3 direction)
+/** @brief The participating medium that light leaves a lamp into, as in a medium_stack.
+ * @param n normal there, as light_emission has it */
+static inline uint32_t scene_light_medium(const scene *s, int i, vec3 n, vec3 direction)
 {
     const medium_interface *around = &scene_light(s, i)->media;
     return dot3(direction, n) < 0.0f ? around->inside : around->outside;
 }
+
+/** @brief Puts a ray that light takes from lamp i into the media there. One that comes
+ * from beyond the scene is moved to where the medium around it begins, if there is one.
+ * @param n as above */
+void scene_leave_light(const scene *s, int i, vec3 n, ray *r);
 
 /** @brief Index of a light's group, if the scene has groups. */
 static inline int scene_light_group(const scene *s, int i)

@@ -160,7 +160,7 @@ void scene_forget_commit(scene *s)
     g_clear_pointer(&s->environments, g_free);
     g_clear_pointer(&s->light_groups, g_strfreev);
     g_clear_pointer(&s->casters, big_free);
-    g_clear_pointer(&s->interiors, g_free);
+    g_clear_pointer(&s->solids, g_free);
     s->n_environments = s->n_casters = 0;
 }
 

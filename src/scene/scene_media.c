@@ -3,13 +3,11 @@
  */
 #include "scene/scene_media.h"
 
+#include "scene/advance.h"
 #include "scene/scene_commit.h"
 
 /* Media without bounds end at so many radii of a sphere around scene and camera. */
 #define MEDIA_REACH 2.0f
-
-/* A way crosses no more surfaces than this: a guard against endless loops only. */
-enum { MOST_CROSSINGS = 10000 };
 
 int scene_add_medium(scene *s, const char *name, const char *kind, const params *p,
                      GError **error)
@@ -32,36 +30,20 @@ int scene_find_medium(const scene *s, const char *name)
     return found ? found - 1 : NO_INDEX;
 }
 
-static const medium *medium_at(const scene *s, int index)
+static const char *name_of(const scene *s, uint32_t number)
 {
-    return index == NO_INDEX ? NULL : s->media->pdata[index];
-}
-
-static const char *name_of(const medium *m)
-{
+    const medium *m = scene_medium(s, number);
     return m ? m->name : NULL;
 }
 
 void scene_set_medium_interface(scene *s, int inside, int outside)
 {
-    const medium_interface around = {medium_at(s, inside), medium_at(s, outside)};
+    const medium_interface around = {(uint32_t)(inside + 1), (uint32_t)(outside + 1)};
     if (around.inside == s->around.inside && around.outside == s->around.outside)
         return;
     s->around = around;
-    LISTENER_TELL(s, medium_interface, name_of(around.inside), name_of(around.outside));
-}
-
-/* Takes a ray to the next surface on its way, and behind it.
-   @return how far that was; INFINITY: it meets none */
-static float cross(const scene *s, ray *r)
-{
-    surface_hit hit;
-    if (!scene_intersect_solid(s, r, &hit))
-        return INFINITY;
-    float left = r->t_max - hit.t;
-    *r = hit_ray(&hit, r->direction);
-    r->t_max = left;
-    return hit.t;
+    LISTENER_TELL(s, medium_interface, name_of(s, around.inside),
+                  name_of(s, around.outside));
 }
 
 /* Where a line leaves the sphere at which media end; < 0: it does not meet it, or before
@@ -83,36 +65,26 @@ float scene_medium_end(const scene *s, const ray *r, float length)
     return isfinite(length) ? length : maxf(sphere_end(s, r, &enters), 0.0f);
 }
 
-void scene_come_from_outside(const scene *s, ray *r)
+void scene_leave_light(const scene *s, int i, vec3 n, ray *r)
 {
+    const light *from = scene_light(s, i);
     float enters;
-    r->medium = s->outer_medium;
-    if (r->medium && sphere_end(s, r, &enters) > 0.0f && enters > 0.0f)
+    r->media = from->solids;
+    if (!from->kind->is_environment && !from->kind->is_parallel) {
+        r->media.participating = scene_light_medium(s, i, n, r->direction);
+        return;
+    }
+    r->media.participating = s->outer_medium;
+    if (s->outer_medium && sphere_end(s, r, &enters) > 0.0f && enters > 0.0f)
         r->origin += enters * r->direction;
 }
 
-spectrum scene_transmittance(const scene *s, const ray *r, const wavelengths *w)
+uint32_t scene_medium_behind(const scene *s, ray r)
 {
-    spectrum out = spectrum_fill(1.0f);
-    ray left = *r;
-    for (int i = 0; i < MOST_CROSSINGS && scene_has_media(s); i++) {
-        const medium *through = left.medium;
-        const ray way = left;
-        float t = cross(s, &left);
-        if (through)
-            out *= medium_transmittance(through,
-                                        scene_medium_end(s, &way, minf(t, way.t_max)), w);
-        if (isinf(t) || spectrum_is_black(out))
-            break;
-    }
-    return out;
-}
-
-const medium *scene_medium_behind(const scene *s, ray r)
-{
-    for (int i = 0; i < MOST_CROSSINGS && isfinite(cross(s, &r)); i++)
+    surface_hit hit;
+    for (int i = 0; i < MOST_CROSSINGS && scene_cross(s, &r, &hit); i++)
         continue;
-    return r.medium;
+    return r.media.participating;
 }
 
 void scene_find_outer_medium(scene *s)
@@ -124,7 +96,7 @@ void scene_find_outer_medium(scene *s)
                      .direction =
                          distance > 0.0f ? away / distance : (vec3){0.0f, 0.0f, 1.0f},
                      .t_max = INFINITY,
-                     .medium = c->medium_there};
+                     .media.participating = c->medium_there};
     s->outer_medium = scene_medium_behind(s, way);
     s->media_radius = MEDIA_REACH * maxf(s->radius, distance);
 }
@@ -133,10 +105,11 @@ void scene_find_eye_medium(scene *s)
 {
     camera *c = &s->camera;
     vec3 from = c->medium_at, to = transform_point(&c->to_world, (vec3){0}) - from;
-    ray way = {.origin = from, .t_max = length3(to), .medium = c->medium_there};
-    c->medium = c->medium_there;
+    ray way = {
+        .origin = from, .t_max = length3(to), .media.participating = c->medium_there};
+    c->media.participating = c->medium_there;
     if (!scene_has_media(s) || !(way.t_max > 0.0f) || !isfinite(way.t_max))
         return;
     way.direction = to / way.t_max;
-    c->medium = scene_medium_behind(s, way);
+    c->media.participating = scene_medium_behind(s, way);
 }

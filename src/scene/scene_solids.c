@@ -7,9 +7,9 @@
  */
 #include "scene/scene_solids.h"
 
-#include <string.h>
+#include "scene/advance.h"
 
-enum { N_WAYS = 3, MOST_CROSSINGS = 1000 };
+enum { N_WAYS = 3 };
 
 /* ---- Which there are ---- */
 
@@ -34,103 +34,142 @@ static float *object_scales(const scene *s)
     return scales;
 }
 
-static void find_interiors(scene *s)
+/* What a material fills: as large as the largest shape that has it. */
+typedef struct filling {
+    const medium *medium; /* NULL: clear */
+    float size;           /* m; 0: the material bounds no solid */
+    int material;
+} filling;
+
+static const material *bounding_material(const scene *s, const shape *on)
+{
+    const material *of =
+        on->material == NO_INDEX ? NULL : s->materials->pdata[on->material];
+    return of && (material_interior(of) || material_encloses(of)) ? of : NULL;
+}
+
+static filling *find_fillings(const scene *s)
 {
     g_autofree float *scales = object_scales(s);
-    s->interiors = g_new0(interior, s->materials->len);
+    filling *all = g_new0(filling, MAX(s->materials->len, 1));
+    for (guint i = 0; i < s->materials->len; i++)
+        all[i].material = (int)i;
     for (guint i = 0; i < s->shapes->len; i++) {
-        shape *on = s->shapes->pdata[i];
-        const material *of =
-            on->material == NO_INDEX ? NULL : s->materials->pdata[on->material];
-        if (!of || !(material_interior(of) || material_encloses(of)))
+        const shape *on = s->shapes->pdata[i];
+        const material *of = bounding_material(s, on);
+        if (!of)
             continue;
-        interior *in = &s->interiors[on->material];
+        filling *in = &all[on->material];
         float scale = on->object == NO_INDEX ? 1.0f : scales[on->object];
         box3 box = on->kind->bounds(on->self);
         in->medium = material_interior(of);
         in->size = maxf(in->size, scale * length3(box.high - box.low));
-        on->interior = in;
+    }
+    return all;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const filling *x = a, *y = b;
+    int order = (x->size > y->size) - (x->size < y->size);
+    return order ? order : x->material - y->material;
+}
+
+/* Gives each solid its rank by size. */
+static void rank_solids(scene *s)
+{
+    g_autofree filling *all = find_fillings(s);
+    g_autofree uint32_t *ranks = g_new0(uint32_t, MAX(s->materials->len, 1));
+    qsort(all, s->materials->len, sizeof *all, by_size);
+    s->solids = g_new0(const medium *, s->materials->len + 1);
+    for (guint i = 0; i < s->materials->len; i++) {
+        s->solids[i + 1] = all[i].medium;
+        ranks[all[i].material] = i + 1;
+    }
+    for (guint i = 0; i < s->shapes->len; i++) {
+        shape *on = s->shapes->pdata[i];
+        on->solid = bounding_material(s, on) ? ranks[on->material] : 0;
     }
 }
 
 /* ---- What stands in them ---- */
 
 /* Crossings on the way out: from the front counts up, from behind down. */
-static solids left_on_the_way(const scene *s, vec3 p, vec3 direction)
+static medium_stack left_on_the_way(const scene *s, vec3 p, vec3 direction)
 {
     g_autofree int *entered = g_new0(int, s->materials->len);
-    solids found = {0};
+    medium_stack found = {0};
     ray r = {.origin = p, .direction = direction, .t_max = INFINITY, .time = 0.5f};
     surface_hit hit;
-    for (int i = 0; i < MOST_CROSSINGS && scene_intersect_solid(s, &r, &hit); i++) {
-        if (hit.interior && !hit.from_inside)
+    for (int i = 0; i < MOST_CROSSINGS && scene_cross(s, &r, &hit); i++) {
+        if (hit.solid && !hit.from_inside)
             entered[hit.material]++;
-        else if (hit.interior && entered[hit.material]-- <= 0) {
-            found = solids_enter(found, hit.interior);
+        else if (hit.solid && entered[hit.material]-- <= 0) {
+            found = medium_stack_enter(found, hit.solid);
             entered[hit.material] = 0;
         }
-        r = hit_ray(&hit, direction);
     }
     return found;
 }
 
-static bool is_among(const solids *all, const interior *in, int n)
+static bool is_among(const medium_stack *all, uint32_t solid)
 {
-    for (int i = 0; i < SOLIDS_MOST && in; i++)
-        n -= all->of[i] == in;
-    return n <= 0;
+    for (int i = 0; i < SOLIDS_MOST; i++)
+        if (all->solid[i] == solid)
+            return true;
+    return false;
 }
 
-solids scene_solids_at(const scene *s, vec3 p)
+medium_stack scene_solids_at(const scene *s, vec3 p)
 {
     /* Along no axis and no plane of symmetry, and not all to one side. */
     static const vec3 ways[N_WAYS] = {{0.2711f, 0.5023f, 0.8211f},
                                       {-0.7517f, 0.5531f, -0.3593f},
                                       {0.3469f, -0.8363f, -0.4246f}};
-    solids found[N_WAYS], most = {0};
-    if (!s->interiors)
+    medium_stack found[N_WAYS], most = {0};
+    if (!s->solids)
         return most;
     for (int i = 0; i < N_WAYS; i++)
         found[i] = left_on_the_way(s, p, normalize3(ways[i]));
     for (int i = 0; i < N_WAYS - 1; i++)
-        for (int k = 0; k < SOLIDS_MOST && found[i].of[k]; k++) {
-            const interior *in = found[i].of[k];
-            if (!is_among(&most, in, 1) && is_among(&found[0], in, 1) +
-                                                   is_among(&found[1], in, 1) +
-                                                   is_among(&found[2], in, 1) >=
-                                               2)
-                most = solids_enter(most, in);
+        for (int k = 0; k < SOLIDS_MOST && found[i].solid[k]; k++) {
+            uint32_t in = found[i].solid[k];
+            int n = is_among(&found[0], in) + is_among(&found[1], in) +
+                    is_among(&found[2], in);
+            if (n >= 2 && !is_among(&most, in))
+                most = medium_stack_enter(most, in);
         }
     return most;
 }
 
 /* Where a lamp's photons start; of lamps that are not beyond the scene. */
-static solids solids_of_light(const scene *s, const light *l)
+static medium_stack solids_of_light(const scene *s, const light *l)
 {
     const wavelengths w = wavelengths_at(0.5f);
     const vec2 middle = {0.5f, 0.5f};
     light_emission e = {0};
     if (l->kind->is_environment || l->kind->is_parallel)
-        return (solids){0};
+        return (medium_stack){0};
     l->kind->emit(l->self, &w, 0.5f, middle, (vec2){0.4f, 0.3f}, &e);
-    return finite3(e.ray.origin) ? scene_solids_at(s, e.ray.origin) : (solids){0};
+    return finite3(e.ray.origin) ? scene_solids_at(s, e.ray.origin) : (medium_stack){0};
 }
 
 void scene_find_eye_solids(scene *s)
 {
     transform at = motion_at(&s->camera.path, (double)s->camera.shutter_open);
     const transform *to_world = s->camera.path.moves ? &at : &s->camera.to_world;
-    s->camera.solids =
+    uint32_t participating = s->camera.media.participating;
+    s->camera.media =
         scene_solids_at(s, transform_point(to_world, vec3_make(0.0f, 0.0f, 0.0f)));
+    s->camera.media.participating = participating;
 }
 
 void scene_find_solids(scene *s)
 {
-    s->interiors = NULL;
-    s->camera.solids = (solids){0};
+    s->solids = NULL;
     if (!anything_absorbs(s))
         return;
-    find_interiors(s);
+    rank_solids(s);
     scene_find_eye_solids(s);
     for (guint i = 0; i < s->lights->len; i++) {
         light *l = s->lights->pdata[i];

@@ -87,9 +87,10 @@ struct shape {
     int material;
     int light; /**< index in scene->lights or NO_INDEX */
     bool camera_hidden;
-    const interior *interior; /**< its material's, once the scene is committed */
-    medium_interface media;   /**< around it when it was added */
-    bool parts_media;         /**< they differ */
+    uint32_t solid;         /**< that it bounds, as in a medium_stack, once the scene is
+                               committed; 0: none */
+    medium_interface media; /**< around it when it was added */
+    bool parts_media;       /**< they differ */
     bool is_invisible; /**< alpha is 0 everywhere: no ray meets it, but it may shine */
     bool has_alpha;
     float_input alpha;

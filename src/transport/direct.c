@@ -4,13 +4,12 @@
 static bool visible(const direct_query *query, const light_sample *to_light,
                     spectrum *transmittance, uint64_t *shadow_rays_traced)
 {
-    ray shadow = hit_ray_to(query->hit, to_light->wi, to_light->distance);
+    const ray shadow = hit_ray_to(query->hit, to_light->wi, to_light->distance);
     *shadow_rays_traced += query->shadow_rays;
     if (query->shadow_rays && scene_occluded(query->scene, &shadow))
         return false;
-    *transmittance =
-        hit_transmittance_to(query->hit, to_light->wi, to_light->distance, query->w) *
-        scene_transmittance(query->scene, &shadow, query->w);
+    *transmittance = scene_transmittance_to(query->scene, query->hit, to_light->wi,
+                                            to_light->distance, query->w);
     return true;
 }
 
@@ -125,8 +124,8 @@ bool direct_pivot(const scene *s, const wavelengths *w, const ray *r, float leng
     int lamp;
     const light_numbers u = sampler_light(random);
     float u_way = sampler_1d(random);
-    medium_sample any =
-        medium_sample_within(r->medium, w, spectrum_fill(1.0f), length, u_way);
+    medium_sample any = medium_sample_within(scene_medium(s, r->media.participating), w,
+                                             spectrum_fill(1.0f), length, u_way);
     vec3 from = r->origin + any.t * r->direction;
     if (!any.scatters ||
         !scene_sample_light(s, w, from, u.light, u.primitive, u.place, &lamp,
@@ -137,9 +136,33 @@ bool direct_pivot(const scene *s, const wavelengths *w, const ray *r, float leng
     return true;
 }
 
-float direct_light_pdf(const scene *s, bool every_light, int lamp, vec3 from, vec3 wi,
-                       const surface_hit *hit)
+void direct_meet(const scene *s, const wavelengths *w, const ray *r,
+                 const surface_hit *hit, void (*tell)(void *path, const met_light *met),
+                 void *path)
 {
-    return samples_each(s, every_light) ? scene_one_light_pdf(s, lamp, from, wi, hit)
-                                        : scene_light_pdf(s, lamp, from, wi, hit);
+    if (hit && hit->light != NO_INDEX) {
+        const met_light met = {hit->light, scene_emitted(s, hit, -r->direction, w), hit};
+        if (!spectrum_is_black(met.radiance))
+            tell(path, &met);
+    }
+    for (int i = 0; i < s->n_environments && !hit; i++) {
+        const light *l = scene_light(s, s->environments[i]);
+        const met_light met = {s->environments[i],
+                               l->kind->environment(l->self, r->origin, r->direction, w),
+                               NULL};
+        tell(path, &met);
+    }
+}
+
+float direct_met_weight(const scene *s, const settings *how, const scattered_from *from,
+                        vec3 direction, const met_light *met)
+{
+    if (!(from->pdf > 0.0f) || !how->direct_illumination)
+        return 1.0f;
+    if (!how->shadow_rays)
+        return 0.0f;
+    float pdf = samples_each(s, from->every_light)
+                    ? scene_one_light_pdf(s, met->light, from->p, direction, met->hit)
+                    : scene_light_pdf(s, met->light, from->p, direction, met->hit);
+    return followed_weight(from->pdf, pdf);
 }

@@ -8,7 +8,7 @@
 #include "math/sampler.h"
 #include "medium/medium_sample.h"
 #include "photon/share.h"
-#include "scene/scene.h"
+#include "scene/advance.h"
 
 /** @brief What to evaluate at a surface, and how its lobes find light otherwise. */
 typedef struct direct_query {
@@ -50,12 +50,31 @@ int direct_light(const direct_query *query, sampler *random,
 bool direct_pivot(const scene *s, const wavelengths *w, const ray *r, float length,
                   sampler *random, medium_pivot *out);
 
-/** @brief pdf_solid_angle with which direct_light at point `from` samples a light in
- *  direction wi.
- *  @param every_light as in the query
- *  @param hit on the light; NULL for environments */
-float direct_light_pdf(const scene *s, bool every_light, int lamp, vec3 from, vec3 wi,
-                       const surface_hit *hit);
+/** @brief A light that a path from the eye ran into. */
+typedef struct met_light {
+    int light;
+    spectrum radiance;      /**< that it sends back along the path */
+    const surface_hit *hit; /**< on it; NULL: it is an environment */
+} met_light;
+
+/** @brief Tells of each light that a ray ran into: the one on the surface at its end, or
+ * all environments. @param hit NULL: the ray left the scene */
+void direct_meet(const scene *s, const wavelengths *w, const ray *r,
+                 const surface_hit *hit, void (*tell)(void *path, const met_light *met),
+                 void *path);
+
+/** @brief Where a path scattered last. */
+typedef struct scattered_from {
+    vec3 p;
+    float pdf; /**< solid angle, of the direction that was drawn; 0: specular, or the eye,
+                  where lights are not sampled */
+    bool every_light; /**< as direct_query had it there */
+} scattered_from;
+
+/** @brief Weight of a light that a path ran into, beside sampling it from where the path
+ * scattered last. */
+float direct_met_weight(const scene *s, const settings *how, const scattered_from *from,
+                        vec3 direction, const met_light *met);
 
 /** @brief Weight of a followed direction of density pdf_bsdf that hit a light which light
  * sampling would have found with density pdf_light. */

@@ -1,5 +1,7 @@
 #include "transport/visible.h"
 
+#include "scene/advance.h"
+
 #include <stdlib.h>
 
 enum { MAX_BOUNCES = 16, PIXEL_POINTS = 128 };
@@ -17,22 +19,22 @@ typedef struct lookout {
 } lookout;
 
 /* Follows a camera ray to the first surface that gathers. */
-static bool find_one(const lookout *from, ray r, sampler *random, visible_point *out)
+static bool find_one(const lookout *from, const ray *r, sampler *random,
+                     visible_point *out)
 {
+    uint64_t untold = 0;
+    const scene_traveller who = {.scene = from->scene, .w = &from->w, .n_rays = &untold};
+    path_segment path = path_segment_from_eye(r);
     float way = 0.0f;
-    for (int bounces = 0; bounces < MAX_BOUNCES;) {
+    for (int bounces = 0; bounces < MAX_BOUNCES; bounces++) {
         surface_hit hit;
         bsdf b;
         bsdf_sample next;
-        bool met = bounces == 0 ? scene_see(from->scene, &r, &hit)
-                                : scene_intersect(from->scene, &r, &hit);
-        if (!met)
+        vec3 start = path.ray.origin;
+        if (scene_advance(&who, &path, &hit) != EVENT_SURFACE)
             return false;
-        way += hit.t;
-        if (!scene_bsdf(from->scene, &hit, &from->w, ALL_LANES, &from->options, &b)) {
-            r = hit_ray(&hit, r.direction);
-            continue;
-        }
+        way += length3(hit.p - start);
+        scene_bsdf(from->scene, &hit, &from->w, ALL_LANES, &from->options, &b);
         if (b.lobes & LOBE_DIFFUSE) {
             float area = camera_pixel_area(&from->scene->camera, way);
             *out = (visible_point){hit.p, sqrtf(area)};
@@ -40,11 +42,11 @@ static bool find_one(const lookout *from, ray r, sampler *random, visible_point 
         }
         float u_lobe = sampler_1d(random);
         vec2 u = sampler_2d(random);
-        if (!bsdf_sample_direction(&b, -r.direction, u_lobe, u, LOBE_FOLLOWED,
+        if (!bsdf_sample_direction(&b, -path.ray.direction, u_lobe, u, LOBE_FOLLOWED,
                                    TRANSPORT_RADIANCE, &next))
             return false;
-        r = hit_ray(&hit, next.wi);
-        bounces++;
+        path.ray = hit_ray(&hit, next.wi);
+        path.from_eye = false;
     }
     return false;
 }
@@ -62,7 +64,7 @@ size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point
         vec2 raster = {u.x * (float)c->width, u.y * (float)c->height};
         vec2 u_lens = sampler_2d(&random);
         ray r = camera_ray(c, raster, u_lens, sampler_1d(&random));
-        found += find_one(&from, r, &random, &out[found]);
+        found += find_one(&from, &r, &random, &out[found]);
     }
     return found;
 }

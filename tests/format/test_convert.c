@@ -151,11 +151,13 @@ static void test_media(void)
 
 /* ---- Participating media: the same ones, and around the same things ---- */
 
-static void append_names(GString *out, const char *what, const medium *inside,
-                         const medium *outside)
+/* Of media by their numbers in a medium_stack. */
+static void append_names(GString *out, const char *what, const scene *s, uint32_t inside,
+                         uint32_t outside)
 {
-    g_string_append_printf(out, "%s %s|%s\n", what, inside ? inside->name : "",
-                           outside ? outside->name : "");
+    const medium *in = scene_medium(s, inside), *beyond = scene_medium(s, outside);
+    g_string_append_printf(out, "%s %s|%s\n", what, in ? in->name : "",
+                           beyond ? beyond->name : "");
 }
 
 static void append_medium(GString *out, const medium *m)
@@ -173,15 +175,15 @@ static char *media_of(const char *path)
     g_autoptr(scene) s = format_load(path, 1, NULL, &error);
     g_assert_no_error(error);
     GString *out = g_string_new(NULL);
-    append_names(out, "camera", NULL, s->camera.medium);
+    append_names(out, "camera", s, 0, s->camera.media.participating);
     for (guint i = 0; i < s->media->len; i++)
         append_medium(out, s->media->pdata[i]);
     for (guint i = 0; i < s->shapes->len; i++) {
         const shape *one = s->shapes->pdata[i];
-        append_names(out, "shape", one->media.inside, one->media.outside);
+        append_names(out, "shape", s, one->media.inside, one->media.outside);
     }
     for (guint i = 0; i < s->lights->len; i++)
-        append_names(out, "light", scene_light(s, (int)i)->media.inside,
+        append_names(out, "light", s, scene_light(s, (int)i)->media.inside,
                      scene_light(s, (int)i)->media.outside);
     return g_string_free(out, FALSE);
 }

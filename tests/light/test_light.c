@@ -131,7 +131,7 @@ static double error_of(const tally *t)
 
 static bool lies_before(const lamp *a, vec3 from, vec3 direction, float distance)
 {
-    ray r = {from, direction, distance * 0.9999f, 0, {{NULL}}, NULL};
+    ray r = {from, direction, distance * 0.9999f, 0, {{0}, 0}};
     return a->around && accel_occluded(a->around, &r);
 }
 
@@ -376,7 +376,7 @@ static float sampled_density(const lamp *a, vec3 ref, vec3 direction)
 {
     if (!a->on)
         return a->l->kind->pdf(a->l->self, ref, direction, NULL);
-    ray r = {ref, direction, INFINITY, 0, {{NULL}}, NULL};
+    ray r = {ref, direction, INFINITY, 0, {{0}, 0}};
     surface_hit hit;
     float sum = 0;
     /* samples fall on far sides too: all hits on the line count */
@@ -548,7 +548,7 @@ static void test_sides(void)
             bool found =
                 a.l->kind->sample(a.l->self, &w, ref, 0.3f, (vec2){0.2f, 0.6f}, &to);
             g_assert_cmpint(found, ==, lit);
-            ray r = {ref, {0, 0, -ref[2]}, INFINITY, 0, {{NULL}}, NULL};
+            ray r = {ref, {0, 0, -ref[2]}, INFINITY, 0, {{0}, 0}};
             surface_hit hit;
             g_assert_true(accel_intersect(a.around, &r, &hit));
             spectrum seen = a.l->kind->radiance(a.l->self, &hit, -r.direction, &w);

@@ -4,6 +4,7 @@
  * the eye is found in the right medium after it was moved.
  */
 #include "api/objects.h"
+#include "scene/advance.h"
 #include "scene/scene_media.h"
 #include "scene_text.h"
 
@@ -196,13 +197,14 @@ static const crossing crossings[] = {
      0},
 };
 
-static const medium *medium_named(const scene *s, const char *name)
+/* As in a medium_stack. */
+static uint32_t medium_named(const scene *s, const char *name)
 {
     if (!name)
-        return NULL;
+        return 0;
     int found = scene_find_medium(s, name);
     g_assert_cmpint(found, !=, NO_INDEX);
-    return s->media->pdata[found];
+    return (uint32_t)found + 1;
 }
 
 static ray ray_of(const scene *s, const crossing *c)
@@ -213,7 +215,7 @@ static ray ray_of(const scene *s, const crossing *c)
     return (ray){.origin = from,
                  .direction = normalize3(way),
                  .t_max = length3(way),
-                 .medium = medium_named(s, c->in)};
+                 .media.participating = medium_named(s, c->in)};
 }
 
 /* The coloured one: sigma_a runs from 1 at 300 nm to 7 at 900. */
@@ -273,7 +275,7 @@ static void test_endless(void)
     r.origin = vec3_make(0, 0, 2); /* away from it */
     g_assert_cmpfloat(scene_transmittance(s, &r, &w)[0], ==, 1.0f);
     /* What nothing bounds ends at a sphere that holds the box, of half-diagonal √8.25. */
-    r.medium = medium_named(s, "a");
+    r.media.participating = medium_named(s, "a");
     float end = s->center[2] + s->media_radius - 2;
     g_assert_cmpfloat(s->media_radius, >, sqrtf(8.25f));
     g_assert_cmpfloat(fabsf(scene_transmittance(s, &r, &w)[0] - expf(-.5f * end)), <,
@@ -334,12 +336,13 @@ static void check_stands(const char *text)
         neph_scene_camera(s, &c);
         memcpy(c.position, stands[i].at, sizeof c.position);
         g_assert_true(neph_scene_set_camera(s, &c, &error));
-        const medium *in = s->scene->camera.medium;
+        uint32_t seen = s->scene->camera.media.participating;
+        const medium *in = scene_medium(s->scene, seen);
         if (g_strcmp0(in ? in->name : NULL, stands[i].in) != 0)
             g_error("stand %zu: in \"%s\", expected \"%s\"", i, in ? in->name : "",
                     stands[i].in ? stands[i].in : "");
         const ray r = camera_ray(&s->scene->camera, (vec2){1, 1}, (vec2){.5f, .5f}, 0);
-        g_assert_true(r.medium == in);
+        g_assert_true(r.media.participating == seen);
     }
     neph_scene_free(s);
     folder_remove(&f);
@@ -362,14 +365,14 @@ static void test_eye_in_endless_fog(void)
     g_autoptr(scene) s =
         scene_of(MEDIA BETWEEN("", "b") "Camera \"perspective\" " BEGIN BETWEEN(
             "", "b") "Translate 0 0 5 " BALL("1"));
-    const medium *b = medium_named(s, "b");
+    uint32_t b = medium_named(s, "b");
     static const double z[] = {0, 5, 5.9, 20, 4.1, 3.9, -100};
-    g_assert_true(s->camera.medium == b);
+    g_assert_true(s->camera.media.participating == b);
     for (size_t i = 0; i < G_N_ELEMENTS(z); i++) {
         s->camera.to_world = transform_translate(0, 0, z[i]);
         s->camera.path = motion_still(&s->camera.to_world);
         scene_find_eye_medium(s);
-        g_assert_true(s->camera.medium == (fabs(z[i] - 5) < 1 ? NULL : b));
+        g_assert_true(s->camera.media.participating == (fabs(z[i] - 5) < 1 ? 0 : b));
     }
 }
 

@@ -41,7 +41,7 @@ static double phase(double g, double cosine)
 
 /* Σ T p κ Φ of one wavelength over the photons of one tag, by definition. */
 static double seen(const photon_store *store, const float *radii, const ray *r,
-                   double length, int lane, double sigma_t, uint32_t tag)
+                   const medium *m, double length, int lane, double sigma_t, uint32_t tag)
 {
     double sum = 0;
     for (size_t i = 0; i < store->n; i++) {
@@ -52,11 +52,10 @@ static double seen(const photon_store *store, const float *radii, const ray *r,
         for (int k = 0; k < 3; k++)
             d2 += pow((double)p.p[k] - (double)r->origin[k] - t * (double)r->direction[k],
                       2);
-        if (p.home != medium_home(r->medium) || p.tag != tag || t <= 0 || t >= length ||
-            d2 >= r2)
+        if (p.home != medium_home(m) || p.tag != tag || t <= 0 || t >= length || d2 >= r2)
             continue;
         double turn = -(double)dot3(p.wi, -r->direction);
-        sum += exp(-sigma_t * t) * phase((double)r->medium->g, turn) * (1 - d2 / r2) /
+        sum += exp(-sigma_t * t) * phase((double)m->g, turn) * (1 - d2 / r2) /
                (0.5 * G_PI * r2) * (double)p.flux[lane];
     }
     return sum;
@@ -83,9 +82,10 @@ static void test_against_the_sum(void)
         vec2 a = sampler_2d(&random), b = sampler_2d(&random);
         vec3 from = vec3_make(a.x, a.y, b.x - 0.2f), to = vec3_make(b.y, a.x, a.y);
         m.index = (int)(i % 2);
-        const ray r = {.origin = from, .direction = normalize3(to - from), .medium = &m};
+        const ray r = {.origin = from, .direction = normalize3(to - from)};
         spectrum groups[3];
         const volume_query query = {.ray = &r,
+                                    .medium = &m,
                                     .length = 0.2f + sampler_1d(&random),
                                     .w = &w,
                                     .kernel = {KERNEL_EPANECHNIKOV, 1},
@@ -98,7 +98,7 @@ static void test_against_the_sum(void)
         for (int lane = 0; lane < N_LANES; lane += 3) {
             double whole = 0;
             for (uint32_t tag = 0; tag < 3; tag++) {
-                double is = seen(&store, radii, &r, (double)query.length, lane,
+                double is = seen(&store, radii, &r, &m, (double)query.length, lane,
                                  (double)sigma_t[lane], tag);
                 whole += is;
                 g_assert_cmpfloat(fabs((double)groups[tag][lane] - is), <,

@@ -122,7 +122,7 @@ static void test_hits_know_material_and_light(void)
     const int materials[4] = {0, 1, 0, NO_INDEX}, lights[4] = {NO_INDEX, NO_INDEX, 0, 1};
     const float x[4] = {0, 0, -2, 2}, z[4] = {-3, 0, 2, 2};
     for (int i = 0; i < 4; i++) {
-        ray r = {{x[i], -10, z[i]}, {0, 1, 0}, INFINITY, 0, {{NULL}}, NULL};
+        ray r = {{x[i], -10, z[i]}, {0, 1, 0}, INFINITY, 0, {{0}, 0}};
         surface_hit hit;
         bsdf b;
         g_assert_true(scene_intersect(s, &r, &hit));
@@ -137,7 +137,7 @@ static void test_hits_know_material_and_light(void)
         g_assert_cmpint(!spectrum_is_black(out), ==, lights[i] != NO_INDEX);
         g_assert_true(spectrum_is_black(scene_emitted(s, &hit, r.direction, &w)));
     }
-    ray away = {{0, -10, 0}, {0, -1, 0}, INFINITY, 0, {{NULL}}, NULL};
+    ray away = {{0, -10, 0}, {0, -1, 0}, INFINITY, 0, {{0}, 0}};
     surface_hit hit;
     g_assert_false(scene_intersect(s, &away, &hit));
     g_assert_false(spectrum_is_black(sky_at(s, away.direction, &w)));
@@ -170,7 +170,7 @@ static void test_sampling_agrees_with_density(void)
                 fabsf(scene_light_pdf(s, index, ref, to.wi, NULL) / to.pdf - 1), <, 1e-5);
             continue;
         }
-        ray r = {ref, to.wi, INFINITY, 0, {{NULL}}, NULL};
+        ray r = {ref, to.wi, INFINITY, 0, {{0}, 0}};
         surface_hit hit;
         if (!scene_intersect(s, &r, &hit) || hit.light != index)
             continue; /* grazing */

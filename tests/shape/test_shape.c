@@ -234,7 +234,7 @@ static shape *one_triangle(const shape_place *at, const float *normal)
 static void test_orientation(void)
 {
     static const float tilted_down[3] = {0.6f, 0, -0.8f};
-    const ray r = {{0.2f, 0.2f, 1.0f}, {0, 0, -1.0f}, INFINITY, 0, {{NULL}}, NULL};
+    const ray r = {{0.2f, 0.2f, 1.0f}, {0, 0, -1.0f}, INFINITY, 0, {{0}, 0}};
     for (int i = 0; i < 8; i++) {
         bool reverse = i & 1, mirror = i & 2, normals = i & 4;
         shape_place at = {.to_world = transform_identity(),
@@ -276,7 +276,7 @@ static void test_uv_and_tangents(void)
         shape *s = shape_new("trianglemesh", p, &at, NULL);
         accel *a = accel_of(&s, 1);
         surface_hit hit;
-        ray r = {{1.0f, 0.75f, 1.0f}, {0, 0, -1.0f}, INFINITY, 0, {{NULL}}, NULL};
+        ray r = {{1.0f, 0.75f, 1.0f}, {0, 0, -1.0f}, INFINITY, 0, {{0}, 0}};
         g_assert_true(accel_intersect(a, &r, &hit));
         vec3 expected[3] = {vec3_make(2, 0, 0), vec3_make(0, 3, 0), vec3_make(0, 0, 5)};
         g_assert_cmpfloat(length3(hit.dpdu - expected[i]), <, 1e-5);
@@ -485,7 +485,7 @@ static void test_degenerate_triangles_are_harmless(void)
 static void test_empty_accel(void)
 {
     accel *a = accel_of(NULL, 0);
-    ray r = {{0}, {0, 0, 1}, INFINITY, 0, {{NULL}}, NULL};
+    ray r = {{0}, {0, 0, 1}, INFINITY, 0, {{0}, 0}};
     surface_hit hit;
     g_assert_false(accel_intersect(a, &r, &hit));
     g_assert_false(accel_occluded(a, &r));

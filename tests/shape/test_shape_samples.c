@@ -190,7 +190,7 @@ static void test_sphere_samples_are_seen(void)
         shape_sample to;
         vec2 u = sampler_2d(&random);
         g_assert_true(shape_sample_toward(s, ref, 0.5f, u, &to));
-        ray r = {ref, normalize3(to.p - ref), INFINITY, 0, {{NULL}}, NULL};
+        ray r = {ref, normalize3(to.p - ref), INFINITY, 0, {{0}, 0}};
         surface_hit hit;
         if (u.x > 0.999f) /* grazing */
             continue;

@@ -113,7 +113,7 @@ static void test_patch_is_where_it_is(void)
         vec2 uv = sampler_2d(&random);
         vec3 p = transform_point(&at.to_world, twisted_point(uv.x, uv.y));
         vec3 d = warp_sphere(sampler_2d(&random));
-        ray r = {p - 5.0f * d, d, INFINITY, 0, {{NULL}}, NULL};
+        ray r = {p - 5.0f * d, d, INFINITY, 0, {{0}, 0}};
         surface_hit hit = {0};
         g_assert_true(accel_intersect(a, &r, &hit));
         g_assert_cmpfloat(hit.t, <, 5.0f + 1e-4f);
@@ -198,7 +198,7 @@ static void test_patch_parameters(void)
     params_add_integers(p, here, PARAM_INTEGER, "faceIndices", faces, 2, NULL);
     shape *s = make_shape("bilinearmesh", p, &at);
     accel *a = accel_of(&s, 1);
-    ray r = {{1.5f, 0.25f, 3}, {0, 0, -1}, INFINITY, 0, {{NULL}}, NULL};
+    ray r = {{1.5f, 0.25f, 3}, {0, 0, -1}, INFINITY, 0, {{0}, 0}};
     surface_hit hit;
     g_assert_true(accel_intersect(a, &r, &hit));
     g_assert_cmpuint(hit.primitive, ==, 1);
@@ -399,7 +399,7 @@ static void test_bent_tube(void)
             if (dot3(d, n) > -0.2f)
                 continue;
             vec3 target = c + radius * n;
-            ray r = {target - 4.0f * d, d, INFINITY, 0, {{NULL}}, NULL};
+            ray r = {target - 4.0f * d, d, INFINITY, 0, {{0}, 0}};
             surface_hit hit = {0};
             g_assert_true(accel_intersect(a, &r, &hit));
             g_assert_cmpfloat(hit.t, <, 4.0f + 1e-4f);
@@ -437,7 +437,7 @@ static void test_flat_curve_width(void)
         float off = 0.12f * (sampler_1d(&random) - 0.5f);
         vec3 o = transform_point(&at.to_world, c + off * side - 3.0f * d);
         vec3 to = transform_vector(&at.to_world, d);
-        ray r = {o, normalize3(to), INFINITY, 0, {{NULL}}, NULL};
+        ray r = {o, normalize3(to), INFINITY, 0, {{0}, 0}};
         surface_hit hit;
         bool met = accel_intersect(a, &r, &hit);
         if (fabsf(off) < 0.0495f) {
@@ -479,8 +479,7 @@ static void test_ribbon(void)
                      -normalize3(transform_vector(&at.to_world, d)),
                      INFINITY,
                      0,
-                     {{NULL}},
-                     NULL};
+                     {{0}, 0}};
             surface_hit hit;
             bool met = accel_intersect(a, &r, &hit);
             if (fabsf(side) < 0.299f) {
@@ -584,8 +583,7 @@ static void test_cut_outs_stop_their_share(void)
         for (uint32_t i = 0; i < n; i++) {
             sampler random = sampler_make(71, i);
             vec2 u = sampler_2d(&random);
-            ray r = {
-                {u.x - 0.5f, u.y - 0.5f, 4}, {0, 0, -1}, INFINITY, 0, {{NULL}}, NULL};
+            ray r = {{u.x - 0.5f, u.y - 0.5f, 4}, {0, 0, -1}, INFINITY, 0, {{0}, 0}};
             surface_hit hit, again;
             bool met = accel_intersect(a, &r, &hit);
             stopped += met && hit.p[2] > -1e-3f;

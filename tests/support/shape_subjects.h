@@ -93,7 +93,7 @@ static inline ray random_ray(sampler *s, const transform *to_world)
     vec3 to = 1.2f * sampler_1d(s) * warp_sphere(sampler_2d(s));
     o = transform_point(to_world, o);
     to = transform_point(to_world, to);
-    return (ray){o, normalize3(to - o), INFINITY, 0, {{NULL}}, NULL};
+    return (ray){o, normalize3(to - o), INFINITY, 0, {{0}, 0}};
 }
 
 enum { SOUP = 150 };

@@ -1,10 +1,7 @@
 #include "photon/trace/emit.h"
 
 #include "math/warp.h"
-
-/* A ray crosses no more surfaces than this on its way through the scene: only a guard
-   against endless loops on degenerate geometry. */
-enum { MAX_CROSSINGS = 4096 };
+#include "scene/advance.h"
 
 static bool casts_caustics(const scene *s, const surface_hit *hit)
 {
@@ -19,25 +16,18 @@ static vec3 caustic_target(const scene *s, float time, sampler *random)
     return scene_caustic_target(s, u_shape, sampler_2d(random), time);
 }
 
-/* Moves on to the next surface along a ray, cut-outs taken as solid as targets on them
-   are; distance grows by the way made. */
-static bool next_crossing(const scene *s, ray *r, float *distance, surface_hit *hit)
-{
-    if (!scene_intersect_solid(s, r, hit))
-        return false;
-    *distance += length3(hit->p - r->origin);
-    *r = hit_ray(hit, r->direction);
-    return true;
-}
-
 /* The density with which targets chosen by area give this ray: per solid angle at its
-   origin, or for parallel light per area across it. */
+   origin, or for parallel light per area across it. Cut-outs are solid, as targets on
+   them are. */
 static double aimed_density(const scene *s, ray r, bool parallel)
 {
     double density = 0.0;
     float distance = 0.0f;
+    vec3 from = r.origin;
     surface_hit hit;
-    for (int i = 0; i < MAX_CROSSINGS && next_crossing(s, &r, &distance, &hit); i++) {
+    for (int i = 0; i < MOST_CROSSINGS && scene_cross(s, &r, &hit); i++) {
+        distance += length3(hit.p - from);
+        from = r.origin;
         if (casts_caustics(s, &hit)) {
             double cosine = fabs((double)dot3(hit.n_geom, r.direction));
             double d2 = parallel ? 1.0 : (double)distance * (double)distance;
@@ -48,15 +38,13 @@ static double aimed_density(const scene *s, ray r, bool parallel)
 }
 
 /* True if the first surface that stops the ray casts caustics. */
-static bool meets_caster(const scene *s, ray r)
+static bool meets_caster(const scene *s, const wavelengths *w, ray r)
 {
+    uint64_t untold = 0;
+    const scene_traveller who = {.scene = s, .w = w, .n_rays = &untold};
+    path_segment way = {.ray = r};
     surface_hit hit;
-    for (int i = 0; i < MAX_CROSSINGS && scene_intersect(s, &r, &hit); i++) {
-        if (hit.material != NO_INDEX)
-            return casts_caustics(s, &hit);
-        r = hit_ray(&hit, r.direction);
-    }
-    return false;
+    return scene_advance(&who, &way, &hit) == EVENT_SURFACE && casts_caustics(s, &hit);
 }
 
 /* Chooses a light by power; *u becomes uniform again. */
@@ -92,7 +80,7 @@ bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
     if (!l->kind->emit_toward(l->self, w, u_primitive, u, target, &emission))
         return false;
     emission.ray.time = out->ray.time;
-    if (!meets_caster(s, emission.ray) ||
+    if (!meets_caster(s, w, emission.ray) ||
         (l->kind->admits && !l->kind->admits(l->self, &emission.ray)))
         return false;
     double density = aimed_density(s, emission.ray, l->kind->is_parallel);

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "medium/medium_sample.h"
 #include "photon/trace/trace_chunk.h"
+#include "scene/advance.h"
 
 /* Photons emitted per parallel piece of work. */
 enum { CHUNK = 4096 };
@@ -15,9 +16,8 @@ typedef struct photon_path {
     const trace_task *task;
     uint64_t index;
     sampler random;
-    ray ray;
-    spectrum flux;
-    int light, lane;
+    path_segment at;
+    int light;
     float share;        /* of its light that it carries */
     caustic_end end;    /* the lamp's end of its way, as far as is known: for the share */
     uint32_t primitive; /* of the light */
@@ -41,8 +41,8 @@ static void tell_flux(const photon_path *path, photon_event_kind kind,
     photon_event event = {
         .kind = kind,
         .index = path->index,
-        .p = hit ? hit->p : path->ray.origin,
-        .direction = path->ray.direction,
+        .p = hit ? hit->p : path->at.ray.origin,
+        .direction = path->at.ray.direction,
         .hit = hit,
         .light = path->light,
         .lobe = lobe,
@@ -55,7 +55,7 @@ static void tell_flux(const photon_path *path, photon_event_kind kind,
 static void tell(const photon_path *path, photon_event_kind kind, const surface_hit *hit,
                  unsigned lobe)
 {
-    tell_flux(path, kind, hit, lobe, path->flux);
+    tell_flux(path, kind, hit, lobe, path->at.throughput);
 }
 
 static uint64_t stream_key(const trace_task *task)
@@ -107,17 +107,11 @@ static bool emit(photon_path *path)
     photon_start at = {.ray.time = time_of(task, path->index)};
     if (!start(task, &path->random, &at))
         return false;
-    path->ray = at.ray;
-    path->ray.solids = scene_light(task->scene, at.light)->solids;
-    const light_kind *kind = scene_light(task->scene, at.light)->kind;
-    if (kind->is_environment || kind->is_parallel)
-        scene_come_from_outside(task->scene, &path->ray);
-    else
-        path->ray.medium =
-            scene_light_medium(task->scene, at.light, at.n, at.ray.direction);
-    path->flux = at.flux / (float)task->n_photons;
+    path->at.ray = at.ray;
+    scene_leave_light(task->scene, at.light, at.n, &path->at.ray);
+    path->at.throughput = at.flux / (float)task->n_photons;
     path->light = at.light;
-    path->lane = ALL_LANES;
+    path->at.lane = ALL_LANES;
     path->from_delta = scene_light(task->scene, at.light)->is_unmet;
     path->specular_only = true;
     path->share = 1.0f;
@@ -166,14 +160,14 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
     tell(path, PHOTON_STORED, hit, 0);
     if (!out)
         return;
-    if (dot3(path->ray.direction, hit->n_geom) > 0.0f)
+    if (dot3(path->at.ray.direction, hit->n_geom) > 0.0f)
         flags |= PHOTON_BEHIND;
     const scene *s = path->task->scene;
     photon p = {.p = scene_hit_place(s, hit),
-                .wi = -path->ray.direction,
-                .flux = path->flux,
+                .wi = -path->at.ray.direction,
+                .flux = path->at.throughput,
                 .flags = flags,
-                .n = face_forward(hit->n_geom, -path->ray.direction),
+                .n = face_forward(hit->n_geom, -path->at.ray.direction),
                 .tag = (uint32_t)scene_light_group(s, path->light),
                 .home = scene_curve_of(s, hit)};
     if (scene_hit_moves(s, hit))
@@ -240,14 +234,14 @@ static bool survives(photon_path *path, spectrum flux, float survival, float u)
 {
     if (!(u < survival))
         return false;
-    path->flux = flux / survival;
+    path->at.throughput = flux / survival;
     return true;
 }
 
 static float survival_with(const photon_path *path, spectrum flux)
 {
     const settings *how = path->task->how;
-    return minf(1.0f, power_of(how, flux) / power_of(how, path->flux));
+    return minf(1.0f, power_of(how, flux) / power_of(how, path->at.throughput));
 }
 
 /* Scatters at the hit. @return false if the photon's way ends here. */
@@ -260,12 +254,13 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
     }
     scatter_numbers u = sampler_scatter(&path->random);
     bsdf_sample next;
-    bool scattered = bsdf_sample_direction(b, -path->ray.direction, u.lobe, u.direction,
-                                           lobes, TRANSPORT_IMPORTANCE, &next);
+    bool scattered =
+        bsdf_sample_direction(b, -path->at.ray.direction, u.lobe, u.direction, lobes,
+                              TRANSPORT_IMPORTANCE, &next);
     if (scattered && lobes == LOBE_ALL && bsdf_has_both(b))
-        bsdf_settle_class(b, -path->ray.direction, TRANSPORT_IMPORTANCE,
+        bsdf_settle_class(b, -path->at.ray.direction, TRANSPORT_IMPORTANCE,
                           sampler_1d(&path->random), &next);
-    spectrum flux = scattered ? path->flux * next.weight : (spectrum){0};
+    spectrum flux = scattered ? path->at.throughput * next.weight : (spectrum){0};
     if (path->out && !spectrum_is_finite(flux))
         path->out->of.n_not_finite++;
     float survival = survival_with(path, flux);
@@ -279,8 +274,8 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
         tell(path, PHOTON_ABSORBED, hit, 0);
         return false;
     }
-    path->lane = next.lane;
-    path->ray = hit_ray(hit, next.wi);
+    path->at.lane = next.lane;
+    path->at.ray = hit_ray(hit, next.wi);
     path->specular_only &= (next.lobe & LOBE_SPECULAR) != 0;
     bool diffuse = (next.lobe & LOBE_DIFFUSE) != 0;
     path->n_diffuse += diffuse;
@@ -303,20 +298,22 @@ static float chance_to_land(const photon_path *path)
 static void land_on_way(photon_path *path, float length)
 {
     const trace_task *task = path->task;
-    const medium *m = path->ray.medium;
+    const medium *m = scene_medium(task->scene, path->at.ray.media.participating);
     if (class_here(path) != task->photon_class || !medium_scatters(m))
         return;
     float chance = chance_to_land(path), u = sampler_1d(&path->random);
     if (!(u < chance))
         return;
-    medium_sample at = medium_sample_within(m, &task->w, path->flux, length, u / chance);
+    medium_sample at =
+        medium_sample_within(m, &task->w, path->at.throughput, length, u / chance);
     if (!at.scatters)
         return;
-    const surface_hit hit = hit_in_medium(&path->ray, at.t);
+    const surface_hit hit = hit_in_medium(&path->at.ray, at.t);
     const photon p = {.p = hit.p,
-                      .wi = -path->ray.direction,
-                      .flux = path->flux * at.weight / chance *
-                              solids_transmittance(&path->ray.solids, at.t, &task->w),
+                      .wi = -path->at.ray.direction,
+                      .flux = path->at.throughput * at.weight / chance *
+                              scene_solid_transmittance(task->scene, &path->at.ray.media,
+                                                        at.t, &task->w),
                       .tag = (uint32_t)scene_light_group(task->scene, path->light),
                       .home = medium_home(m)};
     tell_flux(path, PHOTON_STORED, &hit, 0, p.flux);
@@ -324,35 +321,36 @@ static void land_on_way(photon_path *path, float length)
         trace_chunk_put(path->out, &path->out->of.in_media, &p);
 }
 
-typedef enum medium_way { WAY_THROUGH, WAY_SCATTERED, WAY_ENDED } medium_way;
-
 /* Takes a photon through its medium. One that no diffuse lobe would take goes straight
-   on, as far as its light does. @param hit,b set where it is scattered */
-static medium_way cross_medium(photon_path *path, float length, surface_hit *hit, bsdf *b)
+   on, as far as its light does. */
+static scene_event cross_medium(void *data, float length, const surface_hit *behind,
+                                surface_hit *at)
 {
+    (void)behind;
+    photon_path *path = data;
     const trace_task *task = path->task;
-    const medium *m = path->ray.medium;
+    const medium *m = scene_medium(task->scene, path->at.ray.media.participating);
     medium_sample next = {.t = length};
     land_on_way(path, length);
     if (medium_scatters(m) && (lobes_to_take(path) & LOBE_DIFFUSE))
-        next = medium_sample_free(m, &task->w, path->flux, length,
+        next = medium_sample_free(m, &task->w, path->at.throughput, length,
                                   sampler_1d(&path->random));
     else
         next.weight = medium_transmittance(m, length, &task->w);
-    spectrum flux = path->flux * next.weight;
+    spectrum flux = path->at.throughput * next.weight;
     float survival = survival_with(path, flux);
     float u = survival < 1.0f ? sampler_1d(&path->random) : 0.0f;
-    *hit = hit_in_medium(&path->ray, next.t);
+    *at = hit_in_medium(&path->at.ray, next.t);
     if (!survives(path, flux, survival, u)) {
-        tell(path, PHOTON_ABSORBED, hit, 0);
-        return WAY_ENDED;
+        tell(path, PHOTON_ABSORBED, at, 0);
+        return EVENT_END;
     }
     if (!next.scatters)
-        return WAY_THROUGH;
+        return EVENT_NONE;
     path->n_in_media++;
-    path->flux *= solids_transmittance(&path->ray.solids, next.t, &task->w);
-    bsdf_make_phase(b, m->g, path->lane);
-    return WAY_SCATTERED;
+    path->at.throughput *=
+        scene_solid_transmittance(task->scene, &path->at.ray.media, next.t, &task->w);
+    return EVENT_MEDIUM;
 }
 
 /* ---- The whole way ---- */
@@ -363,39 +361,29 @@ static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
 {
     const trace_task *task = path->task;
     const bsdf_options options = {.deterministic = !task->how->multiple_samples};
-    for (;;) {
-        if (path->out)
-            path->out->of.n_rays++;
-        bool met = scene_intersect(task->scene, &path->ray, hit);
-        if (path->ray.medium) {
-            surface_hit within;
-            float length =
-                scene_medium_end(task->scene, &path->ray, met ? hit->t : INFINITY);
-            medium_way way = cross_medium(path, length, &within, b);
-            if (way == WAY_SCATTERED)
-                *hit = within;
-            if (way != WAY_THROUGH)
-                return way == WAY_SCATTERED;
-        }
-        if (!met) {
-            tell(path, PHOTON_LEFT, NULL, 0);
-            return false;
-        }
-        path->flux *= hit_transmittance(hit, &task->w);
-        if (scene_bsdf(task->scene, hit, &task->w, path->lane, &options, b)) {
-            land(path, hit, b);
-            return true;
-        }
-        path->ray = hit_ray(hit, path->ray.direction);
-    }
+    uint64_t untold = 0;
+    const scene_traveller who = {.scene = task->scene,
+                                 .w = &task->w,
+                                 .n_rays = path->out ? &path->out->of.n_rays : &untold,
+                                 .path = path,
+                                 .cross_medium = cross_medium};
+    scene_event event = scene_advance(&who, &path->at, hit);
+    if (event == EVENT_ESCAPE)
+        tell(path, PHOTON_LEFT, NULL, 0);
+    if (event != EVENT_SURFACE && event != EVENT_MEDIUM)
+        return false;
+    scene_scatterer(task->scene, hit, &task->w, path->at.lane, &options, b);
+    if (event == EVENT_SURFACE)
+        land(path, hit, b);
+    return true;
 }
 
 /* White walls and white fog would keep a photon for ever: on a long way, roulette ends
    some at every step. */
 static bool goes_further(photon_path *path, int64_t bounces)
 {
-    return bounces < LONG_WAY ||
-           survives(path, path->flux, LONG_WAY_SURVIVAL, sampler_1d(&path->random));
+    return bounces < LONG_WAY || survives(path, path->at.throughput, LONG_WAY_SURVIVAL,
+                                          sampler_1d(&path->random));
 }
 
 static void follow(photon_path *path)

@@ -1,6 +1,7 @@
 #include "transport/auto/aim.h"
 
 #include "base/memory.h"
+#include "scene/advance.h"
 #include "transport/visible.h"
 
 enum {

@@ -41,7 +41,7 @@ static bool photons_share(const path_walk *walk, const camera_path *path)
 
 static bool add(path_walk *walk, const camera_path *path, spectrum radiance)
 {
-    spectrum value = path->beta * radiance;
+    spectrum value = path->at.throughput * radiance;
     if (walk->pass->without_caustics && path_is_caustic(path))
         return false;
     if (!spectrum_is_finite(value)) {
@@ -57,7 +57,7 @@ void path_add_parts(path_walk *walk, const camera_path *path, spectrum radiance)
     if (!add(walk, path, radiance) || !walk->out->groups)
         return;
     for (int i = 0; i < walk->scene->n_light_groups; i++)
-        walk->out->groups[i] += path->beta * walk->scratch->estimate.groups[i];
+        walk->out->groups[i] += path->at.throughput * walk->scratch->estimate.groups[i];
 }
 
 bool path_is_cut(const path_walk *walk, const camera_path *path, unsigned more)
@@ -71,65 +71,45 @@ static void add_from(path_walk *walk, const camera_path *path, spectrum radiance
                      int lamp)
 {
     if (add(walk, path, radiance) && walk->out->groups)
-        walk->out->groups[scene_light_group(walk->scene, lamp)] += path->beta * radiance;
+        walk->out->groups[scene_light_group(walk->scene, lamp)] +=
+            path->at.throughput * radiance;
 }
 
-/* Weight of a light that the path ran into. hit NULL: an environment. */
-static float met_light_weight(const path_walk *walk, const camera_path *path, int lamp,
-                              const surface_hit *hit)
+/* What photons leave of the light that the path ran into. */
+static float left_by_photons(const path_walk *walk, const camera_path *path,
+                             const met_light *met)
 {
-    if (!(path->pdf > 0.0f) || !walk->how->direct_illumination)
-        return 1.0f;
-    if (!walk->how->shadow_rays)
-        return 0.0f;
-    float pdf = direct_light_pdf(walk->scene, path->every_light, lamp, path->from,
-                                 path->ray.direction, hit);
-    return followed_weight(path->pdf, pdf);
-}
-
-/* What photons leave of the light of a lamp that the path ran into. hit NULL: an
-   environment. */
-static float left_by_photons(const path_walk *walk, const camera_path *path, int lamp,
-                             const surface_hit *hit)
-{
-    vec3 d = path->ray.direction;
+    const surface_hit *hit = met->hit;
+    vec3 d = path->at.ray.direction;
     if (!photons_share(walk, path))
         return 1.0f;
     const caustic_end end = {
-        .light = lamp,
+        .light = met->light,
         .p = hit ? hit->p : path->from,
         .n = hit ? hit->n_geom : -d,
         .direction = -d,
         .specular = !(path->pdf > 0.0f),
         .pdf_scatter = path->pdf_scatter,
-        .pdf_lights = scene_light_pdf(walk->scene, lamp, path->from, d, hit),
+        .pdf_lights = scene_light_pdf(walk->scene, met->light, path->from, d, hit),
     };
     return 1.0f - caustic_share_of(&walk->pass->caustics->share, &end);
 }
 
-static void meet_lamp(path_walk *walk, const camera_path *path, const surface_hit *hit)
+static void meet_light(void *data, const met_light *met)
 {
-    spectrum radiance =
-        scene_emitted(walk->scene, hit, -path->ray.direction, &walk->pass->w);
-    if (spectrum_is_black(radiance))
-        return;
-    float weight = met_light_weight(walk, path, hit->light, hit) *
-                   left_by_photons(walk, path, hit->light, hit);
-    add_from(walk, path, radiance * weight, hit->light);
+    path_walk *walk = data;
+    const camera_path *path = &walk->path;
+    const scattered_from from = {path->from, path->pdf, path->every_light};
+    float weight =
+        direct_met_weight(walk->scene, walk->how, &from, path->at.ray.direction, met) *
+        left_by_photons(walk, path, met);
+    add_from(walk, path, met->radiance * weight, met->light);
 }
 
-static void meet_sky(path_walk *walk, const camera_path *path)
+static void meet_surface(void *data, const surface_hit *hit)
 {
-    const scene *s = walk->scene;
-    for (int i = 0; i < s->n_environments; i++) {
-        int index = s->environments[i];
-        const light *l = scene_light(s, index);
-        spectrum radiance = l->kind->environment(l->self, path->ray.origin,
-                                                 path->ray.direction, &walk->pass->w);
-        float weight = met_light_weight(walk, path, index, NULL) *
-                       left_by_photons(walk, path, index, NULL);
-        add_from(walk, path, radiance * weight, index);
-    }
+    const path_walk *walk = data;
+    direct_meet(walk->scene, &walk->pass->w, &walk->path.at.ray, hit, meet_light, data);
 }
 
 /* Grain shows on what is seen straight or in a mirror. */
@@ -143,7 +123,7 @@ static const bsdf *all_lanes(const path_walk *walk, const camera_path *path,
                              const surface_hit *hit, const bsdf *b, bsdf *room)
 {
     const path_pass *pass = walk->pass;
-    if (path->lane == ALL_LANES)
+    if (path->at.lane == ALL_LANES)
         return b;
     scene_bsdf(walk->scene, hit, &pass->w, ALL_LANES, &pass->options, room);
     return room;
@@ -154,10 +134,10 @@ static void note_lit(const path_walk *walk, const camera_path *path,
                      const surface_hit *hit, const bsdf *b, spectrum radiance)
 {
     photon_store *lit = walk->pass->lit;
-    vec3 toward = -path->ray.direction;
+    vec3 toward = -path->at.ray.direction;
     const photon place = {.p = hit->p,
                           .wi = toward,
-                          .flux = path->beta * radiance,
+                          .flux = path->at.throughput * radiance,
                           .n = face_forward(hit->n_geom, toward)};
     if (path->n_diffuse > 0 && !b->is_phase && lit->n < lit->capacity)
         photon_store_put(lit, &place);
@@ -178,7 +158,7 @@ void path_sample_lights(path_walk *walk, const camera_path *path, const surface_
         .w = &walk->pass->w,
         .hit = hit,
         .bsdf = b,
-        .wo = -path->ray.direction,
+        .wo = -path->at.ray.direction,
         .every_light = samples_every_light(path),
         .shadow_rays = walk->how->shadow_rays,
         .followed = LOBE_ALL,
@@ -200,7 +180,7 @@ bool path_skips_gather(path_walk *walk, camera_path *path, float p_blurred)
     float p = path->n_diffuse > 0 ? p_blurred : 1.0f;
     if (p < 1.0f && !(sampler_1d(walk->random) < p))
         return true;
-    path->beta /= p;
+    path->at.throughput /= p;
     return false;
 }
 
@@ -220,7 +200,7 @@ void path_gather_caustics(path_walk *walk, const camera_path *path,
     if (!(b->lobes & (LOBE_DIFFUSE | delta)) || path_is_caustic(path) ||
         path_is_cut(walk, path, 2))
         return;
-    const shading_point at = {hit, b, -path->ray.direction, path->n_diffuse > 0};
+    const shading_point at = {hit, b, -path->at.ray.direction, path->n_diffuse > 0};
     if (path_skips_gather(walk, &seen, walk->pass->plan->p_blurred))
         return;
     camera_path_count(&seen, LOBE_DIFFUSE);
@@ -238,7 +218,7 @@ static void note_density(const path_walk *walk, camera_path *path, const surface
         return;
     const bsdf *all = all_lanes(walk, path, hit, b, &room);
     path->pdf_scatter =
-        bsdf_pdf(all, -path->ray.direction, next->wi, LOBE_ALL, TRANSPORT_RADIANCE);
+        bsdf_pdf(all, -path->at.ray.direction, next->wi, LOBE_ALL, TRANSPORT_RADIANCE);
 }
 
 static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
@@ -247,105 +227,75 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     float u_lobe = sampler_1d(walk->random);
     vec2 u = sampler_2d(walk->random);
     bsdf_sample next;
-    if (!bsdf_sample_direction(b, -path->ray.direction, u_lobe, u, LOBE_ALL,
+    if (!bsdf_sample_direction(b, -path->at.ray.direction, u_lobe, u, LOBE_ALL,
                                TRANSPORT_RADIANCE, &next))
         return false;
     if (bsdf_has_both(b))
-        bsdf_settle_class(b, -path->ray.direction, TRANSPORT_RADIANCE,
+        bsdf_settle_class(b, -path->at.ray.direction, TRANSPORT_RADIANCE,
                           sampler_1d(walk->random), &next);
     note_density(walk, path, hit, b, &next);
     path->looked = path_looks(walk, path, b);
-    path->beta *= next.weight;
-    path->lane = next.lane;
+    path->at.throughput *= next.weight;
+    path->at.lane = next.lane;
     path->eta2 *= next.eta * next.eta;
     path->pdf = (next.lobe & LOBE_SPECULAR) ? 0.0f : next.pdf;
     path->from = hit->p;
     path->every_light = samples_every_light(path);
     path->by_either = path->looked > 0.0f && bsdf_has_both(b);
-    path->ray = hit_ray(hit, next.wi);
+    path->at.ray = hit_ray(hit, next.wi);
+    path->at.from_eye = false;
     camera_path_count(path, next.lobe);
     if (path->bounces < ROULETTE_BOUNCES)
-        return !spectrum_is_black(path->beta);
-    float p = minf(1.0f, spectrum_mean(path->beta) * path->eta2);
+        return !spectrum_is_black(path->at.throughput);
+    float p = minf(1.0f, spectrum_mean(path->at.throughput) * path->eta2);
     if (path->bounces >= LONG_WAY)
         p *= LONG_WAY_SURVIVAL;
-    path->beta /= p;
+    path->at.throughput /= p;
     return sampler_1d(walk->random) < p;
 }
 
-/* The surface that the path meets next. */
-static bool meet_surface(path_walk *walk, const camera_path *path, surface_hit *hit)
+/* The eye sees this surface first: its albedo and normal are the picture's there. */
+static void note_seen(const path_walk *walk, const surface_hit *hit)
 {
-    walk->scratch->camera_rays++;
-    return path->bounces == 0 ? scene_see(walk->scene, &path->ray, hit)
-                              : scene_intersect(walk->scene, &path->ray, hit);
+    bsdf b;
+    const path_pass *pass = walk->pass;
+    const camera_path *path = &walk->path;
+    if (scene_bsdf(walk->scene, hit, &pass->w, path->at.lane, &pass->options, &b))
+        radiance_sample_note(walk->out, hit, &b, -path->at.ray.direction, path->from);
 }
 
 /* What the eye's ray meets behind a medium is what the picture shows there. */
-static void note_through_medium(path_walk *walk, const camera_path *path,
-                                const surface_hit *hit)
+static scene_event cross_medium(void *data, float length, const surface_hit *behind,
+                                surface_hit *at)
 {
-    bsdf b;
-    const path_pass *pass = walk->pass;
-    if (path->bounces == 0 &&
-        scene_bsdf(walk->scene, hit, &pass->w, path->lane, &pass->options, &b))
-        radiance_sample_note(walk->out, hit, &b, -path->ray.direction, path->from);
-}
-
-/* What becomes of a path on its way to the next surface. */
-typedef enum path_way {
-    WAY_ENDS,    /* it leaves the scene */
-    WAY_PASSES,  /* it meets an interface, and goes on behind it */
-    WAY_SCATTERS /* at a surface or in a medium */
-} path_way;
-
-/* Takes the path to where it is scattered next. @param hit,b set where it is */
-static path_way come_to_scatterer(path_walk *walk, camera_path *path, surface_hit *hit,
-                                  bsdf *b)
-{
-    const path_pass *pass = walk->pass;
-    bool met = meet_surface(walk, path, hit);
-    if (path->ray.medium) {
-        surface_hit within;
-        if (met)
-            note_through_medium(walk, path, hit);
-        float length = scene_medium_end(walk->scene, &path->ray, met ? hit->t : INFINITY);
-        if (path_meets_medium(walk, path, length, &within, b)) {
-            *hit = within;
-            return WAY_SCATTERS;
-        }
-    }
-    if (!met) {
-        meet_sky(walk, path);
-        return WAY_ENDS;
-    }
-    bool seen = path->bounces == 0 && !path->ray.medium;
-    path->beta *= hit_transmittance(hit, &pass->w);
-    meet_lamp(walk, path, hit);
-    if (!scene_bsdf(walk->scene, hit, &pass->w, path->lane, &pass->options, b)) {
-        path->ray = hit_ray(hit, path->ray.direction);
-        return WAY_PASSES;
-    }
-    if (seen)
-        radiance_sample_note(walk->out, hit, b, -path->ray.direction, path->from);
-    return WAY_SCATTERS;
+    path_walk *walk = data;
+    if (behind && walk->path.at.from_eye)
+        note_seen(walk, behind);
+    return path_meets_medium(walk, &walk->path, length, at) ? EVENT_MEDIUM : EVENT_NONE;
 }
 
 /* One more step of the path. @return false if it was the last. */
-static bool path_goes_on(path_walk *walk, camera_path *path)
+static bool path_goes_on(path_walk *walk)
 {
+    const path_pass *pass = walk->pass;
+    camera_path *path = &walk->path;
     surface_hit hit;
     bsdf b;
-    path_way way = come_to_scatterer(walk, path, &hit, &b);
-    if (way != WAY_SCATTERS)
-        return way == WAY_PASSES;
+    scene_event event = scene_advance(&walk->who, &path->at, &hit);
+    if (event == EVENT_ESCAPE) {
+        meet_surface(walk, NULL);
+        return false;
+    }
+    scene_scatterer(walk->scene, &hit, &pass->w, path->at.lane, &pass->options, &b);
+    if (event == EVENT_SURFACE && path->at.from_eye && !path->at.ray.media.participating)
+        radiance_sample_note(walk->out, &hit, &b, -path->at.ray.direction, path->from);
     if (path_is_cut(walk, path, 1))
         return false;
     camera_path seen = *path;
-    if (!b.is_phase)
-        seen.beta *= path_left_by_spots(walk, path, &hit, &b);
+    if (event == EVENT_SURFACE)
+        seen.at.throughput *= path_left_by_spots(walk, path, &hit, &b);
     path_sample_lights(walk, &seen, &hit, &b);
-    if (!b.is_phase) {
+    if (event == EVENT_SURFACE) {
         path_gather_caustics(walk, &seen, &hit, &b);
         path_look_at_spots(walk, path, &hit, &b);
     }
@@ -357,13 +307,22 @@ void path_radiance(const void *data, const ray *r, sampler *random,
 {
     const path_pass *pass = data;
     *out = (radiance_sample){.groups = out->groups};
-    path_walk walk = {pass, pass->plan->scene, &pass->plan->how, random, scratch, out};
-    camera_path path = {.ray = *r,
-                        .beta = spectrum_fill(1.0f),
-                        .lane = ALL_LANES,
-                        .eta2 = 1.0f,
-                        .from = r->origin};
-    while (!cancelled(pass->plan->cancel) && path_goes_on(&walk, &path))
+    path_walk walk = {
+        .who = {.scene = pass->plan->scene,
+                .w = &pass->w,
+                .n_rays = &scratch->camera_rays,
+                .path = &walk,
+                .cross_medium = cross_medium,
+                .meet_light = meet_surface},
+        .path = {.at = path_segment_from_eye(r), .eta2 = 1.0f, .from = r->origin},
+        .pass = pass,
+        .scene = pass->plan->scene,
+        .how = &pass->plan->how,
+        .random = random,
+        .scratch = scratch,
+        .out = out,
+    };
+    while (!cancelled(pass->plan->cancel) && path_goes_on(&walk))
         continue;
 }
 

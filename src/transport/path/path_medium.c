@@ -20,31 +20,30 @@ static void gather_in_medium(path_walk *walk, const camera_path *path, float len
     camera_path_count(&seen, LOBE_DIFFUSE);
     seen.n_after = 1;
     path_add_parts(walk, &seen,
-                   photonmap_gather_medium(photons, PHOTON_CAUSTIC, &path->ray, length,
+                   photonmap_gather_medium(photons, PHOTON_CAUSTIC, &path->at.ray, length,
                                            walk->scratch));
 }
 
-bool path_meets_medium(path_walk *walk, camera_path *path, float length, surface_hit *hit,
-                       bsdf *b)
+bool path_meets_medium(path_walk *walk, camera_path *path, float length, surface_hit *hit)
 {
-    const medium *m = path->ray.medium;
+    const medium *m = scene_medium(walk->scene, path->at.ray.media.participating);
     const wavelengths *w = &walk->pass->w;
     if (!medium_scatters(m)) {
-        path->beta *= medium_transmittance(m, length, w);
+        path->at.throughput *= medium_transmittance(m, length, w);
         return false;
     }
     gather_in_medium(walk, path, length);
     medium_pivot pivot;
-    bool near = direct_pivot(walk->scene, w, &path->ray, length, walk->random, &pivot);
+    bool near = direct_pivot(walk->scene, w, &path->at.ray, length, walk->random, &pivot);
     float u = sampler_1d(walk->random);
     medium_sample next =
-        near ? medium_sample_free_near(m, w, path->beta, length, &pivot, u)
-             : medium_sample_free(m, w, path->beta, length, u);
-    path->beta *= next.weight;
+        near ? medium_sample_free_near(m, w, path->at.throughput, length, &pivot, u)
+             : medium_sample_free(m, w, path->at.throughput, length, u);
+    path->at.throughput *= next.weight;
     if (!next.scatters)
         return false;
-    path->beta *= solids_transmittance(&path->ray.solids, next.t, w);
-    *hit = hit_in_medium(&path->ray, next.t);
-    bsdf_make_phase(b, m->g, path->lane);
+    path->at.throughput *=
+        scene_solid_transmittance(walk->scene, &path->at.ray.media, next.t, w);
+    *hit = hit_in_medium(&path->at.ray, next.t);
     return true;
 }

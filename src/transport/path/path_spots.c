@@ -26,7 +26,7 @@ static const photon_spots *spots_of(const path_walk *walk, float time)
 /* How much what is looked at counts in the picture. */
 static float importance(const camera_path *path)
 {
-    return minf(1.0f, spectrum_mean(path->beta) * path->eta2);
+    return minf(1.0f, spectrum_mean(path->at.throughput) * path->eta2);
 }
 
 /* What a path meets after a glossy bounce behind a diffuse one is counted elsewhere
@@ -53,20 +53,15 @@ static bool meet_surface(path_walk *walk, const camera_path *path,
                          const surface_hit *from, look *out)
 {
     const path_pass *pass = walk->pass;
-    ray r = hit_ray(from, out->wi);
-    out->transmittance = spectrum_fill(1.0f);
-    for (;;) {
-        walk->scratch->shadow_rays++;
-        if (!scene_intersect(walk->scene, &r, &out->hit))
-            return false;
-        out->transmittance *= hit_transmittance(&out->hit, &pass->w);
-        if (r.medium)
-            out->transmittance *= medium_transmittance(r.medium, out->hit.t, &pass->w);
-        if (scene_bsdf(walk->scene, &out->hit, &pass->w, path->lane, &pass->options,
-                       &out->bsdf))
-            return true;
-        r = hit_ray(&out->hit, out->wi);
-    }
+    path_segment sight = {.ray = hit_ray(from, out->wi),
+                          .throughput = spectrum_fill(1.0f)};
+    const scene_traveller who = {
+        .scene = walk->scene, .w = &pass->w, .n_rays = &walk->scratch->shadow_rays};
+    if (scene_advance(&who, &sight, &out->hit) != EVENT_SURFACE)
+        return false;
+    out->transmittance = sight.throughput;
+    return scene_bsdf(walk->scene, &out->hit, &pass->w, path->at.lane, &pass->options,
+                      &out->bsdf);
 }
 
 static bool look_at_spot(path_walk *walk, const camera_path *path, const surface_hit *hit,
@@ -74,7 +69,7 @@ static bool look_at_spot(path_walk *walk, const camera_path *path, const surface
 {
     int spot;
     const photon_spots *spots = spots_of(walk, hit->time);
-    vec3 wo = -path->ray.direction;
+    vec3 wo = -path->at.ray.direction;
     if (!spots ||
         !photon_spots_sample(spots, hit->p, u->light, u->place, &spot, &out->wi))
         return false;
@@ -93,13 +88,13 @@ static bool look_at_spot(path_walk *walk, const camera_path *path, const surface
 static camera_path path_to(const camera_path *path, const look *seen, const bsdf *b,
                            float u)
 {
-    const vec3 wo = -path->ray.direction;
+    const vec3 wo = -path->at.ray.direction;
     camera_path to = *path;
     spectrum f;
     unsigned lobe = bsdf_choose_class(b, wo, seen->wi, TRANSPORT_RADIANCE, u, &f);
     float cosine = fabsf(dot3(seen->wi, b->shading.n));
-    to.beta *= f * seen->transmittance * (cosine / seen->pdf);
-    to.ray.direction = seen->wi;
+    to.at.throughput *= f * seen->transmittance * (cosine / seen->pdf);
+    to.at.ray.direction = seen->wi;
     to.by_either = bsdf_has_both(b);
     camera_path_count(&to, lobe);
     return to;
@@ -142,7 +137,7 @@ void path_look_at_spots(path_walk *walk, const camera_path *path, const surface_
         return;
     camera_path to = path_to(path, &seen, b, u.primitive / p);
     float weight = (1.0f - followed_weight(seen.pdf_scatter, seen.pdf * p)) / p;
-    to.beta *= trial ? 1.0f : weight;
+    to.at.throughput *= trial ? 1.0f : weight;
     path_sample_lights(walk, &to, &seen.hit, &seen.bsdf);
     path_gather_caustics(walk, &to, &seen.hit, &seen.bsdf);
     if (trial)
@@ -155,7 +150,7 @@ float path_left_by_spots(path_walk *walk, const camera_path *path, const surface
     const photon_spots *spots = path->looked > 0.0f ? spots_of(walk, hit->time) : NULL;
     if (!spots || !(path->pdf > 0.0f) || !is_seen_alike(path->by_either, b))
         return 1.0f;
-    float pdf = photon_spots_pdf(spots, path->from, path->ray.direction, hit->p,
+    float pdf = photon_spots_pdf(spots, path->from, path->at.ray.direction, hit->p,
                                  &walk->scratch->estimate.hits);
     return followed_weight(path->pdf, pdf * path->looked);
 }

@@ -8,9 +8,7 @@
 
 /* A camera path on its way. */
 typedef struct camera_path {
-    ray ray;
-    spectrum beta;
-    int lane;
+    path_segment at;
     unsigned bounces;
     unsigned n_before;  /* followed bounces before the first diffuse one */
     unsigned n_diffuse; /* diffuse bounces */
@@ -27,6 +25,8 @@ typedef struct camera_path {
 
 /* What one camera ray's path is traced with. */
 typedef struct path_walk {
+    scene_traveller who; /* its path is the walk */
+    camera_path path;
     const path_pass *pass;
     const scene *scene;
     const settings *how;
@@ -63,9 +63,9 @@ void path_add_parts(path_walk *walk, const camera_path *path, spectrum radiance)
 /** @brief In a medium: adds what the photons in it send along the path's ray, and draws
  * how far light comes freely.
  *  @param length m: how far the medium reaches on the ray
- *  @return true if the path is scattered before that: *hit and *b are of the point */
-bool path_meets_medium(path_walk *walk, camera_path *path, float length, surface_hit *hit,
-                       bsdf *b);
+ *  @return true if the path is scattered before that: *hit is the point */
+bool path_meets_medium(path_walk *walk, camera_path *path, float length,
+                       surface_hit *hit);
 
 /** @brief The probability that spots are looked at from this surface, to which the path
  * has come. */

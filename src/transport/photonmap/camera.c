@@ -26,9 +26,7 @@ typedef struct camera_tree {
 
 /* One branch: a ray, and what its radiance counts in the pixel. */
 typedef struct camera_branch {
-    ray ray;
-    spectrum beta;
-    int lane;
+    path_segment at;
     unsigned n_followed;
     float eta2; /* product of squared relative indices: takes refraction's scale out of
                    roulette */
@@ -37,10 +35,24 @@ typedef struct camera_branch {
     vec3 from;        /* the point the ray left */
 } camera_branch;
 
+/* A branch on its way to the next surface. */
+typedef struct branch_step {
+    camera_tree *tree;
+    camera_branch *branch;
+} branch_step;
+
+/* How many times the branch may still scatter, the gathering of photons counted;
+   negative: as often as it likes. */
+static int64_t events_left(const camera_tree *tree, const camera_branch *branch)
+{
+    int64_t limit = tree->pass->how->max_backward_bounces;
+    return limit < 0 ? limit : MAX(limit - branch->n_followed, 0);
+}
+
 static bool add(camera_tree *tree, const camera_branch *branch, radiance_layer layer,
                 spectrum radiance)
 {
-    spectrum value = branch->beta * radiance;
+    spectrum value = branch->at.throughput * radiance;
     if (!spectrum_is_finite(value)) {
         tree->scratch->n_not_finite++;
         return false;
@@ -55,7 +67,7 @@ static void add_from(camera_tree *tree, const camera_branch *branch, radiance_la
 {
     if (add(tree, branch, layer, radiance) && tree->out->groups)
         tree->out->groups[scene_light_group(tree->pass->scene, lamp)] +=
-            branch->beta * radiance;
+            branch->at.throughput * radiance;
 }
 
 /* Adds what came from many, in parts by their groups. */
@@ -65,47 +77,25 @@ static void add_parts(camera_tree *tree, const camera_branch *branch,
     if (!add(tree, branch, layer, radiance) || !tree->out->groups)
         return;
     for (int i = 0; i < tree->pass->scene->n_light_groups; i++)
-        tree->out->groups[i] += branch->beta * parts[i];
+        tree->out->groups[i] += branch->at.throughput * parts[i];
 }
 
-/* Weight of a light that the branch ran into. hit NULL: an environment. */
-static float met_light_weight(const camera_tree *tree, const camera_branch *branch,
-                              int lamp, const surface_hit *hit)
+static void meet_light(void *data, const met_light *met)
 {
-    const settings *how = tree->pass->how;
-    if (!(branch->glossy_pdf > 0.0f) || !how->direct_illumination)
-        return 1.0f;
-    if (!how->shadow_rays)
-        return 0.0f;
-    float pdf = direct_light_pdf(tree->pass->scene, true, lamp, branch->from,
-                                 branch->ray.direction, hit);
-    return followed_weight(branch->glossy_pdf, pdf);
+    const branch_step *step = data;
+    const camera_branch *branch = step->branch;
+    const photonmap_pass *pass = step->tree->pass;
+    const scattered_from from = {branch->from, branch->glossy_pdf, true};
+    float weight =
+        direct_met_weight(pass->scene, pass->how, &from, branch->at.ray.direction, met);
+    add_from(step->tree, branch, LAYER_EMISSION, met->radiance * weight, met->light);
 }
 
-static void see_sky(camera_tree *tree, const camera_branch *branch)
+static void meet_surface(void *data, const surface_hit *hit)
 {
-    const photonmap_pass *pass = tree->pass;
-    const scene *s = pass->scene;
-    for (int i = 0; i < s->n_environments; i++) {
-        int index = s->environments[i];
-        const light *l = scene_light(s, index);
-        spectrum radiance = l->kind->environment(l->self, branch->ray.origin,
-                                                 branch->ray.direction, &pass->w);
-        float weight = met_light_weight(tree, branch, index, NULL);
-        add_from(tree, branch, LAYER_EMISSION, radiance * weight, index);
-    }
-}
-
-static void see_lamp(camera_tree *tree, const camera_branch *branch,
-                     const surface_hit *hit)
-{
-    if (hit->light == NO_INDEX)
-        return;
-    const photonmap_pass *pass = tree->pass;
-    spectrum radiance = scene_emitted(pass->scene, hit, -branch->ray.direction, &pass->w);
-    if (!spectrum_is_black(radiance))
-        add_from(tree, branch, LAYER_EMISSION,
-                 radiance * met_light_weight(tree, branch, hit->light, hit), hit->light);
+    const branch_step *step = data;
+    const photonmap_pass *pass = step->tree->pass;
+    direct_meet(pass->scene, &pass->w, &step->branch->at.ray, hit, meet_light, data);
 }
 
 /* The probability that each side of the followed lobes is followed. */
@@ -136,7 +126,7 @@ static void shade_direct(camera_tree *tree, const camera_branch *branch,
         .w = &pass->w,
         .hit = hit,
         .bsdf = b,
-        .wo = -branch->ray.direction,
+        .wo = -branch->at.ray.direction,
         .every_light = true,
         .shadow_rays = pass->how->shadow_rays,
         .followed = LOBE_FOLLOWED,
@@ -166,12 +156,14 @@ static void shade_indirect(camera_tree *tree, const camera_branch *branch,
     const photonmap_pass *pass = tree->pass;
     if (!(at->bsdf->lobes & LOBE_DIFFUSE))
         return;
-    float importance = spectrum_mean(branch->beta) * branch->eta2;
-    if (!pass->how->final_gather) {
+    float importance = spectrum_mean(branch->at.throughput) * branch->eta2;
+    int64_t left = events_left(tree, branch);
+    if (!pass->how->final_gather || left == 1) { /* the last is to gather here */
         add_gathered(tree, branch, LAYER_INDIRECT, PHOTON_INDIRECT, at, 0);
         return;
     }
-    spectrum radiance = final_gather(pass, at, importance, tree->random, tree->scratch);
+    spectrum radiance = final_gather(pass, at, importance, left < 0 ? left : left - 1,
+                                     tree->random, tree->scratch);
     add_parts(tree, branch, LAYER_INDIRECT, radiance, tree->scratch->gathered);
 }
 
@@ -180,7 +172,7 @@ static void shade(camera_tree *tree, const camera_branch *branch, const surface_
                   const bsdf *b, const float p_follow[2])
 {
     const photonmap_pass *pass = tree->pass;
-    const shading_point at = {.hit = hit, .bsdf = b, .wo = -branch->ray.direction};
+    const shading_point at = {.hit = hit, .bsdf = b, .wo = -branch->at.ray.direction};
     unsigned delta = pass->has_unmet_lights ? LOBE_GLOSSY : 0;
     bool gathers = (b->lobes & (LOBE_DIFFUSE | delta)) != 0;
     if (pass->how->direct_illumination)
@@ -194,26 +186,36 @@ static void shade(camera_tree *tree, const camera_branch *branch, const surface_
 
 /* What light that is scattered in the medium sends along the branch's ray; what comes
    from behind it is weakened. */
-static void shade_medium(camera_tree *tree, camera_branch *branch, float length)
+static scene_event shade_medium(void *data, float length, const surface_hit *behind,
+                                surface_hit *at)
 {
+    (void)behind;
+    (void)at;
+    const branch_step *step = data;
+    camera_tree *tree = step->tree;
+    camera_branch *branch = step->branch;
     const photonmap_pass *pass = tree->pass;
+    const medium *m = scene_medium(pass->scene, branch->at.ray.media.participating);
     const bool samples_lights = pass->how->direct_illumination;
     static const radiance_layer layers[N_PHOTON_CLASSES] = {LAYER_DIRECT, LAYER_INDIRECT,
                                                             LAYER_CAUSTIC};
-    const medium_look look = {&branch->ray, length, branch->beta, branch->lane, true};
+    const medium_look look = {&branch->at.ray, length, branch->at.throughput,
+                              branch->at.lane, true};
     const spectrum *parts = tree->scratch->estimate.groups;
-    if (samples_lights) {
+    const bool scatters = events_left(tree, branch) != 0;
+    if (scatters && samples_lights) {
         spectrum direct =
             photonmap_direct_in_medium(pass, &look, tree->random, tree->scratch);
         add_parts(tree, branch, LAYER_DIRECT, direct, parts);
     }
-    for (int c = samples_lights ? PHOTON_INDIRECT : PHOTON_DIRECT; c < N_PHOTON_CLASSES;
-         c++) {
-        spectrum radiance = photonmap_gather_medium(pass, (photon_class)c, &branch->ray,
-                                                    length, tree->scratch);
+    for (int c = samples_lights ? PHOTON_INDIRECT : PHOTON_DIRECT;
+         scatters && c < N_PHOTON_CLASSES; c++) {
+        spectrum radiance = photonmap_gather_medium(
+            pass, (photon_class)c, &branch->at.ray, length, tree->scratch);
         add_parts(tree, branch, layers[c], radiance, parts);
     }
-    branch->beta *= medium_transmittance(branch->ray.medium, length, &pass->w);
+    branch->at.throughput *= medium_transmittance(m, length, &pass->w);
+    return EVENT_NONE;
 }
 
 /* Turns the branch into what follows by a lobe on the given sides. */
@@ -224,29 +226,30 @@ static bool bounce(camera_tree *tree, camera_branch *branch, const surface_hit *
     vec2 u = sampler_2d(tree->random);
     bsdf_sample next;
     unsigned lobes = LOBE_SPECULAR | LOBE_GLOSSY | sides;
-    vec3 wo = -branch->ray.direction;
+    vec3 wo = -branch->at.ray.direction;
     if (!bsdf_sample_direction(b, wo, u_lobe, u, lobes, TRANSPORT_RADIANCE, &next))
         return false;
-    branch->beta *= next.weight / probability;
-    branch->lane = next.lane;
+    branch->at.throughput *= next.weight / probability;
+    branch->at.lane = next.lane;
     branch->eta2 *= next.eta * next.eta;
     branch->glossy_pdf = (next.lobe & LOBE_GLOSSY) ? next.pdf * probability : 0.0f;
     branch->from = hit->p;
-    branch->ray = hit_ray(hit, next.wi);
+    branch->at.ray = hit_ray(hit, next.wi);
+    branch->at.from_eye = false;
     branch->n_followed++;
-    return !spectrum_is_black(branch->beta);
+    return !spectrum_is_black(branch->at.throughput);
 }
 
 static bool survives(camera_tree *tree, camera_branch *branch)
 {
     if (branch->n_followed < ROULETTE_BOUNCES)
         return true;
-    float p = minf(1.0f, spectrum_mean(branch->beta) * branch->eta2);
+    float p = minf(1.0f, spectrum_mean(branch->at.throughput) * branch->eta2);
     if (branch->n_followed >= LONG_WAY)
         p *= LONG_WAY_SURVIVAL;
     if (!(sampler_1d(tree->random) < p))
         return false;
-    branch->beta /= p;
+    branch->at.throughput /= p;
     return true;
 }
 
@@ -257,11 +260,8 @@ static void follow(camera_tree *tree, camera_branch branch);
 static bool go_on(camera_tree *tree, camera_branch *branch, const surface_hit *hit,
                   const bsdf *b, const float p_follow[2])
 {
-    const settings *how = tree->pass->how;
-    int64_t limit = how->max_backward_bounces;
     bool followed = (b->lobes & (LOBE_SPECULAR | LOBE_GLOSSY)) != 0;
-    if (!followed || (limit >= 0 && branch->n_followed >= limit) ||
-        !survives(tree, branch))
+    if (!followed || !survives(tree, branch))
         return false;
     if (p_follow[0] >= 1.0f && p_follow[1] >= 1.0f) {
         camera_branch reflected = *branch;
@@ -280,32 +280,28 @@ static bool go_on(camera_tree *tree, camera_branch *branch, const surface_hit *h
 static void follow(camera_tree *tree, camera_branch branch)
 {
     const photonmap_pass *pass = tree->pass;
-    for (bool first = branch.n_followed == 0; !cancelled(pass->plan->cancel);) {
-        surface_hit hit;
-        tree->scratch->camera_rays++;
-        bool met = branch.n_followed == 0
-                       ? scene_see(pass->scene, &branch.ray, &hit)
-                       : scene_intersect(pass->scene, &branch.ray, &hit);
-        if (branch.ray.medium)
-            shade_medium(
-                tree, &branch,
-                scene_medium_end(pass->scene, &branch.ray, met ? hit.t : INFINITY));
-        if (!met) {
-            see_sky(tree, &branch);
+    branch_step step = {tree, &branch};
+    const scene_traveller who = {.scene = pass->scene,
+                                 .w = &pass->w,
+                                 .n_rays = &tree->scratch->camera_rays,
+                                 .path = &step,
+                                 .cross_medium = shade_medium,
+                                 .meet_light = meet_surface};
+    surface_hit hit;
+    while (!cancelled(pass->plan->cancel)) {
+        bsdf b;
+        float p_follow[2];
+        if (scene_advance(&who, &branch.at, &hit) == EVENT_ESCAPE) {
+            meet_surface(&step, NULL);
             return;
         }
-        branch.beta *= hit_transmittance(&hit, &pass->w);
-        see_lamp(tree, &branch, &hit);
-        bsdf b;
-        if (!scene_bsdf(pass->scene, &hit, &pass->w, branch.lane, &pass->options, &b)) {
-            branch.ray = hit_ray(&hit, branch.ray.direction);
-            continue;
-        }
-        if (first)
-            radiance_sample_note(tree->out, &hit, &b, -branch.ray.direction, branch.from);
-        first = false;
-        float p_follow[2];
-        plan_sides(&branch, &b, -branch.ray.direction, p_follow);
+        scene_bsdf(pass->scene, &hit, &pass->w, branch.at.lane, &pass->options, &b);
+        if (branch.at.from_eye)
+            radiance_sample_note(tree->out, &hit, &b, -branch.at.ray.direction,
+                                 branch.from);
+        if (events_left(tree, &branch) == 0)
+            return;
+        plan_sides(&branch, &b, -branch.at.ray.direction, p_follow);
         shade(tree, &branch, &hit, &b, p_follow);
         if (!go_on(tree, &branch, &hit, &b, p_follow))
             return;
@@ -318,9 +314,7 @@ void photonmap_radiance(const void *pass, const ray *r, sampler *random,
     *out = (radiance_sample){.groups = out->groups};
     camera_tree tree = {.pass = pass, .random = random, .scratch = scratch, .out = out};
     follow(&tree, (camera_branch){
-                      .ray = *r,
-                      .beta = spectrum_fill(1.0f),
-                      .lane = ALL_LANES,
+                      .at = path_segment_from_eye(r),
                       .eta2 = 1.0f,
                       .from = r->origin,
                   });

@@ -203,10 +203,12 @@ static bool kept_irradiance(const map_place *at, estimate_scratch *scratch,
 /* ---- Gather rays ---- */
 
 typedef struct gather_path {
-    ray ray;
-    spectrum beta;
-    int lane;
+    path_segment at;
     int64_t bounces; /* since it left the point that gathers */
+    const photonmap_pass *pass;
+    sampler *random;
+    transport_scratch *scratch;
+    spectrum sum; /* found so far */
 } gather_path;
 
 /* Adds parts by light groups to scratch->gathered; parts may be NULL: none. */
@@ -271,13 +273,12 @@ static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
 }
 
 /* Goes on by a specular or glossy lobe; roulette ends weak paths and long ones. */
-static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b,
-                      sampler *random)
+static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b)
 {
-    scatter_numbers u = sampler_scatter(random);
+    scatter_numbers u = sampler_scatter(path->random);
     bsdf_sample next;
     if (!(b->lobes & (LOBE_SPECULAR | LOBE_GLOSSY)) ||
-        !bsdf_sample_direction(b, -path->ray.direction, u.lobe, u.direction,
+        !bsdf_sample_direction(b, -path->at.ray.direction, u.lobe, u.direction,
                                LOBE_FOLLOWED, TRANSPORT_RADIANCE, &next))
         return false;
     float p = minf(1.0f, spectrum_mean(next.weight) * next.eta * next.eta);
@@ -285,68 +286,68 @@ static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b,
         p *= LONG_WAY_SURVIVAL;
     if (!(u.roulette < p))
         return false;
-    path->beta *= next.weight / p;
-    path->lane = next.lane;
-    path->ray = hit_ray(hit, next.wi);
+    path->at.throughput *= next.weight / p;
+    path->at.lane = next.lane;
+    path->at.ray = hit_ray(hit, next.wi);
     path->bounces++;
     return true;
 }
 
 /* What the medium that the ray travels in sends along it; what comes from behind it is
    weakened. */
-static spectrum cross_medium(const photonmap_pass *pass, gather_path *path, float length,
-                             sampler *random, transport_scratch *scratch)
+static scene_event cross_medium(void *data, float length, const surface_hit *behind,
+                                surface_hit *at)
 {
+    (void)behind;
+    (void)at;
+    gather_path *path = data;
+    const photonmap_pass *pass = path->pass;
+    transport_scratch *scratch = path->scratch;
+    const medium *m = scene_medium(pass->scene, path->at.ray.media.participating);
     const bool samples_lights = pass->how->direct_illumination;
-    const medium_look look = {&path->ray, length, path->beta, path->lane, false};
-    spectrum sum = {0};
+    const spectrum before = path->at.throughput;
+    const medium_look look = {&path->at.ray, length, before, path->at.lane, false};
     if (samples_lights) {
-        sum = path->beta * photonmap_direct_in_medium(pass, &look, random, scratch);
-        collect(pass, scratch, path->beta, scratch->estimate.groups);
+        path->sum +=
+            before * photonmap_direct_in_medium(pass, &look, path->random, scratch);
+        collect(pass, scratch, before, scratch->estimate.groups);
     }
     for (int c = samples_lights ? PHOTON_INDIRECT : PHOTON_DIRECT; c < N_PHOTON_CLASSES;
          c++) {
-        sum += path->beta * photonmap_gather_medium(pass, (photon_class)c, &path->ray,
-                                                    length, scratch);
-        collect(pass, scratch, path->beta, scratch->estimate.groups);
+        path->sum += before * photonmap_gather_medium(pass, (photon_class)c,
+                                                      &path->at.ray, length, scratch);
+        collect(pass, scratch, before, scratch->estimate.groups);
     }
-    path->beta *= medium_transmittance(path->ray.medium, length, &pass->w);
-    return sum;
+    path->at.throughput *= medium_transmittance(m, length, &pass->w);
+    return EVENT_NONE;
 }
 
-static spectrum gather_along(const photonmap_pass *pass, gather_path path,
-                             sampler *random, transport_scratch *scratch)
+static spectrum gather_along(gather_path path, int64_t events)
 {
-    spectrum sum = {0};
-    int64_t limit = pass->how->max_backward_bounces;
-    while ((limit < 0 || path.bounces <= limit) && !cancelled(pass->plan->cancel)) {
-        surface_hit hit;
-        scratch->camera_rays++;
-        bool met = scene_intersect(pass->scene, &path.ray, &hit);
-        if (path.ray.medium)
-            sum += cross_medium(
-                pass, &path,
-                scene_medium_end(pass->scene, &path.ray, met ? hit.t : INFINITY), random,
-                scratch);
-        if (!met)
-            break;
-        path.beta *= hit_transmittance(&hit, &pass->w);
+    const photonmap_pass *pass = path.pass;
+    const scene_traveller who = {.scene = pass->scene,
+                                 .w = &pass->w,
+                                 .n_rays = &path.scratch->camera_rays,
+                                 .path = &path,
+                                 .cross_medium = cross_medium};
+    surface_hit hit;
+    while ((events < 0 || path.bounces < events) && !cancelled(pass->plan->cancel) &&
+           scene_advance(&who, &path.at, &hit) == EVENT_SURFACE) {
         bsdf b;
-        if (!scene_bsdf(pass->scene, &hit, &pass->w, path.lane, &pass->options, &b)) {
-            path.ray = hit_ray(&hit, path.ray.direction);
-            continue;
-        }
-        const shading_point at = {.hit = &hit, .bsdf = &b, .wo = -path.ray.direction};
+        scene_bsdf(pass->scene, &hit, &pass->w, path.at.lane, &pass->options, &b);
+        const shading_point at = {.hit = &hit, .bsdf = &b, .wo = -path.at.ray.direction};
         if (b.lobes & LOBE_DIFFUSE)
-            sum += path.beta * outgoing(pass, &at, path.beta, random, scratch);
-        if (!gather_on(&path, &hit, &b, random))
+            path.sum += path.at.throughput * outgoing(pass, &at, path.at.throughput,
+                                                      path.random, path.scratch);
+        if (!gather_on(&path, &hit, &b))
             break;
     }
-    return sum;
+    return path.sum;
 }
 
 spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
-                      float importance, sampler *random, transport_scratch *scratch)
+                      float importance, int64_t events, sampler *random,
+                      transport_scratch *scratch)
 {
     float wanted = ceilf((float)pass->how->gather_rays * clampf(importance, 0.0f, 1.0f));
     uint32_t n = (uint32_t)maxf(1.0f, wanted);
@@ -364,9 +365,13 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
         if (!bsdf_sample_direction(at->bsdf, at->wo, u_lobe, u, LOBE_GATHERED,
                                    TRANSPORT_RADIANCE, &first))
             continue;
-        gather_path path = {
-            .ray = hit_ray(at->hit, first.wi), .beta = first.weight, .lane = first.lane};
-        sum += gather_along(pass, path, &stream, scratch);
+        const gather_path path = {.at = {.ray = hit_ray(at->hit, first.wi),
+                                         .throughput = first.weight,
+                                         .lane = first.lane},
+                                  .pass = pass,
+                                  .random = &stream,
+                                  .scratch = scratch};
+        sum += gather_along(path, events);
     }
     for (int i = 0; i < n_groups; i++)
         scratch->gathered[i] /= (float)n;

@@ -65,9 +65,12 @@ void photonmap_radiance(const void *pass, const ray *r, sampler *random,
 
 /** @brief Indirect radiance toward wo by M rays over the diffuse lobes (final gathering).
  *  scratch->gathered gets the parts of the light groups.
- *  @param importance share of the pixel that this is, 0..1: fewer rays where little */
+ *  @param importance share of the pixel that this is, 0..1: fewer rays where little
+ *  @param events how many times they may scatter, > 0: the last time where they gather;
+ *  negative: as often as they like */
 spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
-                      float importance, sampler *random, transport_scratch *scratch);
+                      float importance, int64_t events, sampler *random,
+                      transport_scratch *scratch);
 
 /** @brief Irradiance at some of the photons of a slice of time, as a map to look the
  * nearest up in (Christensen, "Faster Photon Map Global Illumination", 1999):

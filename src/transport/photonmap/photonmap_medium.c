@@ -94,73 +94,72 @@ static void sample_lamps(const medium_look *look, const surface_hit *at, const b
         add(sum, found[i].light, found[i].diffuse);
 }
 
-/* What is left for a lamp that a direction was not drawn toward. hit NULL: the sky */
-static float met_weight(const photonmap_pass *pass, const medium_look *look,
-                        const surface_hit *from, const bsdf_sample *way, int lamp,
-                        const surface_hit *hit)
+/* A direction of the phase function, until it meets a surface that is seen. */
+typedef struct scattered_way {
+    scattered_from from;
+    path_segment at;
+    direct_sum *sum;
+} scattered_way;
+
+static void meet_light(void *data, const met_light *met)
 {
-    float pdf =
-        direct_light_pdf(pass->scene, look->every_light, lamp, from->p, way->wi, hit);
-    return followed_weight(way->pdf, pdf);
+    const scattered_way *way = data;
+    const photonmap_pass *pass = way->sum->pass;
+    float weight =
+        direct_met_weight(pass->scene, pass->how, &way->from, way->at.ray.direction, met);
+    add(way->sum, met->light, way->at.throughput * met->radiance * weight);
 }
 
-/* By a direction of the phase function, until it meets a surface that is seen. */
+static void meet_surface(void *data, const surface_hit *hit)
+{
+    const scattered_way *way = data;
+    const photonmap_pass *pass = way->sum->pass;
+    direct_meet(pass->scene, &pass->w, &way->at.ray, hit, meet_light, data);
+}
+
 static void meet_lamps(const medium_look *look, const surface_hit *at,
-                       const bsdf_sample *way, transport_scratch *scratch,
+                       const bsdf_sample *next, transport_scratch *scratch,
                        direct_sum *sum)
 {
-    const photonmap_pass *pass = sum->pass;
-    const scene *s = pass->scene;
-    spectrum left = way->weight;
+    scattered_way way = {
+        .from = {at->p, next->pdf, look->every_light},
+        .at = {.ray = hit_ray(at, next->wi), .throughput = next->weight},
+        .sum = sum,
+    };
+    const scene_traveller who = {.scene = sum->pass->scene,
+                                 .w = &sum->pass->w,
+                                 .n_rays = &scratch->shadow_rays,
+                                 .path = &way,
+                                 .meet_light = meet_surface};
     surface_hit hit;
-    for (ray r = hit_ray(at, way->wi);; r = hit_ray(&hit, way->wi)) {
-        scratch->shadow_rays++;
-        bool met = scene_intersect(s, &r, &hit);
-        if (r.medium)
-            left *= medium_transmittance(
-                r.medium, scene_medium_end(s, &r, met ? hit.t : INFINITY), &pass->w);
-        if (!met)
-            break;
-        left *= hit_transmittance(&hit, &pass->w);
-        spectrum radiance = scene_emitted(s, &hit, -way->wi, &pass->w);
-        if (!spectrum_is_black(radiance))
-            add(sum, hit.light,
-                left * radiance * met_weight(pass, look, at, way, hit.light, &hit));
-        if (hit.material != NO_INDEX)
-            return;
-    }
-    for (int i = 0; i < s->n_environments; i++) {
-        int lamp = s->environments[i];
-        const light *l = scene_light(s, lamp);
-        add(sum, lamp,
-            left * l->kind->environment(l->self, at->p, way->wi, &pass->w) *
-                met_weight(pass, look, at, way, lamp, NULL));
-    }
+    if (scene_advance(&who, &way.at, &hit) == EVENT_ESCAPE)
+        meet_surface(&way, NULL);
 }
 
 static medium_sample point_on(const photonmap_pass *pass, const medium_look *look,
                               sampler *random)
 {
     const ray *r = look->ray;
+    const medium *m = scene_medium(pass->scene, r->media.participating);
     medium_pivot pivot;
     bool near = direct_pivot(pass->scene, &pass->w, r, look->length, random, &pivot);
     float u = sampler_1d(random);
-    return near ? medium_sample_within_near(r->medium, &pass->w, look->carried,
-                                            look->length, &pivot, u)
-                : medium_sample_within(r->medium, &pass->w, look->carried, look->length,
-                                       u);
+    return near ? medium_sample_within_near(m, &pass->w, look->carried, look->length,
+                                            &pivot, u)
+                : medium_sample_within(m, &pass->w, look->carried, look->length, u);
 }
 
 spectrum photonmap_direct_in_medium(const photonmap_pass *pass, const medium_look *look,
                                     sampler *random, transport_scratch *scratch)
 {
     const ray *r = look->ray;
+    const medium *m = scene_medium(pass->scene, r->media.participating);
     direct_sum sum = {.pass = pass,
                       .groups = scratch->estimate.groups,
                       .n_groups = scratch->estimate.n_groups};
     for (size_t i = 0; i < sum.n_groups; i++)
         sum.groups[i] = (spectrum){0};
-    if (!medium_scatters(r->medium))
+    if (!medium_scatters(m))
         return sum.radiance;
     medium_sample at = point_on(pass, look, random);
     if (!at.scatters)
@@ -168,13 +167,13 @@ spectrum photonmap_direct_in_medium(const photonmap_pass *pass, const medium_loo
     const surface_hit hit = hit_in_medium(r, at.t);
     bsdf b;
     bsdf_sample way;
-    bsdf_make_phase(&b, r->medium->g, look->lane);
+    bsdf_make_phase(&b, m->g, look->lane);
     sample_lamps(look, &hit, &b, random, scratch, &sum);
     if (pass->how->shadow_rays &&
         bsdf_sample_direction(&b, -r->direction, 0.0f, sampler_2d(random), LOBE_ALL,
                               TRANSPORT_RADIANCE, &way))
         meet_lamps(look, &hit, &way, scratch, &sum);
-    at.weight *= solids_transmittance(&r->solids, at.t, &pass->w);
+    at.weight *= scene_solid_transmittance(pass->scene, &r->media, at.t, &pass->w);
     for (size_t i = 0; i < sum.n_groups; i++)
         sum.groups[i] *= at.weight;
     return sum.radiance * at.weight;
@@ -189,6 +188,8 @@ spectrum photonmap_gather_medium(const photonmap_pass *pass, photon_class c, con
     const volume_map *map = pass->in_media[time_slice(r->time, pass->n_slices)][c];
     const volume_query query = {
         .ray = r,
+        .medium = scene_medium(pass->scene, r->media.participating),
+        .solid = scene_solid_medium(pass->scene, &r->media),
         .length = length,
         .w = &pass->w,
         .kernel = pass->estimates[c].kernel,

@@ -41,6 +41,7 @@
  */
 #pragma once
 
+#include "scene/advance.h"
 #include "transport/transport.h"
 #include "transport/vcm/vcm_weights.h"
 
@@ -187,10 +188,8 @@ float vcm_find_vertices(const vcm_pass *pass, const vcm_vertex *v, const kernel 
 
 /** @brief A subpath on its way. */
 typedef struct vcm_walk {
-    ray ray;
-    vec3 from;        /**< where it scattered last, or started */
-    spectrum carried; /**< throughput, or flux */
-    int lane;
+    path_segment at;
+    vec3 from;  /**< where it scattered last, or started */
     float eta2; /**< takes refraction's scale of radiance out of roulette */
     partial_weights weights;
     scattering_counts counts;
@@ -224,8 +223,10 @@ static inline bool vcm_length_allowed(const vcm_pass *pass, unsigned n)
     return limit < 0 || n <= limit;
 }
 
-/** @brief True if nothing stands between a hit and a point at distance in direction. */
-bool vcm_visible(const scene *s, const surface_hit *from, vec3 direction, float distance);
+/** @brief What is left of light between a hit and a point at distance in direction.
+ * @return false: something stands between them */
+bool vcm_visible(const vcm_pass *pass, const surface_hit *from, vec3 direction,
+                 float distance, spectrum *transmittance);
 
 /** @brief Follows a camera ray (transport_kind.radiance). */
 void vcm_radiance(const void *pass, const ray *r, sampler *random,

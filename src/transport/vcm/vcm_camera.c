@@ -1,4 +1,5 @@
 /* Camera subpaths: each vertex meets lamps, is connected, and merges. */
+#include "transport/direct.h"
 #include "transport/vcm/vcm.h"
 
 enum { ROULETTE_BOUNCES = 4 };
@@ -17,7 +18,7 @@ typedef struct camera_walk {
 
 static void add(camera_walk *c, scattering_counts counts, int lamp, spectrum radiance)
 {
-    spectrum value = c->walk.carried * radiance;
+    spectrum value = c->walk.at.throughput * radiance;
     if (!spectrum_is_finite(value)) {
         c->scratch->n_not_finite++;
         return;
@@ -60,7 +61,7 @@ static float met_weight(const camera_walk *c, int index, const surface_hit *hit)
 {
     const scene *s = c->pass->scene;
     const light *l = scene_light(s, index);
-    vec3 d = c->walk.ray.direction;
+    vec3 d = c->walk.at.ray.direction;
     float connected = light_tree_probability(s->light_tree, c->walk.from, index) *
                       l->kind->pdf(l->self, c->walk.from, d, hit);
     if (hit)
@@ -72,34 +73,25 @@ static float met_weight(const camera_walk *c, int index, const surface_hit *hit)
     return weights_met(&c->walk.weights, connected, p_traced * position * direction);
 }
 
-static void meet_light(camera_walk *c, int index, const surface_hit *hit,
-                       spectrum radiance)
+static void meet_light(void *data, const met_light *met)
 {
+    camera_walk *c = data;
     bool counted, alone = meets_alone(c, &counted);
-    if (!counted || spectrum_is_black(radiance))
+    if (!counted || spectrum_is_black(met->radiance))
         return;
-    add(c, c->walk.counts, index,
-        alone ? radiance : radiance * met_weight(c, index, hit));
+    add(c, c->walk.counts, met->light,
+        alone ? met->radiance : met->radiance * met_weight(c, met->light, met->hit));
 }
 
-static void meet_lamp(camera_walk *c, const surface_hit *hit, vec3 wo)
+static void meet_surface(void *data, const surface_hit *hit)
 {
+    camera_walk *c = data;
     const partial_weights before = c->walk.weights;
-    weights_arrive(&c->walk.weights, length3_2(hit->p - c->walk.from),
-                   fabsf(dot3(wo, hit->n_geom)));
-    meet_light(c, hit->light, hit, scene_emitted(c->pass->scene, hit, wo, &c->pass->w));
+    if (hit)
+        weights_arrive(&c->walk.weights, length3_2(hit->p - c->walk.from),
+                       fabsf(dot3(c->walk.at.ray.direction, hit->n_geom)));
+    direct_meet(c->pass->scene, &c->pass->w, &c->walk.at.ray, hit, meet_light, c);
     c->walk.weights = before;
-}
-
-static void meet_sky(camera_walk *c)
-{
-    const scene *s = c->pass->scene;
-    vec3 d = c->walk.ray.direction;
-    for (int i = 0; i < s->n_environments; i++) {
-        const light *l = scene_light(s, s->environments[i]);
-        meet_light(c, s->environments[i], NULL,
-                   l->kind->environment(l->self, c->walk.ray.origin, d, &c->pass->w));
-    }
 }
 
 /* ---- Connections ---- */
@@ -142,13 +134,12 @@ static void connect_to_lamp(camera_walk *c, const vcm_vertex *v)
     if (lobe_pair_is_black(&f))
         return;
     c->scratch->shadow_rays++;
-    if (!vcm_visible(c->pass->scene, v->hit, to_light.wi, to_light.distance))
+    spectrum transmittance;
+    if (!vcm_visible(c->pass, v->hit, to_light.wi, to_light.distance, &transmittance))
         return;
     float weight = lamp_weight(c, v, index, &to_light);
-    add_scattered(
-        c, &f, (arrival){.lamp = index},
-        to_light.radiance * (weight / to_light.pdf) *
-            hit_transmittance_to(v->hit, to_light.wi, to_light.distance, &c->pass->w));
+    add_scattered(c, &f, (arrival){.lamp = index},
+                  to_light.radiance * (weight / to_light.pdf) * transmittance);
 }
 
 /* Where a camera vertex and a light vertex face one another. */
@@ -181,11 +172,11 @@ static void add_pair(camera_walk *c, const vertex_pair *p)
     if (lobe_pair_is_black(&f) || lobe_pair_is_black(&g))
         return;
     c->scratch->shadow_rays++;
-    if (!vcm_visible(c->pass->scene, p->eye->hit, p->direction, sqrtf(p->distance2)))
+    spectrum transmittance;
+    if (!vcm_visible(c->pass, p->eye->hit, p->direction, sqrtf(p->distance2),
+                     &transmittance))
         return;
-    spectrum scale = hit_transmittance_to(p->eye->hit, p->direction, sqrtf(p->distance2),
-                                          &c->pass->w) *
-                     (pair_weight(c, p) / p->distance2);
+    spectrum scale = transmittance * (pair_weight(c, p) / p->distance2);
     for (int i = 0; i < 2; i++) {
         scattering_counts before = p->light->before;
         before.n++;
@@ -289,8 +280,8 @@ static bool survives(camera_walk *c)
 {
     if (c->walk.counts.n < ROULETTE_BOUNCES)
         return true;
-    float p = fminf(MOST_SURVIVAL, spectrum_mean(c->walk.carried) * c->walk.eta2);
-    c->walk.carried /= p;
+    float p = fminf(MOST_SURVIVAL, spectrum_mean(c->walk.at.throughput) * c->walk.eta2);
+    c->walk.at.throughput /= p;
     return sampler_1d(c->random) < p;
 }
 
@@ -321,7 +312,8 @@ static void leave_curve(camera_walk *c, const vcm_vertex *v)
 {
     partial_weights *w = &c->walk.weights;
     if (!(w->vcm > 0.0f)) {
-        weights_bounce_specular(&c->at_curve, hit_cosine(v->hit, c->walk.ray.direction));
+        weights_bounce_specular(&c->at_curve,
+                                hit_cosine(v->hit, c->walk.at.ray.direction));
         w->vc += c->at_curve.vc;
         w->vm += c->at_curve.vm;
     }
@@ -349,27 +341,21 @@ static void follow(camera_walk *c)
     static const bsdf_options options = {0};
     const vcm_pass *pass = c->pass;
     vcm_walk *walk = &c->walk;
+    const scene_traveller who = {.scene = pass->scene,
+                                 .w = &pass->w,
+                                 .n_rays = &c->scratch->camera_rays,
+                                 .path = c,
+                                 .meet_light = meet_surface};
+    surface_hit hit;
     while (!cancelled(pass->plan->cancel)) {
-        surface_hit hit;
-        c->scratch->camera_rays++;
-        bool met = walk->counts.n == 0 ? scene_see(pass->scene, &walk->ray, &hit)
-                                       : scene_intersect(pass->scene, &walk->ray, &hit);
-        if (!met) {
-            meet_sky(c);
+        if (scene_advance(&who, &walk->at, &hit) != EVENT_SURFACE) {
+            meet_surface(c, NULL);
             return;
         }
-        walk->carried *= hit_transmittance(&hit, &pass->w);
-        vcm_vertex v = {.hit = &hit, .wo = -walk->ray.direction};
+        vcm_vertex v = {.hit = &hit, .wo = -walk->at.ray.direction};
         float cosine = hit_cosine(&hit, v.wo);
-        bool surface =
-            scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf);
-        if (hit.light != NO_INDEX)
-            meet_lamp(c, &hit, v.wo);
-        if (!surface) {
-            walk->ray = hit_ray(&hit, walk->ray.direction);
-            continue;
-        }
-        if (walk->counts.n == 0)
+        scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf);
+        if (walk->at.from_eye)
             radiance_sample_note(c->out, v.hit, &v.bsdf, v.wo, walk->from);
         if (!vcm_length_allowed(pass, walk->counts.n + 1) || !(cosine > 0.0f))
             return;
@@ -391,7 +377,7 @@ static void choose_light_path(camera_walk *c)
     size_t i =
         hash_mix(hash_mix(c->random->key, c->random->index), c->pass->index) % paths->n;
     if (c->pass->scene->moves)
-        i = MIN((size_t)((double)c->walk.ray.time * (double)paths->n), paths->n - 1);
+        i = MIN((size_t)((double)c->walk.at.ray.time * (double)paths->n), paths->n - 1);
     c->first_light = i > 0 ? paths->end[i - 1] : 0;
     c->end_light = paths->end[i];
 }
@@ -402,10 +388,8 @@ void vcm_radiance(const void *data, const ray *r, sampler *random,
     const vcm_pass *pass = data;
     *out = (radiance_sample){.groups = out->groups};
     camera_walk c = {.pass = pass, .random = random, .scratch = scratch, .out = out};
-    c.walk = (vcm_walk){.ray = *r,
+    c.walk = (vcm_walk){.at = path_segment_from_eye(r),
                         .from = r->origin,
-                        .carried = spectrum_fill(1.0f),
-                        .lane = ALL_LANES,
                         .eta2 = 1.0f,
                         .mirrors_only = true,
                         .mode = TRANSPORT_RADIANCE};

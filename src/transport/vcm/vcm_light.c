@@ -50,12 +50,12 @@ static void tell(const light_walk *l, photon_event_kind kind, const surface_hit 
     const photon_event event = {
         .kind = kind,
         .index = l->index,
-        .p = hit ? hit->p : l->walk.ray.origin,
-        .direction = l->walk.ray.direction,
+        .p = hit ? hit->p : l->walk.at.ray.origin,
+        .direction = l->walk.at.ray.direction,
         .hit = hit,
         .light = l->light,
         .lobe = l->walk.lobe,
-        .flux = l->walk.carried / (float)l->pass->light.n,
+        .flux = l->walk.at.throughput / (float)l->pass->light.n,
         .share = 1.0f,
     };
     l->tell(&event, l->tell_data);
@@ -85,7 +85,7 @@ static void keep(light_walk *l, const vcm_vertex *v)
     room[out->n_vertices++] = (light_vertex){
         .hit = *v->hit,
         .wi = v->wo,
-        .flux = l->walk.carried,
+        .flux = l->walk.at.throughput,
         .weights = l->walk.weights,
         .before = l->walk.counts,
         .light = l->light,
@@ -120,26 +120,21 @@ static bool hidden(const scene *s, const surface_hit *hit)
 static bool seen(const vcm_pass *pass, const surface_hit *hit,
                  const camera_connection *eye)
 {
-    const scene *s = pass->scene;
-    if (vcm_visible(s, hit, eye->direction, eye->distance))
+    const ray to = hit_ray_to(hit, eye->direction, eye->distance);
+    if (!scene_occluded(pass->scene, &to))
         return true;
     if (!pass->camera_hides)
         return false;
-    vec3 target = hit_offset(hit, eye->direction);
-    ray r = {.origin = target + eye->direction * eye->distance,
-             .direction = -eye->direction,
-             .time = hit->time};
+    uint64_t untold = 0;
+    const scene_traveller who = {.scene = pass->scene, .w = &pass->w, .n_rays = &untold};
+    path_segment way = {.ray = {.origin = hit_offset(hit, eye->direction) +
+                                          eye->direction * eye->distance,
+                                .direction = -eye->direction,
+                                .t_max = eye->distance * (1.0f - SHORTENING),
+                                .time = hit->time},
+                        .from_eye = true};
     surface_hit between;
-    for (;;) {
-        r.t_max = dot3(target - r.origin, r.direction);
-        if (!(r.t_max > 0.0f) || !scene_see(s, &r, &between))
-            return true;
-        if (between.t > r.t_max * (1.0f - SHORTENING))
-            return true;
-        if (between.material != NO_INDEX)
-            return false;
-        r = hit_ray(&between, r.direction);
-    }
+    return scene_advance(&who, &way, &between) == EVENT_ESCAPE;
 }
 
 /* The weight of this connection among all ways to find the path. */
@@ -171,14 +166,15 @@ static void connect_to_eye(light_walk *l, const vcm_vertex *v)
     l->out->n_shadow_rays++;
     if (!seen(pass, v->hit, &eye))
         return;
-    spectrum left = hit_transmittance_to(v->hit, eye.direction, eye.distance, &pass->w);
+    spectrum left = scene_transmittance_to(pass->scene, v->hit, eye.direction,
+                                           eye.distance, &pass->w);
     float density = eye.pdf / square(eye.distance);
     float cosine = hit_cosine(v->hit, eye.direction);
     float weight = weight_to_eye(l, v, &eye, density * cosine);
     for (int i = 0; i < 2; i++) {
         scattering_counts scattered = vcm_count((scattering_counts){0}, i == 0);
         splat s = {
-            .value = l->walk.carried * left * f.value[i] *
+            .value = l->walk.at.throughput * left * f.value[i] *
                      (weight * density / (float)pass->light.n),
             .raster = eye.raster,
             .layer = vcm_layer(vcm_join(scattered, l->walk.counts)),
@@ -229,14 +225,13 @@ static bool emit(light_walk *l)
                              .n = e.n,
                              .direction = e.ray.direction};
     e.ray.time = l->time;
-    e.ray.solids = scene_light(l->pass->scene, l->light)->solids;
-    l->walk = (vcm_walk){.ray = e.ray,
-                         .from = e.ray.origin,
-                         .carried = e.flux / p_light,
-                         .lane = ALL_LANES,
-                         .eta2 = 1.0f,
-                         .mode = TRANSPORT_IMPORTANCE};
-    return !spectrum_is_black(l->walk.carried);
+    scene_leave_light(pass->scene, l->light, e.n, &e.ray);
+    l->walk = (vcm_walk){
+        .at = {.ray = e.ray, .throughput = e.flux / p_light, .lane = ALL_LANES},
+        .from = l->start.p,
+        .eta2 = 1.0f,
+        .mode = TRANSPORT_IMPORTANCE};
+    return !spectrum_is_black(l->walk.at.throughput);
 }
 
 static void arrive_first(light_walk *l, const surface_hit *hit, float cosine,
@@ -256,7 +251,7 @@ static void arrive_first(light_walk *l, const surface_hit *hit, float cosine,
 
 static void arrive(light_walk *l, const surface_hit *hit)
 {
-    float cosine = hit_cosine(hit, l->walk.ray.direction);
+    float cosine = hit_cosine(hit, l->walk.at.ray.direction);
     float distance2 = length3_2(hit->p - l->walk.from);
     if (l->walk.counts.n == 0)
         arrive_first(l, hit, cosine, distance2);
@@ -267,9 +262,9 @@ static void arrive(light_walk *l, const surface_hit *hit)
 /* Keeps the power of subpaths even. */
 static bool survives(light_walk *l, spectrum before)
 {
-    float p =
-        fminf(MOST_SURVIVAL, spectrum_mean(l->walk.carried) / spectrum_mean(before));
-    l->walk.carried /= p;
+    float p = fminf(MOST_SURVIVAL,
+                    spectrum_mean(l->walk.at.throughput) / spectrum_mean(before));
+    l->walk.at.throughput /= p;
     return sampler_1d(&l->random) < p;
 }
 
@@ -292,7 +287,7 @@ static void land(light_walk *l, const vcm_vertex *v)
 static bool go_on(light_walk *l, const vcm_vertex *v)
 {
     const vcm_pass *pass = l->pass;
-    spectrum before = l->walk.carried;
+    spectrum before = l->walk.at.throughput;
     if (vcm_ends_light(pass, v->hit) || !vcm_length_allowed(pass, l->walk.counts.n + 2)) {
         tell(l, PHOTON_ENDED, v->hit);
         return false;
@@ -307,20 +302,17 @@ static void follow(light_walk *l)
 {
     static const bsdf_options options = {0};
     const vcm_pass *pass = l->pass;
+    const scene_traveller who = {
+        .scene = pass->scene, .w = &pass->w, .n_rays = &l->out->n_rays};
     tell(l, PHOTON_EMITTED, NULL);
     while (!l->out->error) {
         surface_hit hit;
-        l->out->n_rays++;
-        if (!scene_intersect(pass->scene, &l->walk.ray, &hit)) {
+        if (scene_advance(&who, &l->walk.at, &hit) != EVENT_SURFACE) {
             tell(l, PHOTON_LEFT, NULL);
             return;
         }
-        l->walk.carried *= hit_transmittance(&hit, &pass->w);
-        vcm_vertex v = {.hit = &hit, .wo = -l->walk.ray.direction};
-        if (!scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf)) {
-            l->walk.ray = hit_ray(&hit, l->walk.ray.direction);
-            continue;
-        }
+        vcm_vertex v = {.hit = &hit, .wo = -l->walk.at.ray.direction};
+        scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf);
         if (!(fabsf(dot3(v.wo, hit.n_geom)) > 0.0f))
             return;
         arrive(l, &hit);

@@ -34,10 +34,15 @@ radiance_layer vcm_layer(scattering_counts counts)
     return counts.n > 1 ? LAYER_CAUSTIC : LAYER_DIRECT;
 }
 
-bool vcm_visible(const scene *s, const surface_hit *from, vec3 direction, float distance)
+bool vcm_visible(const vcm_pass *pass, const surface_hit *from, vec3 direction,
+                 float distance, spectrum *transmittance)
 {
-    ray r = hit_ray_to(from, direction, distance);
-    return !scene_occluded(s, &r);
+    const ray r = hit_ray_to(from, direction, distance);
+    if (scene_occluded(pass->scene, &r))
+        return false;
+    *transmittance =
+        scene_transmittance_to(pass->scene, from, direction, distance, &pass->w);
+    return true;
 }
 
 /* By the bsdf that samples: v's own, or that of the lane which the path has kept. */
@@ -49,9 +54,9 @@ static bool sample_direction(const vcm_pass *pass, const vcm_walk *walk,
     float u_lobe = sampler_1d(random);
     vec2 u = sampler_2d(random);
     bsdf one_lane;
-    const bsdf *b = walk->lane == ALL_LANES ? &v->bsdf : &one_lane;
+    const bsdf *b = walk->at.lane == ALL_LANES ? &v->bsdf : &one_lane;
     if (b == &one_lane &&
-        !scene_bsdf(pass->scene, v->hit, &pass->w, walk->lane, &options, &one_lane))
+        !scene_bsdf(pass->scene, v->hit, &pass->w, walk->at.lane, &options, &one_lane))
         return false;
     if (!bsdf_sample_direction(b, v->wo, u_lobe, u, lobes, walk->mode, out))
         return false;
@@ -72,13 +77,14 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
     else
         weights_bounce(&walk->weights, cosine, vcm_pdf(v, next.wi, walk->mode),
                        vcm_pdf_reverse(v, next.wi, walk->mode), &pass->ratios, v->alone);
-    walk->carried *= next.weight;
-    walk->lane = next.lane;
+    walk->at.throughput *= next.weight;
+    walk->at.lane = next.lane;
     walk->lobe = next.lobe;
     walk->mirrors_only &= (next.lobe & LOBE_SPECULAR) != 0;
     walk->eta2 *= next.eta * next.eta;
     walk->from = v->hit->p;
-    walk->ray = hit_ray(v->hit, next.wi);
+    walk->at.ray = hit_ray(v->hit, next.wi);
+    walk->at.from_eye = false;
     walk->counts = vcm_count(walk->counts, (next.lobe & LOBE_DIFFUSE) != 0);
-    return cosine > 0.0f && !spectrum_is_black(walk->carried);
+    return cosine > 0.0f && !spectrum_is_black(walk->at.throughput);
 }

@@ -1,0 +1,106 @@
+#include "scene/advance.h"
+
+/* Goes on behind a surface. */
+static void go_behind(ray *r, const surface_hit *hit)
+{
+    float left = r->t_max - hit->t;
+    *r = hit_ray(hit, r->direction);
+    r->t_max = left;
+}
+
+/* The nearest surface that the path sees. */
+static bool meet(const scene_traveller *who, const path_segment *path, surface_hit *hit)
+{
+    (*who->n_rays)++;
+    return path->from_eye ? scene_see(who->scene, &path->ray, hit)
+                          : scene_intersect(who->scene, &path->ray, hit);
+}
+
+static scene_event cross_medium(const scene_traveller *who, path_segment *path,
+                                const surface_hit *behind, surface_hit *at)
+{
+    const scene *s = who->scene;
+    float length = scene_medium_end(s, &path->ray, behind ? behind->t : INFINITY);
+    if (who->cross_medium)
+        return who->cross_medium(who->path, length, behind, at);
+    const medium *m = scene_medium(s, path->ray.media.participating);
+    path->throughput *= medium_transmittance(m, length, who->w);
+    return EVENT_NONE;
+}
+
+scene_event scene_advance(const scene_traveller *who, path_segment *path,
+                          surface_hit *hit)
+{
+    for (int i = 0; i < MOST_CROSSINGS; i++) {
+        bool met = meet(who, path, hit);
+        if (path->ray.media.participating) {
+            surface_hit within;
+            scene_event event = cross_medium(who, path, met ? hit : NULL, &within);
+            if (event == EVENT_MEDIUM)
+                *hit = within;
+            if (event != EVENT_NONE)
+                return event;
+        }
+        if (!met)
+            return EVENT_ESCAPE;
+        if (hit->media.solid[0])
+            path->throughput *=
+                scene_solid_transmittance(who->scene, &hit->media, hit->t, who->w);
+        if (hit->light != NO_INDEX && who->meet_light)
+            who->meet_light(who->path, hit);
+        if (hit->material != NO_INDEX)
+            return EVENT_SURFACE;
+        go_behind(&path->ray, hit);
+    }
+    return EVENT_ESCAPE;
+}
+
+bool scene_scatterer(const scene *s, const surface_hit *hit, const wavelengths *w,
+                     int lane, const bsdf_options *options, bsdf *out)
+{
+    if (hit->shape != NO_INDEX)
+        return scene_bsdf(s, hit, w, lane, options, out);
+    const medium *m = scene_medium(s, hit->media.participating);
+    bsdf_make_phase(out, m->g, lane);
+    return true;
+}
+
+bool scene_cross(const scene *s, ray *r, surface_hit *hit)
+{
+    if (!scene_intersect_solid(s, r, hit))
+        return false;
+    go_behind(r, hit);
+    return true;
+}
+
+/* Share of light that participating media leave. */
+static spectrum participating_transmittance(const scene *s, ray r, const wavelengths *w)
+{
+    spectrum out = spectrum_fill(1.0f);
+    bool met = scene_has_media(s);
+    for (int i = 0; i < MOST_CROSSINGS && met && !spectrum_is_black(out); i++) {
+        const ray way = r;
+        const medium *through = scene_medium(s, way.media.participating);
+        surface_hit hit;
+        met = scene_cross(s, &r, &hit);
+        if (through) {
+            float length = minf(met ? hit.t : INFINITY, way.t_max);
+            out *= medium_transmittance(through, scene_medium_end(s, &way, length), w);
+        }
+    }
+    return out;
+}
+
+spectrum scene_transmittance(const scene *s, const ray *r, const wavelengths *w)
+{
+    return participating_transmittance(s, *r, w) *
+           scene_solid_transmittance(s, &r->media, r->t_max, w);
+}
+
+spectrum scene_transmittance_to(const scene *s, const surface_hit *from, vec3 direction,
+                                float distance, const wavelengths *w)
+{
+    const ray r = hit_ray_to(from, direction, distance);
+    return participating_transmittance(s, r, w) *
+           scene_solid_transmittance(s, &r.media, distance, w);
+}
