@@ -52,8 +52,8 @@ static const setting_row table[] = {
      "pixelsamples samples_per_pixel", "all", "Camera rays a pixel in each pass."},
     {"max_backward_bounces", SETTING_COUNT, AT(max_backward_bounces), "", 0, 1e6, -1,
      unlimited, "maxBackwardBounces maxdepth", "all",
-     "Scattering events of a path from the eye, in photonmap those at mirrors, glass and "
-     "gloss; interfaces are none. Unlimited (-1): chance alone ends paths. The alias "
+     "Scattering events of a path from the eye, to the light it finds or to where photons "
+     "are gathered, which is one; interfaces are none. Unlimited (-1): chance alone ends paths. The alias "
      "maxdepth d bounds photons too, by d - 1."},
     {"max_forward_bounces", SETTING_COUNT, AT(max_forward_bounces), "", 0, 1e6, -1,
      unlimited, "maxForwardBounces MAX_PHOTON_BOUNCES", "photonmap auto",

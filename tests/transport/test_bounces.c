@@ -38,6 +38,51 @@ static void test_white_box(void)
     }
 }
 
+/* ---- One depth ---- */
+
+/* Of n scattering events the box keeps 1 + ρ + … + ρⁿ. Photons that are kept where they
+   land first have scattered nowhere: gathering them is one event of the eye's path, a
+   gather ray to them makes it two, and there are no more. */
+static double light_of_events(int n)
+{
+    double sum = 0;
+    for (int k = 0; k <= n; k++)
+        sum += pow(REFLECTANCE, k);
+    return sum;
+}
+
+static void test_one_depth(void)
+{
+    static const struct {
+        const char *words;
+        int most; /* events that it finds at all */
+    } each[] = {
+        {"integrator=path passes=4 spp=16", 9},
+        {"integrator=auto passes=4 spp=16", 9},
+        {"integrator=vcm passes=4 spp=16 photons=256", 9},
+        {"integrator=photonmap passes=4 spp=4 photons=8000 radius=.3 edges=false "
+         "max_forward_bounces=0 direct_illumination=off",
+         1},
+        {"integrator=photonmap passes=4 spp=4 photons=8000 radius=.3 edges=false "
+         "max_forward_bounces=0",
+         1},
+        {"integrator=photonmap passes=4 spp=4 photons=8000 radius=.3 edges=false "
+         "max_forward_bounces=0 final_gather=on gather_rays=16 precompute_radiance=off",
+         2},
+    };
+    g_autoptr(scene) s = scene_of(WHITE_BOX);
+    for (size_t i = 0; i < G_N_ELEMENTS(each); i++)
+        for (int limit = 0; limit < 4; limit++) {
+            g_autofree char *words =
+                g_strdup_printf("%s max_backward_bounces=%d", each[i].words, limit);
+            g_autoptr(image) img = render_with(s, words);
+            double expected = light_of_events(MIN(limit, each[i].most));
+            double found = mean_of(img, "");
+            g_test_message("%s: %.4f, expected %.4f", words, found, expected);
+            g_assert_cmpfloat(fabs(found / expected - 1.0), <, 0.03);
+        }
+}
+
 /* ---- Interfaces ---- */
 
 /* Panes that part nothing, across a ball of silver: before it, in it and behind it. */
@@ -210,6 +255,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/bounces/white-box", test_white_box);
+    g_test_add_func("/bounces/one-depth", test_one_depth);
     g_test_add_func("/bounces/interfaces", test_interfaces_are_none);
     g_test_add_func("/bounces/interfaces-in-fog", test_interfaces_in_fog);
     g_test_add_func("/bounces/visible", test_visible_past_interfaces);
