@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#define HOW "integrator=photonmap passes=1 spp=1 photons=3000"
+#define HOW "integrator=photonmap passes=1 spp=1 photons=3000 caustic_emission=uniform"
 
 static void remove_tree(const char *path)
 {
