@@ -54,6 +54,12 @@ size_t memory_limit(void)
     return bytes;
 }
 
+size_t memory_left(void)
+{
+    size_t all = memory_limit();
+    return all - MIN(atomic_load(&used), all);
+}
+
 /* "3.5 GiB" */
 static void write_size(size_t bytes, char *out, size_t size)
 {

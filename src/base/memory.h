@@ -50,6 +50,8 @@ bool memory_ask(size_t bytes, const char *what, GError **error);
  * what the machine, the process's cgroup and ulimit -v have, whichever is least */
 void memory_set_limit(size_t bytes);
 size_t memory_limit(void);
+/** @brief What of the limit is neither reserved nor in arrays. */
+size_t memory_left(void);
 
 /** @brief For tests: the n-th call of big_alloc, big_grow or memory_ask from now (1 =
  * next) fails once; 0 = never. */

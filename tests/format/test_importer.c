@@ -65,6 +65,22 @@ static void test_crashes(void)
     check_script("exit 3", "crashed (status 3)");
     check_script("printf nephmdl1; kill -SEGV $$", "crashed (signal 11)");
     check_script("kill -XCPU $$", "was stopped after 5 s");
+    check_script("kill -KILL $$", "was killed from outside");
+    check_script("printf nephmdl1; kill -KILL $$", "where memory is short");
+}
+
+/* It has what is left of the limit, whatever the file's size, and the machine's. */
+static void test_limit(void)
+{
+    const size_t mib = 1 << 20;
+    memory_set_limit(900 * mib);
+    g_assert_cmpuint(import_limits_of(0).memory, ==, 512 * mib);
+    g_assert_cmpuint(import_limits_of(SIZE_MAX).memory, <=, 900 * mib);
+    g_assert_true(memory_reserve(500 * mib, "a trial", NULL));
+    g_assert_cmpuint(import_limits_of(SIZE_MAX).memory, <=, 400 * mib);
+    g_assert_cmpuint(import_limits_of(SIZE_MAX).memory, >, 390 * mib);
+    memory_release(500 * mib);
+    memory_set_limit(0);
 }
 
 static void test_hang(void)
@@ -404,6 +420,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/importer/crashes", test_crashes);
     g_test_add_func("/importer/hang", test_hang);
+    g_test_add_func("/importer/limit", test_limit);
     g_test_add_func("/importer/stays", test_stays);
     g_test_add_func("/importer/talks-for-ever", test_talks_for_ever);
     g_test_add_func("/importer/open-files", test_open_files);

@@ -28,18 +28,18 @@
 enum { LEAST_MEMORY = 512 << 20, MEMORY_PER_BYTE = 250, LEAST_SECONDS = 20 };
 static const double SECONDS_PER_BYTE = 4e-6, CLOCK_PER_SECOND = 4.0;
 
-enum { BEAT_MS = 50, FIRST_ROOM = 1 << 20, ABOVE_STANDARD = 10, FIRST_FILE = 3 };
-
-static size_t machine_memory(void)
-{
-    long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
-    return pages > 0 && size > 0 ? (size_t)pages * (size_t)size : G_MAXSIZE;
-}
+enum {
+    BEAT_MS = 50,
+    GRACE_MS = 50,
+    FIRST_ROOM = 1 << 20,
+    ABOVE_STANDARD = 10,
+    FIRST_FILE = 3
+};
 
 import_limits import_limits_of(size_t file_size)
 {
     size_t growing = MIN(file_size, G_MAXSIZE / 4 / MEMORY_PER_BYTE) * MEMORY_PER_BYTE;
-    return (import_limits){MIN(LEAST_MEMORY + growing, machine_memory()),
+    return (import_limits){MIN(LEAST_MEMORY + growing, memory_left()),
                            LEAST_SECONDS + SECONDS_PER_BYTE * (double)file_size};
 }
 
@@ -267,17 +267,23 @@ static stop listen_to(const child *c, heard *h, GError **error)
 /* Whoever has closed the pipe has nothing more to say: that it ends by itself is not
  * waited for, and what it ended by is not changed by this. A number that is no child's
  * any more, since the program that we are in waits for all, may be another's.
- * @return as waitpid has it; 0 if that is not known */
-static int end(const child *c)
+ * @param grace_ms before it is killed: what is dying has closed its pipe a little before
+ * @return as waitpid has it; 0 if that is not known, or by us */
+static int end(const child *c, int grace_ms)
 {
     int status = 0;
-    if (waitpid(c->pid, &status, WNOHANG) == 0) {
-        kill(c->pid, SIGKILL);
-        while (waitpid(c->pid, &status, 0) < 0 && errno == EINTR)
-            ;
+    pid_t ended = waitpid(c->pid, &status, WNOHANG);
+    for (; ended == 0 && grace_ms > 0; grace_ms--) {
+        g_usleep(1000);
+        ended = waitpid(c->pid, &status, WNOHANG);
     }
     close(c->pipe);
-    return status;
+    if (ended != 0)
+        return status;
+    kill(c->pid, SIGKILL);
+    while (waitpid(c->pid, &status, 0) < 0 && errno == EINTR)
+        ;
+    return WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL ? 0 : status;
 }
 
 /* ---- What went wrong ---- */
@@ -309,7 +315,9 @@ static bool judge(const child *c, stop why, int status, GError **error)
     else if (why == STOP_MEMORY)
         blame_file(c, error, "tells more than %zu MB of it: the file is damaged",
                    c->limits.memory >> 20);
-    else if (why == STOP_END && killed && signal_is != SIGKILL)
+    else if (why == STOP_END && signal_is == SIGKILL)
+        blame_file(c, error, "was killed from outside, as is done where memory is short");
+    else if (why == STOP_END && killed)
         blame_file(c, error, "crashed (signal %d): the file is damaged", signal_is);
     else if (why == STOP_END && WIFEXITED(status) && WEXITSTATUS(status) != 0)
         blame_file(c, error, "crashed (status %d): the file is damaged",
@@ -326,7 +334,7 @@ void *importer_run(const import_job *job, size_t *size, GError **error)
     if (!start(&c, error))
         return NULL;
     stop why = listen_to(&c, &h, error);
-    int status = end(&c);
+    int status = end(&c, why == STOP_END ? GRACE_MS : 0);
     if (!judge(&c, why, status, error))
         g_clear_pointer(&h.bytes, big_free);
     *size = h.n;

@@ -13,7 +13,7 @@ typedef struct import_limits {
 } import_limits;
 
 /** @brief What a file of that many bytes may take: more than assimp needs of any honest
- * one, and no more memory than the machine has. */
+ * one, and no more memory than is left of the limit. */
 import_limits import_limits_of(size_t file_size);
 
 /** @brief A file that the model may name. */
