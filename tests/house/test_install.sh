@@ -30,7 +30,11 @@ shadow() {
         for entry in "$build"/*; do
             case ${entry##*/} in
             meson-private | meson-logs) ;;
-            *) ln -s "$entry" "$work/build/" || return ;;
+            *) if [ -d "$entry" ]; then
+                ln -s "$entry" "$work/build/"
+            else
+                cp -P "$entry" "$work/build/"
+            fi || return ;;
             esac
         done &&
         cp "$build/meson-private/"*.dat "$work/build/meson-private/" &&
