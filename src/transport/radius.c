@@ -19,11 +19,13 @@
 #include "math/median.h"
 #include "transport/photonmap/photonmap.h"
 #include "transport/places.h"
+#include "transport/plan/work.h"
 #include "transport/visible.h"
 
 enum {
-    PILOT_PHOTONS = 20000,
-    PILOT_POINTS = 512,
+    MOST_PILOTS = 20000, /* photons: of 16 that a distance is measured by, some for each
+                            of a thousand places */
+    PROBES = 512,        /* places that the typical radius is a median of */
 };
 
 /* Photons wanted within the radius, summed over all passes: what they are shared among
@@ -50,8 +52,6 @@ static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
 typedef struct pilot {
     transport_plan *plan;
     wavelengths w;
-    visible_point points[PILOT_POINTS];
-    size_t n_points;
     photon_map *pixels; /* at those points; flux[0] is a pixel's width there */
 } pilot;
 
@@ -82,13 +82,14 @@ static float radius_by(const void *data, vec3 p, float distance, photon_hits *hi
 static double typical_radius(const pilot *p, bool at_photons, const photon_map *map,
                              const radius_rule *rule)
 {
-    float radii[PILOT_POINTS];
+    float radii[PROBES];
+    const transport_plan *plan = p->plan;
     const photon_store *store = photon_map_store(map);
-    size_t n = 0, n_probes = at_photons ? PILOT_POINTS : p->n_points;
+    size_t n = 0, n_probes = at_photons ? PROBES : MIN(plan->n_sight, PROBES);
     photon_hits hits = {0};
     for (size_t i = 0; i < n_probes && store->n >= PLACES_NEAREST; i++) {
         vec3 at = at_photons ? photon_store_get(store, i * store->n / n_probes).p
-                             : p->points[i].p;
+                             : plan->sight[i].p;
         float d = places_distance(map, at, &hits);
         if (d > 0.0f)
             radii[n++] = radius_by(rule, at, d, &hits);
@@ -100,10 +101,10 @@ static double typical_radius(const pilot *p, bool at_photons, const photon_map *
 static photon_map *map_of_pixels(const pilot *p, GError **error)
 {
     photon_store store = {0};
-    if (!photon_store_reserve(&store, p->n_points, error))
+    if (!photon_store_reserve(&store, p->plan->n_sight, error))
         return NULL;
-    for (size_t i = 0; i < p->n_points; i++) {
-        const visible_point *seen = &p->points[i];
+    for (size_t i = 0; i < p->plan->n_sight; i++) {
+        const visible_point *seen = &p->plan->sight[i];
         photon at = {.p = seen->p, .wi = {0, 0, 1}, .flux = spectrum_fill(seen->pixel)};
         photon_store_put(&store, &at);
     }
@@ -129,10 +130,20 @@ static photon_map *map_of(photon_store *from, unsigned threads, GError **error)
     return photon_map_build(MAP_KDTREE, &store, 0.0f, threads, error);
 }
 
+/* Of all classes that are sent one trial's share. */
+static uint64_t n_pilots(const transport_plan *plan, photon_class c)
+{
+    int n_classes = 0;
+    for (int i = 0; i < N_PHOTON_CLASSES; i++)
+        n_classes += plan->n_photons[i] > 0;
+    uint32_t n = plan_trials_for(plan, 0.5, PHOTON_RAYS * n_classes, MOST_PILOTS);
+    return MIN(plan->n_photons[c], n);
+}
+
 static bool send_pilot(const pilot *p, photon_class c, const cancel_flag *cancel,
                        pilot_maps *out, GError **error)
 {
-    const transport_plan *plan = p->plan;
+    transport_plan *plan = p->plan;
     unsigned threads = (unsigned)plan->how.threads;
     trace_task task = {
         .scene = plan->scene,
@@ -142,13 +153,14 @@ static bool send_pilot(const pilot *p, photon_class c, const cancel_flag *cancel
         .photon_class = c,
         .guide = plan->guide,
         .share = plan->shares ? &plan->share : NULL,
-        .n_photons = MIN(plan->n_photons[c], PILOT_PHOTONS),
+        .n_photons = n_pilots(plan, c),
         .cancel = cancel,
     };
     trace_result traced;
     *out = (pilot_maps){.n_emitted = task.n_photons};
     if (!photon_trace(&task, false, &traced, error))
         return false;
+    plan->planning += (double)traced.n_rays;
     out->on_surfaces = map_of(&traced.photons, threads, error);
     if (out->on_surfaces)
         out->in_media = map_of(&traced.in_media, threads, error);
@@ -223,7 +235,7 @@ bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,
     bool ok = true;
     pilot p = {.plan = plan, .w = scene_trial_wavelengths(plan->scene, 0)};
     if (!(plan->how.radius > 0.0)) {
-        p.n_points = find_visible_points(plan, PILOT_POINTS, p.points);
+        plan_look(plan);
         p.pixels = map_of_pixels(&p, error);
         ok = p.pixels != NULL;
     }

@@ -62,6 +62,8 @@ void transport_plan_clear(transport_plan *plan)
     emission_guide_free(plan->guide);
     plan->guide = NULL;
     g_clear_pointer(&plan->boost, g_free);
+    g_clear_pointer(&plan->sight, g_aligned_free);
+    plan->n_sight = 0;
     g_clear_pointer(&plan->density, photon_map_free);
     photon_store_clear(&plan->lit);
     plan->share = (caustic_share){0};

@@ -75,10 +75,39 @@ typedef struct transport_counts {
     uint64_t memory_photons; /**< bytes of the maps */
 } transport_counts;
 
-/** @brief Decisions taken once, before the first pass. */
+/** @brief A point where the camera looks (transport/visible.h). */
+typedef struct visible_point {
+    vec3 p;
+    float pixel; /**< width of a pixel's footprint there, m */
+} visible_point;
+
+/** @brief What one of something costs, as trials measured it. */
+typedef struct plan_cost {
+    double variance; /**< up to a factor that is the same of all that it is compared with
+                      */
+    double rays;     /**< and what takes as long as rays */
+} plan_cost;
+
+/** @brief A technique that was tried. */
+typedef struct plan_trial {
+    const char *what; /**< static */
+    plan_cost without, with;
+    bool taken;
+} plan_trial;
+
+enum { MOST_PLAN_TRIALS = 4 }; /* size: caustic photons, guide, bright spots, one spare */
+
+/** @brief Decisions taken once, before the first pass: of scene and settings alone, the
+ * same on any machine with any number of threads. */
 typedef struct transport_plan {
     const scene *scene;
     settings how;
+    double work;     /**< asked for, in rays: a first guess */
+    double planning; /**< rays that trials cost */
+    plan_trial trials[MOST_PLAN_TRIALS];
+    int n_trials;
+    visible_point *sight; /**< where the camera looks; owned; NULL: not looked yet */
+    size_t n_sight;
     const cancel_flag *cancel; /**< of the render that this is for: once set, passes and
                                   samples end as they are, worth nothing; NULL: never */
     uint64_t
@@ -99,8 +128,9 @@ typedef struct transport_plan {
     float *boost;          /**< share.boost; owned */
     photon_store lit;      /**< places that light sampling found lit (path_effort_measure)
                             */
-    float p_spots;         /**< path_pass.p_spots, where no photons are sent */
-    double sample_rays;    /**< that a sample costs, photons apart */
+    float p_spots;         /**< path_pass.p_spots */
+    double sample_rays;    /**< that a sample costs, photons apart ... */
+    double photon_rays;    /**< and its part of the photons of a pass */
     float p_blurred;       /**< probability of a gather that is seen by way of a diffuse
                               bounce, where photons share */
     float p_blurred_in_media; /**< the same of one along a way through a medium: about

@@ -1,10 +1,15 @@
 #include "transport/visible.h"
 
 #include "scene/advance.h"
+#include "transport/plan/work.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-enum { MAX_BOUNCES = 16, PIXEL_POINTS = 128 };
+enum {
+    MAX_BOUNCES = 16,
+    MOST_POINTS = 4096, /* one for a patch of 14 x 14 pixels in a picture of 1024 x 768 */
+};
 
 /* The nearest of so many points, and how much wider than its pixels those that count may
    be. */
@@ -69,16 +74,32 @@ size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point
     return found;
 }
 
+void plan_look(transport_plan *plan)
+{
+    if (plan->sight)
+        return;
+    uint32_t n = plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_POINTS);
+    plan->sight = g_aligned_alloc0(n, sizeof *plan->sight, 16);
+    plan->n_sight = find_visible_points(plan, n, plan->sight);
+    plan->planning += n * PHOTON_RAYS;
+}
+
 static int by_pixel(const void *a, const void *b)
 {
     float x = ((const visible_point *)a)->pixel, y = ((const visible_point *)b)->pixel;
     return (x > y) - (x < y);
 }
 
-float visible_pixel(const transport_plan *plan)
+float visible_pixel(transport_plan *plan)
 {
-    visible_point points[PIXEL_POINTS];
-    size_t n = find_visible_points(plan, PIXEL_POINTS, points);
+    plan_look(plan);
+    size_t n = plan->n_sight;
+    if (n == 0)
+        return 0.0f;
+    visible_point *points = g_aligned_alloc0(n, sizeof *points, 16);
+    memcpy(points, plan->sight, n * sizeof *points);
     qsort(points, n, sizeof *points, by_pixel);
-    return n > 0 ? minf(points[n / 2].pixel, MOST_NEAR * points[n / NEAR].pixel) : 0.0f;
+    float pixel = minf(points[n / 2].pixel, MOST_NEAR * points[n / NEAR].pixel);
+    g_aligned_free(points);
+    return pixel;
 }

@@ -7,7 +7,7 @@
 #include "photon/estimate.h"
 #include "photon/trace/trace.h"
 #include "scene_text.h"
-#include "transport/auto/aim.h"
+#include "transport/plan/aim.h"
 
 #include <string.h>
 
@@ -199,7 +199,8 @@ static void test_aimed_emission_has_the_same_flux(void)
         transport_plan plan = {.scene = s, .how = how};
         plan.how.caustic_emission = EMISSION_GUIDED;
         plan.n_photons[PHOTON_CAUSTIC] = 1;
-        g_assert_true(aim_caustics(&plan, NULL, NULL, NULL, NULL));
+        plan.work = (double)INFINITY;
+        g_assert_true(aim_caustics(&plan, NULL, NULL, NULL));
         flux_mean guided = flux_left(&plan, PHOTON_CAUSTIC, false, 1 << 17);
         transport_plan_clear(&plan);
         double guided_error =

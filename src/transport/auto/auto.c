@@ -1,16 +1,16 @@
 #include "transport/auto/auto.h"
 
-#include "transport/auto/aim.h"
-#include "transport/auto/budget.h"
 #include "transport/path/path.h"
 #include "transport/photonmap/photonmap.h"
+#include "transport/plan/caustics.h"
+#include "transport/plan/work.h"
 #include "transport/visible.h"
 
 /* Before radii are known: so many pixels, for the share that trial photons take. */
 #define TRIAL_PIXELS 4.0
 
 /* The share of trial photons, as of a pass with a radius of a few pixels. */
-static caustic_share trial_share(const transport_plan *plan)
+static caustic_share trial_share(transport_plan *plan)
 {
     double radius = plan->how.radius;
     if (!(radius > 0.0))
@@ -21,29 +21,9 @@ static caustic_share trial_share(const transport_plan *plan)
 }
 
 enum {
-    MOST_LIT = 8192, /* places */
-    /* Pictures of so few samples are done before it is known where to look. */
-    LEAST_SAMPLES = 1 << 15,
+    MOST_LIT = 8192,           /* size: places that light sampling found lit */
+    MOST_SPOT_PHOTONS = 20000, /* of a trial: forty for each spot */
 };
-
-/* Sends trial photons, and from what they bring decides how many a pass has. */
-static bool plan_photons(transport_plan *plan, const path_effort *paths,
-                         const cancel_flag *cancel, GError **error)
-{
-    aim_result found = {.noise = (double)INFINITY};
-    const aim_effort effort = {
-        .samples = caustic_planned_samples(plan),
-        .least_noise = caustic_least_noise(plan, paths),
-    };
-    if (!aim_caustics(plan, &effort, &found, cancel, error)) {
-        g_free(found.boost);
-        return false;
-    }
-    plan->boost = found.boost;
-    plan->share.boost = found.boost;
-    caustic_budget_decide(plan, &found, paths);
-    return true;
-}
 
 /* Spots of the places that light sampling found lit and of the pass' photons. */
 static bool find_spots(path_pass *pass, GError **error)
@@ -72,39 +52,6 @@ static void free_spots(path_pass *pass)
         photon_spots_free(pass->spots[i]);
 }
 
-/* Without photons, spots are the same in all passes. */
-static bool plan_spots(transport_plan *plan, const path_effort *paths, GError **error)
-{
-    path_pass *pass = transport_path.begin_pass(plan, 0, NULL, NULL, NULL);
-    plan->sample_rays = paths->rays;
-    bool found = plan->lit.n == 0 || find_spots(pass, error);
-    plan->p_spots = found && plan->lit.n > 0 ? spots_decide(pass, 0) : 0.0f;
-    free_spots(pass);
-    transport_path.end_pass(pass);
-    return found;
-}
-
-static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
-{
-    bool many = plan->how.bright_spots && caustic_planned_samples(plan) >= LEAST_SAMPLES;
-    plan->n_photons[PHOTON_CAUSTIC] = caustic_budget(plan);
-    if (plan->n_photons[PHOTON_CAUSTIC] == 0 && !many)
-        return true;
-    plan->lit.oriented = true;
-    if (many && !photon_store_reserve(&plan->lit, MOST_LIT, error))
-        return false;
-    path_effort paths = path_effort_measure(plan, many ? &plan->lit : NULL);
-    if (plan->n_photons[PHOTON_CAUSTIC] > 0) {
-        plan->shares = true;
-        plan->share = trial_share(plan);
-        if (!plan_photons(plan, &paths, cancel, error))
-            return false;
-    }
-    return plan->n_photons[PHOTON_CAUSTIC] == 0
-               ? plan_spots(plan, &paths, error)
-               : photonmap_choose_radii(plan, cancel, error);
-}
-
 static void end_pass(void *data)
 {
     path_pass *pass = data;
@@ -114,35 +61,100 @@ static void end_pass(void *data)
     transport_path.end_pass(pass);
 }
 
-/* Traces the pass' photons, and asks them where to look. */
-static bool send_photons(path_pass *pass, uint32_t index, const cancel_flag *cancel,
-                         transport_counts *counts, GError **error)
-{
-    const transport_plan *plan = pass->plan;
-    pass->caustics = transport_photonmap.begin_pass(plan, index, cancel, counts, error);
-    if (!pass->caustics || (plan->how.bright_spots && !find_spots(pass, error)))
-        return false;
-    if (plan->how.bright_spots)
-        pass->p_spots = spots_decide(pass, index);
-    return true;
-}
-
 static void *begin_pass(const transport_plan *plan, uint32_t index,
                         const cancel_flag *cancel, transport_counts *counts,
                         GError **error)
 {
     path_pass *pass = transport_path.begin_pass(plan, index, cancel, counts, error);
     bool ok = true;
-    if (plan->n_photons[PHOTON_CAUSTIC] > 0)
-        ok = send_photons(pass, index, cancel, counts, error);
-    else if (plan->p_spots > 0.0f)
+    if (plan->n_photons[PHOTON_CAUSTIC] > 0) {
+        pass->caustics =
+            transport_photonmap.begin_pass(plan, index, cancel, counts, error);
+        ok = pass->caustics;
+    }
+    pass->p_spots = plan->p_spots;
+    if (ok && plan->p_spots > 0.0f)
         ok = find_spots(pass, error);
-    if (ok && plan->n_photons[PHOTON_CAUSTIC] == 0)
-        pass->p_spots = plan->p_spots;
     if (ok)
         return pass;
     end_pass(pass);
     return NULL;
+}
+
+/* ---- Planning ---- */
+
+/* What paths do, and with which photons and how many they are helped best. */
+static bool try_photons(transport_plan *plan, path_effort *paths,
+                        const cancel_flag *cancel, GError **error)
+{
+    aim_result found = {0};
+    plan->lit.oriented = true;
+    if (plan->how.bright_spots && !photon_store_reserve(&plan->lit, MOST_LIT, error))
+        return false;
+    *paths = path_effort_measure(plan, plan->how.bright_spots ? &plan->lit : NULL);
+    plan->sample_rays = paths->rays;
+    if (!aim_caustics(plan, &found, cancel, error)) {
+        g_free(found.boost);
+        return false;
+    }
+    plan->boost = found.boost;
+    plan->share.boost = found.boost;
+    if (plan->n_photons[PHOTON_CAUSTIC] > 0)
+        caustics_decide(plan, &found, paths);
+    return true;
+}
+
+/* A pass with few photons, whose radii are as much larger. */
+static transport_plan small_pass(const transport_plan *plan)
+{
+    transport_plan small = *plan;
+    uint64_t *n = &small.n_photons[PHOTON_CAUSTIC];
+    small.how.seed = (int64_t)(hash_mix((uint64_t)plan->how.seed, 0x736d616c6cu) >> 1);
+    *n = MIN(*n, plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_SPOT_PHOTONS));
+    double fewer = (double)plan->n_photons[PHOTON_CAUSTIC] / (double)MAX(*n, 1);
+    small.radius[PHOTON_CAUSTIC] *= sqrt(fewer);
+    small.radius_in_media[PHOTON_CAUSTIC] *= cbrt(fewer);
+    small.radius_map[PHOTON_CAUSTIC] = small.radius_map_in_media[PHOTON_CAUSTIC] = NULL;
+    return small;
+}
+
+/* Whether and how often paths look at bright spots. */
+static bool try_spots(transport_plan *plan, const cancel_flag *cancel, GError **error)
+{
+    bool sends = plan->n_photons[PHOTON_CAUSTIC] > 0;
+    if (!plan->how.bright_spots || !spots_fit(plan) || !(sends || plan->lit.n > 0))
+        return true;
+    transport_plan small = small_pass(plan);
+    transport_counts counts = {0};
+    small.p_spots = 1.0f;
+    path_pass *pass = begin_pass(&small, 0, cancel, &counts, error);
+    if (!pass)
+        return false;
+    plan->planning += (double)counts.photon_rays;
+    spots_decide(plan, pass);
+    end_pass(pass);
+    return true;
+}
+
+/* In this order, since each trial asks what those before it have decided. */
+static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
+{
+    path_effort paths;
+    plan_ask(plan, 0.0);
+    plan->n_photons[PHOTON_CAUSTIC] = caustics_most(plan);
+    plan->shares = plan->n_photons[PHOTON_CAUSTIC] > 0;
+    if (plan_is_tiny(plan))
+        caustics_settle(plan);
+    if (!plan->shares && !plan->how.bright_spots)
+        return true;
+    if (plan->shares)
+        plan->share = trial_share(plan);
+    if (!plan_is_tiny(plan) && !try_photons(plan, &paths, cancel, error))
+        return false;
+    if (plan->n_photons[PHOTON_CAUSTIC] > 0 &&
+        !photonmap_choose_radii(plan, cancel, error))
+        return false;
+    return try_spots(plan, cancel, error);
 }
 
 static const wavelengths *pass_wavelengths(const void *pass)

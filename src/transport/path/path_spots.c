@@ -5,9 +5,10 @@
  * that is lit by what the sun throws through its window is no noisier than one with a
  * lamp there.
  */
-#include "transport/auto/budget.h"
 #include "transport/direct.h"
 #include "transport/path/path_walk.h"
+#include "transport/plan/path_trial.h"
+#include "transport/plan/work.h"
 
 /* A look at a spot: the surface that the ray met, and how likely it was sent there. */
 typedef struct look {
@@ -119,29 +120,46 @@ static void note_look(const path_walk *walk, const radiance_sample *before,
     spot_trial_note(walk->pass->trial, &note);
 }
 
+/* Looks, and adds what is seen. @param u its `primitive` is below p, the probability */
+static void look_aside(path_walk *walk, const camera_path *path, const surface_hit *hit,
+                       const bsdf *b, const light_numbers *u, float p)
+{
+    const bool tries = walk->pass->trial;
+    const radiance_sample before = *walk->out;
+    look seen;
+    if (!look_at_spot(walk, path, hit, b, u, &seen))
+        return;
+    camera_path to = path_to(path, &seen, b, u->primitive / p);
+    float weight = (1.0f - followed_weight(seen.pdf_scatter, seen.pdf * p)) / p;
+    to.at.throughput *= tries ? 1.0f : weight;
+    path_sample_lights(walk, &to, &seen.hit, &seen.bsdf);
+    path_gather_caustics(walk, &to, &seen.hit, &seen.bsdf);
+    if (tries)
+        note_look(walk, &before, &seen, importance(path), weight);
+}
+
+/* What it cost: the rays, asking for the density and, where there are photons, for them.
+ */
+static void note_cost(const path_walk *walk, const camera_path *path, uint64_t before)
+{
+    double queries = walk->pass->caustics ? 2.0 : 1.0;
+    double rays = (double)(walk->scratch->shadow_rays - before) + queries * GATHER_RAYS;
+    walk->pass->trial->rays += rays * (double)importance(path);
+}
+
 void path_look_at_spots(path_walk *walk, const camera_path *path, const surface_hit *hit,
                         const bsdf *b)
 {
-    spot_trial *trial = walk->pass->trial;
     float p = path_looks(walk, path, b);
-    look seen;
+    uint64_t before = walk->scratch->shadow_rays;
     if (!(p > 0.0f))
         return;
-    const radiance_sample before = *walk->out;
     const light_numbers u = sampler_light(walk->random);
     if (!(u.primitive < p))
         return;
-    if (trial)
-        trial->looks += (double)importance(path);
-    if (!look_at_spot(walk, path, hit, b, &u, &seen))
-        return;
-    camera_path to = path_to(path, &seen, b, u.primitive / p);
-    float weight = (1.0f - followed_weight(seen.pdf_scatter, seen.pdf * p)) / p;
-    to.at.throughput *= trial ? 1.0f : weight;
-    path_sample_lights(walk, &to, &seen.hit, &seen.bsdf);
-    path_gather_caustics(walk, &to, &seen.hit, &seen.bsdf);
-    if (trial)
-        note_look(walk, &before, &seen, importance(path), weight);
+    look_aside(walk, path, hit, b, &u, p);
+    if (walk->pass->trial)
+        note_cost(walk, path, before);
 }
 
 float path_left_by_spots(path_walk *walk, const camera_path *path, const surface_hit *hit,

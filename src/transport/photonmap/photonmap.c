@@ -1,9 +1,10 @@
 #include "transport/photonmap/photonmap.h"
 
 #include "base/memory.h"
-#include "transport/auto/aim.h"
 #include "transport/photonmap/photonmap_medium.h"
 #include "transport/places.h"
+#include "transport/plan/aim.h"
+#include "transport/plan/work.h"
 
 double photonmap_radius(double radius, double alpha, uint32_t pass)
 {
@@ -67,7 +68,11 @@ static void share_photons(transport_plan *plan)
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
     share_photons(plan);
-    return aim_caustics(plan, NULL, NULL, cancel, error) &&
+    double n_photons = 0.0;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        n_photons += (double)plan->n_photons[c];
+    plan_ask(plan, n_photons);
+    return (plan_is_tiny(plan) || aim_caustics(plan, NULL, cancel, error)) &&
            photonmap_choose_radii(plan, cancel, error);
 }
 

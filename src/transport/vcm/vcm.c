@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "transport/photonmap/photonmap.h"
+#include "transport/plan/work.h"
 #include "transport/visible.h"
 
 /* The automatic radius over that of photon mapping's indirect light, and in pixels at
@@ -63,6 +64,7 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
         return false;
     }
     plan->n_photons[PHOTON_INDIRECT] = count_light_paths(plan);
+    plan_ask(plan, (double)plan->n_photons[PHOTON_INDIRECT]);
     if (plan->how.vcm_strategies == VCM_LIGHT && !camera_connects(&plan->scene->camera)) {
         error_set(error, ERROR_INPUT,
                   "light can not be traced to camera \"%s\": expected other "

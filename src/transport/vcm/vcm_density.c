@@ -4,11 +4,12 @@
  * depend on the vertices they are for.
  */
 #include "transport/places.h"
+#include "transport/plan/work.h"
 #include "transport/vcm/vcm.h"
 
 #include <float.h>
 
-enum { PILOT_PATHS = 20000 };
+enum { MOST_PATHS = 20000 };
 
 #define PILOT_PASS 0xfffffffeu
 
@@ -46,10 +47,12 @@ bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **
         .index = PILOT_PASS,
         .strategies.merge = true,
         .n_slices = 1,
-        .light.n = MIN(plan->n_photons[PHOTON_INDIRECT], PILOT_PATHS),
+        .light.n = MIN(plan->n_photons[PHOTON_INDIRECT],
+                       plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_PATHS)),
     };
     if (!vcm_trace_light(&pilot, cancel, &counts, error))
         return false;
+    plan->planning += (double)counts.photon_rays;
     g_autoptr(photon_map) map = map_of(&pilot.light, (unsigned)plan->how.threads, error);
     if (map)
         plan->density = places_keep(map, (unsigned)plan->how.threads, density_at,

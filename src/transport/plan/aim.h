@@ -7,7 +7,7 @@
 #include "photon/trace/guide.h"
 #include "transport/transport.h"
 
-enum { AIM_SHARES = 5 };
+enum { AIM_SHARES = 5 }; /* fewer photons are a blur, which no variance tells of */
 
 /** @brief Of all photons of a pass: 1, 1/2, 1/4, ... */
 static inline double aim_share(int i)
@@ -23,20 +23,15 @@ typedef struct aim_result {
                       it is in the picture by way of other surfaces only, and not in
                       noise */
     double left[AIM_SHARES]; /**< what is left of it where so many photons help */
+    double rays;             /**< of a photon */
     float *boost; /**< by light: how much denser than by the light's own emission useful
                      photons are sent; the caller frees it with g_free */
 } aim_result;
 
-/** @brief How much trials may cost. */
-typedef struct aim_effort {
-    double samples;     /**< the camera's in all passes: trials are few beside them */
-    double least_noise; /**< what is below needs no guide, and trials end early */
-} aim_effort;
-
-/** @brief Makes plan->guide for the caustic photons, where the settings ask for it. false
- * when cancelled or out of memory. Deterministic: it depends on scene and settings only.
- * @param effort NULL: as much as it takes
- * @param result NULL: not asked for; unchanged where nothing is learned
+/** @brief Sends trial photons of the caustic class; from them makes plan->guide where the
+ * settings ask for it and photons with it are less noisy for their rays than those without. false when
+ * cancelled or out of memory. Deterministic: it depends on scene and settings only.
+ * @param result NULL: not asked for; unchanged where no photons are sent
  */
-bool aim_caustics(transport_plan *plan, const aim_effort *effort, aim_result *result,
-                  const cancel_flag *cancel, GError **error);
+bool aim_caustics(transport_plan *plan, aim_result *result, const cancel_flag *cancel,
+                  GError **error);

@@ -1,32 +1,26 @@
-#include "transport/auto/aim.h"
+#include "transport/plan/aim.h"
 
 #include "base/memory.h"
 #include "scene/advance.h"
+#include "transport/plan/work.h"
 #include "transport/visible.h"
 
 enum {
-    ROUNDS = 4,
-    TRIALS = 1 << 14,     /* photons a round */
-    MAX_TRIALS = 1 << 18, /* in the first round, if hardly any arrives */
-    LEAST_TRIALS = 1 << 12,
-    BATCHES = 4,            /* of a round's trials: what is worthless may show early */
-    SAMPLES_PER_TRIAL = 64, /* of the camera, planned, for each trial of a round ... */
-    SAMPLES_PER_FIRST_TRIAL = 16, /* ... and of the first, if hardly any arrives */
-    TELLING_ARRIVALS = 32,        /* so many show that photons bring next to nothing */
-    ENOUGH_ARRIVALS = 1000,
-    VISIBLE_POINTS = 4096,
-    CHUNK = 256,
+    ROUNDS = 4,                /* the first is uniform, the last tells what the guide is
+                                  worth; between them it is refined twice */
+    MOST_TRIALS = 1 << 16,     /* photons a round: what a 2000th of them finds is found by
+                                  thirty, enough for a cell of the guide to be split */
+    ENOUGH_ARRIVALS = 1 << 13, /* a round: two for each cell that the guide may have */
+    CHUNK = 256,              /* size: of a thread's work */
+    BATCHES = 16,             /* size: a round is seldom longer by more than such a part */
 };
 
-/* Trial photons are those of passes that no render reaches. */
+/* id: trial photons are those of passes that no render reaches. */
 #define TRIAL_PASS 0xfffffff0u
 
 /* A photon that lands out of the camera's sight is worth this share of one in sight: it
    may still be seen by way of other surfaces. */
 #define UNSEEN_VALUE 0.05f
-
-/* Less light than this from a point in a medium is none. */
-#define LEAST_SEEN 0.05f
 
 /* Visible points stand for what lies between them: so many of their mean distances
  * around. */
@@ -37,44 +31,52 @@ enum {
 typedef struct trial_noise {
     double of_paths, left[AIM_SHARES];
     double seen, unseen; /* flux that landed in the camera's sight, and out of it */
+    uint32_t rays;
 } trial_noise;
+
+/* The trials of a round as they were and, weighed, as they had been without the guide:
+   sums of value, its square, and rays. */
+typedef struct guide_trial {
+    double n, value, square, rays, square_without, rays_without;
+} guide_trial;
 
 /* What the trials of a round share. */
 typedef struct trials {
     trace_task task;
+    transport_plan *plan;
     photon_map *visible;      /* visible points; flux[0] is the reach of each */
     float most_reach;         /* of all of them, m */
+    double pixels_each;       /* that a visible point stands for */
     emission_record *records; /* one per trial, value 0 if it did not arrive */
     trial_noise *noise;       /* one per trial */
     size_t first;             /* trials of the round before this batch */
     size_t n_known;           /* records of earlier rounds ... */
     size_t n_arrived;         /* ... and behind them of this one */
-    size_t each;              /* trials of a round */
-    size_t most;              /* of the first round, if hardly any arrives */
-    double least_noise;       /* see aim_effort */
-    aim_result *result;       /* NULL: not asked for */
+    size_t each;              /* trials of a round, unless enough arrive */
+    size_t batch;             /* trials at a time */
+    guide_trial round;
+    aim_result *result; /* NULL: not asked for */
 } trials;
 
 /* ---- Where the camera looks ---- */
 
+static double pixels_each(const transport_plan *plan)
+{
+    const film_settings *film = &plan->scene->film;
+    return (double)film->width * (double)film->height / (double)MAX(plan->n_sight, 1);
+}
+
 static photon_map *visible_map(const transport_plan *plan, GError **error)
 {
-    visible_point *points =
-        big_alloc(VISIBLE_POINTS, sizeof *points, "visible points", error);
     photon_store store = {0};
-    if (!points || !photon_store_reserve(&store, VISIBLE_POINTS, error)) {
-        big_free(points);
+    if (!photon_store_reserve(&store, MAX(plan->n_sight, 1), error))
         return NULL;
-    }
-    size_t n = find_visible_points(plan, VISIBLE_POINTS, points);
-    const film_settings *film = &plan->scene->film;
-    float pixels_each = (float)film->width * (float)film->height / VISIBLE_POINTS;
-    for (size_t i = 0; i < n; i++) {
-        float reach = SIGHT_REACH * points[i].pixel * sqrtf(pixels_each);
-        photon p = {.p = points[i].p, .wi = {0, 0, 1}, .flux = spectrum_fill(reach)};
+    for (size_t i = 0; i < plan->n_sight; i++) {
+        const visible_point *seen = &plan->sight[i];
+        float reach = SIGHT_REACH * seen->pixel * sqrtf((float)pixels_each(plan));
+        photon p = {.p = seen->p, .wi = {0, 0, 1}, .flux = spectrum_fill(reach)};
         photon_store_put(&store, &p);
     }
-    big_free(points);
     return photon_map_build(MAP_KDTREE, &store, 0.0f, 1, error);
 }
 
@@ -114,8 +116,8 @@ static float sight_in_medium(const trials *all, const surface_hit *hit)
     if (scene_occluded(task->scene, &r))
         return 0.0f;
     float left = spectrum_mean(scene_transmittance(task->scene, &r, &task->w));
-    float pixels = (float)film->width * (float)film->height / VISIBLE_POINTS;
-    return left < LEAST_SEEN
+    float pixels = (float)all->pixels_each;
+    return left < UNSEEN_VALUE
                ? 0.0f
                : SIGHT_REACH * SIGHT_REACH * pixels * camera_pixel_area(c, eye.distance);
 }
@@ -148,6 +150,7 @@ static void add_noise(trial_noise *sum, const photon_event *event, float sight)
 static void note_arrival(const photon_event *event, void *data)
 {
     trial *t = data;
+    t->noise.rays += event->kind == PHOTON_EMITTED || event->kind == PHOTON_SCATTERED;
     float flux = spectrum_mean(event->flux);
     if (event->kind != PHOTON_STORED || !isfinite(flux))
         return;
@@ -175,6 +178,18 @@ static void run_trials(size_t begin, size_t end, unsigned thread, void *data)
     photon_hits_clear(&hits);
 }
 
+/* A photon that is drawn with density d instead of uniformly brings 1/d of it. */
+static void add_round(guide_trial *sum, const emission_record *record, uint32_t rays)
+{
+    double v = (double)record->value, d = (double)record->density;
+    sum->n++;
+    sum->value += v;
+    sum->square += v * v;
+    sum->rays += rays;
+    sum->square_without += v * v * d;
+    sum->rays_without += rays / d;
+}
+
 /* Moves the records that arrived to the front. @return how many. */
 static size_t keep_arrivals(emission_record *records, trial_noise *noise, size_t n)
 {
@@ -195,9 +210,8 @@ static double noise_scale(const trials *all)
 {
     const film_settings *film = &all->task.scene->film;
     double pixels = (double)film->width * (double)film->height;
-    double pixels_each = pixels / VISIBLE_POINTS;
     double reflected = TYPICAL_ALBEDO / G_PI;
-    double per_pixel = (double)(SIGHT_REACH * SIGHT_REACH) * pixels_each / pixels;
+    double per_pixel = (double)(SIGHT_REACH * SIGHT_REACH) * all->pixels_each / pixels;
     double of_all = (double)all->task.n_photons / (double)all->first;
     return per_pixel * reflected * reflected * of_all * (double)all->task.n_photons /
            (double)all->task.share->discs;
@@ -217,6 +231,7 @@ static void sum_noise(const trials *all)
             sum.left[k] += noise->left[k];
     }
     out->noise = sum.of_paths * scale;
+    out->rays = all->round.rays / fmax(all->round.n, 1.0);
     out->unseen = sum.unseen > 0.0 ? sum.unseen / (sum.seen + sum.unseen) : 0.0;
     for (int k = 0; k < AIM_SHARES; k++)
         out->left[k] = sum.left[k] * scale;
@@ -245,31 +260,20 @@ static void note_result(const trials *all)
         out->boost[i] = value[i] > 0.0 ? (float)(dense[i] / value[i]) : 1.0f;
 }
 
-/* Photons without a guide tell less well what they are worth: before the guide is given
-   up on, they must fall short by so much. */
-#define CLEARLY 0.25
-
-static bool is_worthless(const trials *all)
-{
-    return all->result && all->n_arrived >= TELLING_ARRIVALS &&
-           all->result->noise < CLEARLY * all->least_noise;
-}
-
 static bool run_batch(trials *all, GError **error)
 {
     trials batch = *all;
     batch.records += all->n_known + all->n_arrived;
     batch.noise += all->n_known + all->n_arrived;
-    const size_t n = all->each / BATCHES;
-    if (!parallel_for(n, CHUNK, (unsigned)all->task.how->threads, all->task.cancel,
-                      run_trials, &batch)) {
+    if (!parallel_for(all->batch, CHUNK, (unsigned)all->task.how->threads,
+                      all->task.cancel, run_trials, &batch)) {
         error_set(error, ERROR_CANCELLED, "cancelled");
         return false;
     }
-    all->n_arrived += keep_arrivals(batch.records, batch.noise, n);
-    all->first += n;
-    if (all->result)
-        note_result(all);
+    for (size_t i = 0; i < all->batch; i++)
+        add_round(&all->round, &batch.records[i], batch.noise[i].rays);
+    all->n_arrived += keep_arrivals(batch.records, batch.noise, all->batch);
+    all->first += all->batch;
     return true;
 }
 
@@ -277,59 +281,59 @@ static bool run_batch(trials *all, GError **error)
    of all rounds: what is rare is learned from the few that ever found it. */
 static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError **error)
 {
-    size_t limit = round == 0 ? all->most : all->each;
     all->task.pass = TRIAL_PASS + round;
     all->task.w = scene_trial_wavelengths(all->task.scene, round);
     all->first = all->n_arrived = 0;
-    do {
+    all->round = (guide_trial){0};
+    while (all->first < all->each && all->n_arrived < ENOUGH_ARRIVALS)
         if (!run_batch(all, error))
             return false;
-    } while (!is_worthless(all) &&
-             (all->first < all->each ||
-              (all->first < limit && all->n_arrived < ENOUGH_ARRIVALS)));
+    all->plan->planning += all->round.rays;
+    if (all->result)
+        note_result(all);
     all->n_known += all->n_arrived;
-    emission_guide_learn(guide, all->records, all->n_known);
+    if (guide)
+        emission_guide_learn(guide, all->records, all->n_known);
     return true;
 }
 
 static bool learn(trials *all, emission_guide *guide, GError **error)
 {
-    size_t n = ROUNDS * all->each + ENOUGH_ARRIVALS;
+    size_t n = ROUNDS * (MIN(all->each, ENOUGH_ARRIVALS) + all->batch);
     all->records = big_alloc(n, sizeof *all->records, "trial photons", error);
     all->noise =
         all->records ? big_alloc(n, sizeof *all->noise, "trial photons", error) : NULL;
     bool ok = all->noise != NULL;
-    for (uint32_t round = 0; round < ROUNDS && ok && !is_worthless(all); round++)
+    for (uint32_t round = guide ? 0 : ROUNDS - 1; round < ROUNDS && ok; round++)
         ok = run_round(all, guide, round, error);
     big_free(all->records);
     big_free(all->noise);
     return ok;
 }
 
-/* Trials of a round, and of the first one if hardly any arrives. */
-static void set_effort(trials *all, const aim_effort *effort)
+/* By the last round's photons: whether those that are drawn with the guide are less noisy
+   for their rays than uniform ones. */
+static bool guide_pays(const trials *all)
 {
-    double wanted = effort ? effort->samples / SAMPLES_PER_TRIAL : (double)INFINITY;
-    all->each = (size_t)CLAMP(wanted, LEAST_TRIALS, TRIALS);
-    wanted *= (double)SAMPLES_PER_TRIAL / SAMPLES_PER_FIRST_TRIAL;
-    all->most = (size_t)CLAMP(wanted, LEAST_TRIALS, MAX_TRIALS);
-    all->least_noise = effort ? effort->least_noise : 0.0;
-    all->task.n_photons = all->each;
+    const guide_trial *round = &all->round;
+    double n = fmax(round->n, 1.0), mean = round->value / n;
+    plan_cost with = {round->square / n - mean * mean, round->rays / n};
+    plan_cost without = {round->square_without / n - mean * mean,
+                         round->rays_without / n};
+    bool pays = with.variance * with.rays < without.variance * without.rays;
+    plan_note(all->plan, "guided emission", without, with, pays);
+    return pays;
 }
 
-bool aim_caustics(transport_plan *plan, const aim_effort *effort, aim_result *result,
-                  const cancel_flag *cancel, GError **error)
+static trials trials_of(transport_plan *plan, const emission_guide *guide,
+                        const cancel_flag *cancel)
 {
-    if (plan->how.caustic_emission != EMISSION_GUIDED ||
-        plan->n_photons[PHOTON_CAUSTIC] == 0)
-        return true;
-    g_autoptr(photon_map) visible = visible_map(plan, error);
-    if (!visible)
-        return false;
-    g_autoptr(emission_guide) guide = emission_guide_new();
-    trials all = {
-        .visible = visible,
-        .result = result,
+    size_t each = plan_trials_for(plan, 2.0, ROUNDS * PHOTON_RAYS, MOST_TRIALS);
+    return (trials){
+        .plan = plan,
+        .pixels_each = pixels_each(plan),
+        .each = each,
+        .batch = MIN(each, MAX(each / BATCHES, CHUNK)),
         .task =
             {
                 .scene = plan->scene,
@@ -337,13 +341,32 @@ bool aim_caustics(transport_plan *plan, const aim_effort *effort, aim_result *re
                 .photon_class = PHOTON_CAUSTIC,
                 .guide = guide,
                 .share = plan->shares ? &plan->share : NULL,
+                .n_photons = each,
                 .cancel = cancel,
             },
     };
+}
+
+bool aim_caustics(transport_plan *plan, aim_result *result, const cancel_flag *cancel,
+                  GError **error)
+{
+    bool guides = plan->how.caustic_emission == EMISSION_GUIDED;
+    if (plan->n_photons[PHOTON_CAUSTIC] == 0 || !(guides || result))
+        return true;
+    plan_look(plan);
+    g_autoptr(photon_map) visible = visible_map(plan, error);
+    if (!visible)
+        return false;
+    g_autoptr(emission_guide) guide = guides ? emission_guide_new() : NULL;
+    trials all = trials_of(plan, guide, cancel);
+    all.visible = visible;
     all.most_reach = most_reach(visible);
-    set_effort(&all, effort);
+    all.result = result;
     if (!learn(&all, guide, error))
         return false;
-    plan->guide = g_steal_pointer(&guide);
+    if (guides && guide_pays(&all))
+        plan->guide = g_steal_pointer(&guide);
+    else if (result)
+        g_clear_pointer(&result->boost, g_free);
     return true;
 }

@@ -1,0 +1,120 @@
+#include "transport/plan/caustics.h"
+
+#include "transport/plan/work.h"
+
+/* Photons of a pass that it is tried with at most: so many for each of the camera's
+   samples, and in the smallest picture so many that there is something to gather. */
+enum { PHOTONS_PER_SAMPLE = 8, PHOTONS_AT_ONCE = 4096 };
+
+/* No fewer photons than this share of all, if there must be any; and no fewer blurred
+   gathers than this share: what is weighed by more than ten stands out in the picture. */
+#define LEAST_WORTH 0.1
+
+uint64_t caustics_most(const transport_plan *plan)
+{
+    const settings *how = &plan->how;
+    const film_settings *film = &plan->scene->film;
+    int64_t own = how->class_photons[PHOTON_CAUSTIC];
+    int64_t samples = (int64_t)film->width * film->height * how->spp;
+    int64_t most = MAX(PHOTONS_PER_SAMPLE * samples, PHOTONS_AT_ONCE);
+    if (!scene_may_cast_caustics(plan->scene))
+        return 0;
+    return (uint64_t)(own > 0 ? own : MIN(settings_photons(how), most));
+}
+
+/* Rays that a camera sample costs more where photons are gathered, however few: at the
+   first surface, whose edges are probed, twice as many. */
+static double gather_rays(const path_effort *paths)
+{
+    double later = fmax(paths->surfaces - 1.0, 0.0);
+    return GATHER_RAYS * (2.0 * fmin(paths->surfaces, 1.0) + later);
+}
+
+static double samples_a_pass(const transport_plan *plan)
+{
+    return plan_samples(plan) / settings_planned_passes(&plan->how);
+}
+
+/* A camera sample of a pass with a share of all photons. */
+static plan_cost cost_with(const transport_plan *plan, const aim_result *found,
+                           const path_effort *paths, int i)
+{
+    double photons = aim_share(i) * (double)plan->n_photons[PHOTON_CAUSTIC];
+    return (plan_cost){paths->noise + found->left[i],
+                       paths->rays + gather_rays(paths) +
+                           photons * found->rays / samples_a_pass(plan)};
+}
+
+static double product(plan_cost cost)
+{
+    return cost.variance * cost.rays;
+}
+
+/* The share of all photons with which variance times work is least; 0: none. */
+static double best_share(transport_plan *plan, const aim_result *found,
+                         const path_effort *paths)
+{
+    const plan_cost without = {paths->noise + found->noise, paths->rays};
+    plan_cost best = cost_with(plan, found, paths, 0);
+    double share = 1.0;
+    for (int i = 1; i < AIM_SHARES; i++) {
+        plan_cost with = cost_with(plan, found, paths, i);
+        if (product(with) < product(best)) {
+            best = with;
+            share = aim_share(i);
+        }
+    }
+    bool taken = product(best) < CLEARLY_BETTER * product(without);
+    plan_note(plan, "caustic photons", without, best, taken);
+    return taken ? share : 0.0;
+}
+
+/* Gathers that are seen by way of a diffuse bounce are made as often as keeps their noise
+   in step with all other. */
+static void decide_blurred(transport_plan *plan, const aim_result *found,
+                           const path_effort *paths)
+{
+    bool noisier = found->noise > paths->noise;
+    double ratio = noisier ? 1.0 : sqrt(found->noise / paths->noise);
+    plan->p_blurred = (float)fmax(fmax(ratio, found->unseen), LEAST_WORTH);
+    plan->p_blurred_in_media = plan->p_blurred / (float)fmax(paths->surfaces - 1.0, 1.0);
+}
+
+static void set_share(transport_plan *plan, double share)
+{
+    uint64_t *n = &plan->n_photons[PHOTON_CAUSTIC];
+    *n = share > 0.0 ? (uint64_t)MAX(share * (double)*n, 1.0) : 0;
+}
+
+/* Of those tried: what is asked for is sent, and where no path finds a light alone there
+   are some. */
+static double share_to_send(transport_plan *plan, const aim_result *found,
+                            const path_effort *paths)
+{
+    double share = best_share(plan, found, paths);
+    if (plan->how.class_photons[PHOTON_CAUSTIC] > 0)
+        share = 1.0;
+    else if (found->noise + found->unseen > 0.0 && scene_has_unmet_lights(plan->scene))
+        share = fmax(share, LEAST_WORTH);
+    plan->trials[plan->n_trials - 1].taken = share > 0.0;
+    return share;
+}
+
+void caustics_decide(transport_plan *plan, const aim_result *found,
+                     const path_effort *paths)
+{
+    decide_blurred(plan, found, paths);
+    set_share(plan, share_to_send(plan, found, paths));
+    if (plan->n_photons[PHOTON_CAUSTIC] > 0)
+        plan->sample_rays += gather_rays(paths);
+    plan->photon_rays =
+        (double)plan->n_photons[PHOTON_CAUSTIC] * found->rays / samples_a_pass(plan);
+}
+
+void caustics_settle(transport_plan *plan)
+{
+    plan->p_blurred = plan->p_blurred_in_media = 1.0f;
+    if (plan->how.class_photons[PHOTON_CAUSTIC] == 0 &&
+        !scene_has_unmet_lights(plan->scene))
+        plan->n_photons[PHOTON_CAUSTIC] = 0;
+}

@@ -1,0 +1,38 @@
+#include "transport/plan/work.h"
+
+double plan_samples(const transport_plan *plan)
+{
+    const film_settings *film = &plan->scene->film;
+    return (double)film->width * (double)film->height * (double)plan->how.spp *
+           settings_planned_passes(&plan->how);
+}
+
+void plan_ask(transport_plan *plan, double n_photons)
+{
+    plan->work = SAMPLE_RAYS * plan_samples(plan) +
+                 PHOTON_RAYS * n_photons * settings_planned_passes(&plan->how);
+}
+
+double plan_grant(const transport_plan *plan, double shares)
+{
+    return shares * TRIAL_SHARE * plan->work;
+}
+
+uint32_t plan_trials_for(const transport_plan *plan, double shares, double rays_each,
+                         uint32_t most)
+{
+    double n = plan_grant(plan, shares) / rays_each;
+    return (uint32_t)CLAMP(n, (double)LEAST_TRIALS, (double)most);
+}
+
+bool plan_is_tiny(const transport_plan *plan)
+{
+    return plan_grant(plan, 1.0) < LEAST_TRIALS * 2.0 * SAMPLE_RAYS;
+}
+
+void plan_note(transport_plan *plan, const char *what, plan_cost without, plan_cost with,
+               bool taken)
+{
+    if (plan->n_trials < MOST_PLAN_TRIALS)
+        plan->trials[plan->n_trials++] = (plan_trial){what, without, with, taken};
+}

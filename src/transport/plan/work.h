@@ -1,0 +1,59 @@
+/*
+ * What planning may cost: a part of the work that is asked for, both counted in rays and
+ * never by the clock, so that the same input gives the same plan whatever machine it is
+ * made on.
+ *
+ *   sight   where the camera looks (visible.h)      1/2 share    where photons are sent
+ *   paths   what paths find by themselves             1 share    auto
+ *   aim     trial photons, which teach the guide      2 shares   where casters are
+ *   radii   how dense photons lie (radius.c)        1/2 share    where photons are sent
+ *   spots   what looking at bright spots is worth     1 share    auto
+ */
+#pragma once
+
+#include "transport/transport.h"
+
+/** A share of the work asked for: five of them, all that trials get, are a twentieth. */
+#define TRIAL_SHARE 0.01
+
+/** What a camera sample costs, in rays, before any is traced: counted were 3.3 in
+ * scenes/cornell-box, 3.7 in scenes/ring, 4.0 in scenes/glass-ball, and 7 in a closed
+ * room. */
+#define SAMPLE_RAYS 4.0
+
+/** What a photon costs, in rays: counted were 0.9 to 1.1 where they start uniformly in
+ * scenes/ring and scenes/glass-ball, 1.4 and 2.9 where they start guided. */
+#define PHOTON_RAYS 2.0
+
+/** A query of a map, in rays: by the clock gathers took 1.7 rays for each surface met in
+ * scenes/ring and 1.0 in scenes/glass-ball, where half of them gather. */
+#define GATHER_RAYS 2.0
+
+/** What is tried must be better than what is there by so much: variances are known within
+ * a factor of two, and noise that is even disturbs least. */
+#define CLEARLY_BETTER 0.65
+
+/** Fewer trials of anything tell nothing: then the decision is the cheap one. */
+enum { LEAST_TRIALS = 16 };
+
+/** @brief Camera samples of all passes that are planned. */
+double plan_samples(const transport_plan *plan);
+
+/** @brief Notes what is asked for: the camera's samples, and n photons in each pass. */
+void plan_ask(transport_plan *plan, double n_photons);
+
+/** @brief Rays that trials of so many shares may cost. */
+double plan_grant(const transport_plan *plan, double shares);
+
+/** @brief So many trials that cost that many rays each: few if the work is, LEAST_TRIALS
+ * at least, and never more than most. */
+uint32_t plan_trials_for(const transport_plan *plan, double shares, double rays_each,
+                         uint32_t most);
+
+/** @brief True where so little is asked for that the fewest trials do not fit in. */
+bool plan_is_tiny(const transport_plan *plan);
+
+/** @brief Notes an alternative that was measured; each of with and without: of a sample
+ *  or a photon. @param what static */
+void plan_note(transport_plan *plan, const char *what, plan_cost without, plan_cost with,
+               bool taken);
