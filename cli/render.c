@@ -17,7 +17,7 @@
 static struct {
     char **outputs;
     char *size, *exposure, *stats, *every;
-    gboolean quiet;
+    gboolean quiet, explain;
     overrides settings;
 } given;
 
@@ -49,6 +49,8 @@ static const GOptionEntry entries[] = {
      "Brighten 8-bit images by so many stops", "STOPS"},
     {"stats", 0, 0, G_OPTION_ARG_FILENAME, &given.stats, "Write statistics as JSON",
      "FILE"},
+    {"explain", 0, 0, G_OPTION_ARG_NONE, &given.explain,
+     "Tell first what is decided before the first pass, and why", NULL},
     {"quiet", 'q', 0, G_OPTION_ARG_NONE, &given.quiet,
      "Only warnings and errors; no progress, no table", NULL},
     G_OPTION_ENTRY_NULL};
@@ -266,6 +268,17 @@ static bool look_on(double fraction, const NephStatistics *statistics, void *dat
     return progress_show(fraction, statistics, &w->shown);
 }
 
+/* Passes that time is short for are planned by it: --explain takes of it too. */
+static int explain(NephRender *render)
+{
+    NephPlan plan;
+    g_autoptr(GError) error = NULL;
+    if (!neph_render_plan(render, &plan, &error))
+        return report_error(error);
+    g_autofree char *text = neph_plan_text(&plan);
+    return print_result("%s", text);
+}
+
 static int run(job *j, NephRender *render)
 {
     g_autoptr(GError) error = NULL;
@@ -274,6 +287,8 @@ static int run(job *j, NephRender *render)
     /* All counts that is done from the program's start to its end. */
     double before = (double)(g_get_monotonic_time() - program_start) / G_USEC_PER_SEC;
     neph_render_set_time_around(render, before, (const char *const *)j->outputs);
+    if (given.explain && (ended = explain(render)) != EXIT_DONE)
+        return ended;
     bool done = neph_render_run(render, look_on, &w, &error);
     progress_end(&w.shown);
     if (!done && !report_end(render, error, &ended))

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-enum { MOST_NUMBERS = 32 };
+enum { MOST_NUMBERS = 32, MOST_DECISIONS = 16 };
 
 typedef char *(*number_text)(const NephStatistics *s, const photon_frame *frame);
 
@@ -18,7 +18,7 @@ typedef struct number {
 
 struct numbers_panel {
     GtkWidget *root;
-    GtkWidget *values[MOST_NUMBERS];
+    GtkWidget *values[MOST_NUMBERS], *decisions[MOST_DECISIONS];
 };
 
 static char *seconds(double t)
@@ -153,6 +153,76 @@ static const number numbers[] = {
 
 G_STATIC_ASSERT(G_N_ELEMENTS(numbers) <= MOST_NUMBERS);
 
+/* ---- The plan ---- */
+
+static char *photons_a_pass(const NephPlan *plan)
+{
+    return count_text(plan->photons[0] + plan->photons[1] + plan->photons[2]);
+}
+
+static char *first_radius(const NephPlan *plan)
+{
+    double caustic = plan->radius[NEPH_PHOTON_CAUSTIC];
+    double indirect = plan->radius[NEPH_PHOTON_INDIRECT];
+    double radius = indirect > 0.0 ? indirect : caustic;
+    if (!(radius > 0.0))
+        return g_strdup("–");
+    return g_strdup_printf("%.3g m, %s", radius,
+                           plan->radius_is_set ? "as set" : "measured");
+}
+
+static char *emission(const NephPlan *plan)
+{
+    bool sends = plan->photons[NEPH_PHOTON_CAUSTIC] > 0;
+    return g_strdup(!sends ? "–" : plan->guided ? "guided" : "not guided");
+}
+
+static char *spots(const NephPlan *plan)
+{
+    return plan->spots > 0.0 ? g_strdup_printf("with probability %.3g", plan->spots)
+                             : g_strdup("no");
+}
+
+static char *slices(const NephPlan *plan)
+{
+    return g_strdup_printf("%d", plan->time_slices);
+}
+
+static char *cost(const NephPlan *plan)
+{
+    return plan->work > 0.0 ? g_strdup_printf("%.2g %% of the rays",
+                                              100.0 * plan->planning / plan->work)
+                            : g_strdup("nothing");
+}
+
+static const struct {
+    const char *name;
+    char *(*text)(const NephPlan *plan);
+} decisions[] = {
+    {"Photons a pass", photons_a_pass}, {"First radius", first_radius},
+    {"Caustic emission", emission},     {"Bright spots looked at", spots},
+    {"Slices of time", slices},         {"Planning", cost},
+};
+
+G_STATIC_ASSERT(G_N_ELEMENTS(decisions) <= MOST_DECISIONS);
+
+static void add_decisions(numbers_panel *p, GtkWidget *content)
+{
+    GtkWidget *list;
+    gtk_box_append(GTK_BOX(content), group_make("Plan", &list));
+    for (size_t i = 0; i < G_N_ELEMENTS(decisions); i++)
+        p->decisions[i] = value_row_add(list, decisions[i].name);
+}
+
+void numbers_panel_show_plan(numbers_panel *p, const NephPlan *plan)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(decisions); i++) {
+        g_autofree char *text =
+            plan->integrator ? decisions[i].text(plan) : g_strdup("–");
+        gtk_label_set_text(GTK_LABEL(p->decisions[i]), text);
+    }
+}
+
 numbers_panel *numbers_panel_new(void)
 {
     numbers_panel *p = g_new0(numbers_panel, 1);
@@ -165,6 +235,7 @@ numbers_panel *numbers_panel_new(void)
         group = numbers[i].group;
         p->values[i] = value_row_add(list, numbers[i].name);
     }
+    add_decisions(p, content);
     return p;
 }
 

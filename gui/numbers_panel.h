@@ -1,5 +1,6 @@
 /*
- * The page of numbers: what the render did so far, and how long each part took.
+ * The page of numbers: what the render did so far, how long each part took, and what was
+ * decided before.
  */
 #pragma once
 
@@ -14,3 +15,5 @@ GtkWidget *numbers_panel_widget(numbers_panel *p);
 /** @brief frame: of the photon view. */
 void numbers_panel_show(numbers_panel *p, const NephStatistics *s,
                         const photon_frame *frame);
+/** @brief plan->integrator NULL: there is none yet. */
+void numbers_panel_show_plan(numbers_panel *p, const NephPlan *plan);

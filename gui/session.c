@@ -186,6 +186,17 @@ static void tell_picture(session *s, NephImage *image, bool coarse)
     pthread_mutex_unlock(&s->lock);
 }
 
+/* On the thread that renders, once it plans no more. */
+static void tell_plan(session *s)
+{
+    NephPlan plan;
+    if (!neph_render_plan(s->render, &plan, NULL))
+        return;
+    pthread_mutex_lock(&s->lock);
+    s->news.plan = plan;
+    pthread_mutex_unlock(&s->lock);
+}
+
 static void tell_progress(session *s, double fraction, const NephStatistics *statistics)
 {
     pthread_mutex_lock(&s->lock);
@@ -277,6 +288,8 @@ static bool on_progress(double fraction, const NephStatistics *statistics, void 
         show_picture(s);
     }
     now.noise = statistics->passes > 1 ? neph_render_noise(s->render) : (double)INFINITY;
+    if (!s->news.plan.integrator)
+        tell_plan(s);
     tell_progress(s, fraction, &now);
     return !is_outdated(s);
 }
@@ -292,6 +305,7 @@ static bool begin_render(session *s, GError **error)
     neph_scene_resize(s->seen, s->order.width, s->order.height, NULL);
     s->render = neph_render_new(s->seen, s->order.settings, error);
     pthread_mutex_lock(&s->lock);
+    s->news.plan.integrator = NULL;
     neph_settings_free(s->rendered);
     s->rendered = neph_settings_copy(s->order.settings);
     pthread_mutex_unlock(&s->lock);

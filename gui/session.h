@@ -31,11 +31,12 @@ typedef struct session_news {
     held_scene *loaded;    /**< a scene has been read; else NULL */
     held_picture *picture; /**< a newer one; else NULL */
     const GError *error;   /**< reading or rendering failed; else NULL */
-    GPtrArray *messages; /**< message*: what was said while a scene was read, whether it
-                            could be or not; else NULL */
+    GPtrArray *messages;   /**< message*: what was said while a scene was read, whether it
+                              could be or not; else NULL */
     bool error_of_load; /**< the error is about the scene file; the old scene goes on */
     double fraction;    /**< 0..1 of the render */
     NephStatistics statistics;
+    NephPlan plan; /**< of the render, once it is made: integrator NULL before */
 } session_news;
 
 typedef void (*session_listener)(const session_news *news, void *data);

@@ -199,6 +199,7 @@ void window_on_news(const session_news *news, void *data)
         show_picture(w, news->picture);
     status_show(w->status, news);
     numbers_panel_show(w->numbers, &news->statistics, photon_view_frame(w->photon_view));
+    numbers_panel_show_plan(w->numbers, &news->plan);
     if (state_changed || news->loaded)
         window_update_actions(w);
 }

@@ -406,6 +406,43 @@ NEPH_API void neph_render_statistics(const NephRender *render, NephStatistics *o
 /** @brief The relative error of the image, as in NephStatistics, found now: also from the
  * progress function of a render that is not asked to keep it. */
 NEPH_API double neph_render_noise(const NephRender *render);
+/** @brief A technique that trials measured, per camera sample or photon: that with which
+ * variance times rays is less is taken. */
+typedef struct NephPlanTrial {
+    const char *what; /**< static */
+    double variance_without, rays_without, variance_with, rays_with;
+    bool taken;
+} NephPlanTrial;
+
+enum { NEPH_MOST_PLAN_TRIALS = 4 };
+
+/** @brief What a render decides before its first pass: of scene and settings alone, the
+ * same with any number of threads, and what the photons of neph_photons_trace are sent
+ * by. */
+typedef struct NephPlan {
+    const char *integrator;                  /**< static */
+    uint64_t photons[NEPH_N_PHOTON_CLASSES]; /**< sent each pass; 0: none */
+    double radius[NEPH_N_PHOTON_CLASSES];    /**< m, in the first pass: everywhere, or the
+                                                median */
+    bool radius_is_set;                      /**< by the settings; else it is measured */
+    bool guided;            /**< caustic photons start where they were seen to arrive */
+    double spots;           /**< probability of looking at bright spots from a surface */
+    double blurred_gathers; /**< probability that caustics are gathered where they are
+                               seen by way of a diffuse bounce */
+    int time_slices;        /**< of the shutter's time, each with photons of its own */
+    double work;            /**< asked for, in rays: a first guess; 0: unknown */
+    double planning;        /**< rays that trials cost */
+    NephPlanTrial trials[NEPH_MOST_PLAN_TRIALS];
+    int n_trials;
+} NephPlan;
+
+/** @brief What the render will do, or does: planned now if it has not begun. Not while
+ * neph_render_run runs, but from its progress function.
+ * @return false: there is no plan yet, in a progress function called before there is, or
+ * with an error, NEPH_ERROR_CANCELLED or NEPH_ERROR_FAILED */
+NEPH_API bool neph_render_plan(NephRender *render, NephPlan *out, GError **error);
+/** @brief The plan in words, a table for people; owned by caller. */
+NEPH_API char *neph_plan_text(const NephPlan *plan);
 /** @brief Statistics as JSON (json true) or a table for people; owned by caller. */
 NEPH_API char *neph_statistics_text(const NephStatistics *statistics, bool json);
 

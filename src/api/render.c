@@ -2,6 +2,7 @@
 
 #include "api/statistics.h"
 
+_Static_assert(NEPH_MOST_PLAN_TRIALS == (int)MOST_PLAN_TRIALS, "lists are as long");
 _Static_assert(NEPH_GOES_ON == (int)RENDER_GOES_ON, "reasons are one list");
 _Static_assert(NEPH_PASSES_DONE == (int)RENDER_PASSES_DONE, "reasons are one list");
 _Static_assert(NEPH_TIME_UP == (int)RENDER_TIME_UP, "reasons are one list");
@@ -89,6 +90,39 @@ void neph_render_statistics(const NephRender *r, NephStatistics *out)
 {
     const render_statistics now = render_get_statistics(r->render);
     *out = statistics_export(&now);
+}
+
+static NephPlan plan_export(const render_plan *from)
+{
+    NephPlan out = {.integrator = transport_find((int)from->integrator)->name,
+                    .radius_is_set = from->radius_is_set,
+                    .guided = from->guided,
+                    .spots = from->p_spots,
+                    .blurred_gathers = from->p_blurred,
+                    .time_slices = from->time_slices,
+                    .work = from->work,
+                    .planning = from->planning,
+                    .n_trials = from->n_trials};
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
+        out.photons[c] = from->photons[c];
+        out.radius[c] = from->radius[c];
+    }
+    for (int i = 0; i < from->n_trials; i++) {
+        const plan_trial *t = &from->trials[i];
+        out.trials[i] =
+            (NephPlanTrial){t->what,          t->without.variance, t->without.rays,
+                            t->with.variance, t->with.rays,        t->taken};
+    }
+    return out;
+}
+
+bool neph_render_plan(NephRender *r, NephPlan *out, GError **error)
+{
+    render_plan plan;
+    if (!render_get_plan(r->render, &plan, error))
+        return false;
+    *out = plan_export(&plan);
+    return true;
 }
 
 double neph_render_noise(const NephRender *r)

@@ -601,6 +601,20 @@ GStrv render_repeat(const render *r)
     return g_strv_builder_end(builder);
 }
 
+bool render_get_plan(render *r, render_plan *out, GError **error)
+{
+    if (!r->prepared && r->cancel.beat) /* it is being made */
+        return false;
+    if (!r->prepared) {
+        r->start = seconds() - MAX(r->statistics.time_total, r->before);
+        if (!prepare(r, error))
+            return false;
+        r->statistics.time_total = seconds() - r->start;
+    }
+    *out = render_plan_of(&r->plan);
+    return true;
+}
+
 render_statistics render_get_statistics(const render *r)
 {
     return r->statistics;

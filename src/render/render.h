@@ -6,6 +6,7 @@
 
 #include "image/image.h"
 #include "photon/photon.h"
+#include "render/plan.h"
 #include "scene/scene.h"
 
 /** @brief Why a render is over. */
@@ -65,6 +66,10 @@ void render_set_time_around(render *r, double before, const char *const *paths);
  * the same picture: passes, and what was chosen otherwise than asked for. Owned by the
  * caller; NULL: no pass is done. */
 GStrv render_repeat(const render *r);
+/** @brief What is decided before the first pass: now, if it was not yet. Not on another
+ * thread while it runs; from its progress function once planning is over, before that
+ * false without an error. */
+bool render_get_plan(render *r, render_plan *out, GError **error);
 render_statistics render_get_statistics(const render *r);
 /** @brief film_noise of the passes done. */
 double render_noise(const render *r);

@@ -409,7 +409,8 @@ static void test_numbers(void)
     GtkWidget *panel = numbers_panel_widget(w->numbers);
     static const char *const titles[] = {"Photon trace time", "Photon rays traced",
                                          "Map build time",    "of that, gather time",
-                                         "Emitted",           "Stored"};
+                                         "Emitted",           "Stored",
+                                         "Photons a pass",    "Planning"};
     for (size_t i = 0; i < G_N_ELEMENTS(titles); i++)
         g_assert_cmpstr(row_value(panel, titles[i]), !=, "–");
     g_assert_cmpstr(row_value(panel, "Passes"), ==, "2");

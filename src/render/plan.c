@@ -1,0 +1,23 @@
+#include "render/plan.h"
+
+render_plan render_plan_of(const transport_plan *plan)
+{
+    render_plan out = {
+        .integrator = (integrator_choice)plan->how.integrator,
+        .radius_is_set = plan->how.radius > 0.0,
+        .guided = plan->guide && plan->n_photons[PHOTON_CAUSTIC] > 0,
+        .p_spots = (double)plan->p_spots,
+        .p_blurred = plan->shares ? (double)plan->p_blurred : 1.0,
+        .time_slices = scene_time_slices(plan->scene, &plan->how),
+        .work = plan->work,
+        .planning = plan->planning,
+        .n_trials = plan->n_trials,
+    };
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        out.photons[c] = plan->n_photons[c];
+        out.radius[c] = plan->n_photons[c] > 0 ? plan->radius[c] : 0.0;
+    }
+    for (int i = 0; i < plan->n_trials; i++)
+        out.trials[i] = plan->trials[i];
+    return out;
+}
