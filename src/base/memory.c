@@ -116,11 +116,34 @@ void memory_release(size_t bytes)
     atomic_fetch_sub(&used, bytes);
 }
 
+/* A sanitizer has a malloc of its own. */
+#ifdef __has_feature
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define SANITIZED
+#endif
+#elif defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+#define SANITIZED
+#endif
+
+#ifdef SANITIZED
+size_t __sanitizer_get_current_allocated_bytes(void);
+
+static size_t allocated(void)
+{
+    return __sanitizer_get_current_allocated_bytes();
+}
+#else
+static size_t allocated(void)
+{
+    struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+#endif
+
 /* What malloc has given for other things than arrays. */
 static size_t in_small_things(void)
 {
-    struct mallinfo2 info = mallinfo2();
-    size_t all = info.uordblks + info.hblkhd, arrays = atomic_load(&in_arrays);
+    size_t all = allocated(), arrays = atomic_load(&in_arrays);
     return all - MIN(all, arrays);
 }
 
