@@ -3,6 +3,10 @@
  *
  *   the world ── its own shapes, numbered as in world.shapes
  *             └─ instances, numbered from world.n on ── an object ── its shapes
+ *
+ * Embree takes 1 / x for at most 10¹⁸, so that it misses triangles of less than
+ * 10⁻¹⁸ m², and no coordinate beyond. Objects or a world that are very small or large go
+ * to it in units of their own, powers of two of a metre, which change no digit.
  */
 #include "accel/embree_device.h"
 #include "base/memory.h"
@@ -15,12 +19,18 @@ typedef struct accel_group {
     unsigned
         *shapes; /* indices in accel.shapes; their places here are Embree's numbers */
     unsigned n;
-    box3 bounds;
+    box3 bounds;     /* m */
+    float per_metre; /* Embree's units: a power of two */
 } accel_group;
+
+/* Extents that are given to Embree in metres, and what others become, in its units. */
+#define SMALLEST_IN_METRES 1e-3f
+#define LARGEST_IN_METRES 1e6f
+enum { USUAL_EXTENT = 10 }; /* log2 */
 
 struct accel {
     embree_device embree;
-    shape **shapes; /* a copy of the array; the shapes are borrowed */
+    given_shape *shapes; /* as they were given; the shapes are borrowed */
     accel_group world, *objects;
     size_t n_objects, n_instances;
     size_t reserved; /* bytes of what Embree does not tell of */
@@ -37,10 +47,22 @@ static void attach(accel_group *to, RTCGeometry g, unsigned number)
     rtcReleaseGeometry(g);
 }
 
+/* For the largest coordinate of what is within bounds. */
+static float units_for(box3 bounds)
+{
+    if (box3_is_empty(bounds))
+        return 1.0f;
+    float far = max_component3(max3(abs3(bounds.low), abs3(bounds.high)));
+    if (!(far > 0.0f) || (far >= SMALLEST_IN_METRES && far <= LARGEST_IN_METRES))
+        return 1.0f;
+    return ldexpf(1.0f, CLAMP(USUAL_EXTENT - ilogbf(far), -120, 120));
+}
+
+/* In units that suit its bounds. */
 static void group_open(accel *a, accel_group *group)
 {
     group->scene = rtcNewScene(a->embree.device);
-    group->bounds = box3_empty();
+    group->per_metre = units_for(group->bounds);
     rtcSetSceneFlags(group->scene, RTC_SCENE_FLAG_ROBUST);
 }
 
@@ -69,15 +91,23 @@ static void sort_shapes(accel *a, const accel_input *in)
     }
 }
 
+static void find_bounds(accel *a, accel_group *group)
+{
+    group->bounds = box3_empty();
+    for (unsigned i = 0; i < group->n; i++) {
+        const shape *s = a->shapes[group->shapes[i]].shape;
+        if (!s->is_invisible)
+            group->bounds = box3_union(group->bounds, s->kind->bounds(s->self));
+    }
+}
+
 static void attach_shapes(accel *a, accel_group *group)
 {
-    group_open(a, group);
     for (unsigned i = 0; i < group->n; i++) {
-        shape *s = a->shapes[group->shapes[i]];
-        if (s->is_invisible)
-            continue;
-        attach(group, shape_geometry(a->embree.device, s), i);
-        group->bounds = box3_union(group->bounds, s->kind->bounds(s->self));
+        given_shape *given = &a->shapes[group->shapes[i]];
+        given->per_metre = group->per_metre;
+        if (!given->shape->is_invisible)
+            attach(group, shape_geometry(a->embree.device, given), i);
     }
 }
 
@@ -87,7 +117,8 @@ static void place_instance(accel *a, placed *p, const instance *is)
     *p = (placed){.is = is,
                   .shutter = a->shutter,
                   .object = object->scene,
-                  .bounds = object->bounds};
+                  .bounds = object->bounds,
+                  .per_metre = object->per_metre};
     transform open = motion_at(&is->to_world, a->shutter[0]);
     transform close = motion_at(&is->to_world, a->shutter[1]);
     transform middle = motion_at(&is->to_world, 0.5 * (a->shutter[0] + a->shutter[1]));
@@ -95,17 +126,39 @@ static void place_instance(accel *a, placed *p, const instance *is)
     p->moves = !transform_equal(&open, &close) || !transform_equal(&open, &middle);
 }
 
-static void build(accel *a, const accel_input *in)
+static void build_object(accel *a, accel_group *object)
 {
-    sort_shapes(a, in);
-    for (size_t i = 0; i < a->n_objects; i++) {
-        attach_shapes(a, &a->objects[i]);
-        rtcCommitScene(a->objects[i].scene);
-    }
-    attach_shapes(a, &a->world);
+    find_bounds(a, object);
+    group_open(a, object);
+    attach_shapes(a, object);
+    rtcCommitScene(object->scene);
+}
+
+/* Places the instances, which the world's bounds and units must hold. */
+static void open_world(accel *a, const accel_input *in)
+{
+    find_bounds(a, &a->world);
     for (size_t i = 0; i < in->n_instances; i++) {
         placed *p = &a->instances[i];
         place_instance(a, p, &in->instances[i]);
+        if (!box3_is_empty(p->bounds))
+            a->world.bounds =
+                box3_union(a->world.bounds, motion_bounds(&p->is->to_world, p->bounds,
+                                                          a->shutter[0], a->shutter[1]));
+    }
+    group_open(a, &a->world);
+}
+
+static void build(accel *a, const accel_input *in)
+{
+    sort_shapes(a, in);
+    for (size_t i = 0; i < a->n_objects; i++)
+        build_object(a, &a->objects[i]);
+    open_world(a, in);
+    attach_shapes(a, &a->world);
+    for (size_t i = 0; i < in->n_instances; i++) {
+        placed *p = &a->instances[i];
+        p->world_per_metre = a->world.per_metre;
         if (a->objects[p->is->object].n > 0)
             attach(&a->world, placed_geometry(a->embree.device, p),
                    a->world.n + (unsigned)i);
@@ -132,7 +185,9 @@ static bool reserve_things(accel *a, size_t n_shapes, GError **error)
 accel *accel_build(const accel_input *in, unsigned threads, GError **error)
 {
     accel *a = g_new0(accel, 1);
-    a->shapes = g_memdup2(in->shapes, in->n_shapes * sizeof(shape *));
+    a->shapes = g_new0(given_shape, MAX(in->n_shapes, 1));
+    for (size_t i = 0; i < in->n_shapes; i++)
+        a->shapes[i].shape = in->shapes[i];
     a->n_objects = in->n_objects;
     a->objects = g_new0(accel_group, MAX(in->n_objects, 1));
     a->n_instances = in->n_instances;
@@ -179,7 +234,7 @@ static void fill_instance(const accel *a, const struct RTCRayHit *query, const r
     hit->instance = (int)(query->hit.instID[0] - a->world.n);
     const placed *p = &a->instances[hit->instance];
     hit->shape = (int)a->objects[p->is->object].shapes[query->hit.geomID];
-    const shape *s = a->shapes[hit->shape];
+    const shape *s = a->shapes[hit->shape].shape;
     transform to_world = placed_at(p, r->time);
     ray local = instance_ray(&to_world, r);
     s->kind->fill_hit(s->self, &local, query->hit.u, query->hit.v, hit);
@@ -188,7 +243,7 @@ static void fill_instance(const accel *a, const struct RTCRayHit *query, const r
 
 static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit *hit)
 {
-    struct RTCRayHit query = {.ray = embree_ray(r)};
+    struct RTCRayHit query = {.ray = embree_ray(r, a->world.per_metre)};
     if (!embree_takes(&query.ray, WORLD_REACH))
         return false;
     query.ray.flags = flags;
@@ -197,7 +252,7 @@ static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit 
     embree_nearest(a->world.scene, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return false;
-    hit->t = query.ray.tfar;
+    hit->t = query.ray.tfar / a->world.per_metre;
     hit->time = r->time;
     hit->primitive = query.hit.primID;
     hit->dpdv = (vec3){0};
@@ -210,7 +265,7 @@ static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit 
     }
     hit->instance = NO_INDEX;
     hit->shape = (int)a->world.shapes[query.hit.geomID];
-    const shape *s = a->shapes[hit->shape];
+    const shape *s = a->shapes[hit->shape].shape;
     s->kind->fill_hit(s->self, r, query.hit.u, query.hit.v, hit);
     return true;
 }
@@ -227,7 +282,7 @@ bool accel_intersect_solid(const accel *a, const ray *r, surface_hit *hit)
 
 bool accel_occluded(const accel *a, const ray *r)
 {
-    struct RTCRay query = embree_ray(r);
+    struct RTCRay query = embree_ray(r, a->world.per_metre);
     if (!embree_takes(&query, WORLD_REACH))
         return false;
     embree_any(a->world.scene, &query);

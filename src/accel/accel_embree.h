@@ -22,31 +22,42 @@
 
 enum { RAY_SOLID = 1 }; /**< RTCRay.flags: cut-outs do not count */
 
+/** @brief A shape as Embree is given it. */
+typedef struct given_shape {
+    shape *shape; /**< borrowed */
+    float
+        per_metre; /**< Embree's units in a metre of the shape's space: a power of two */
+} given_shape;
+
 /** @brief An object as an instance places it. All is borrowed. */
 typedef struct placed {
     const instance *is;
     const double *shutter; /**< s: [2], when rays of time 0 and 1 are */
     RTCScene object;       /**< committed */
-    box3 bounds;           /**< of the object, in its own space */
+    box3 bounds;           /**< of the object, in its own space, m */
+    float per_metre;       /**< Embree's units in a metre of the object's space ... */
+    float world_per_metre; /**< ... and of the world */
     bool moves;
     transform still; /**< where it is if it does not move */
 } placed;
 
 /** @brief Embree reads origin and tnear, direction and time, as vectors: written as
- * vectors they reach it without waiting for the cache. */
-static inline struct RTCRay embree_ray(const ray *r)
+ * vectors they reach it without waiting for the cache. @param per_metre its units */
+static inline struct RTCRay embree_ray(const ray *r, float per_metre)
 {
     const vec3_bits xyz = {-1, -1, -1, 0};
-    const vec3 origin = choose3(xyz, r->origin, (vec3){0.0f, 0.0f, 0.0f, FLT_MIN});
+    const vec3 origin =
+        choose3(xyz, r->origin * per_metre, (vec3){0.0f, 0.0f, 0.0f, FLT_MIN});
     const vec3 direction = choose3(xyz, r->direction, (vec3){0.0f, 0.0f, 0.0f, r->time});
-    struct RTCRay to = {.tfar = r->t_max, .mask = ~0u};
+    struct RTCRay to = {.tfar = r->t_max * per_metre, .mask = ~0u};
     memcpy(&to.org_x, &origin, sizeof origin);
     memcpy(&to.dir_x, &direction, sizeof direction);
     return to;
 }
 
-/** How far from the origin a ray of the world may begin, m; and one in the space of an
- * object. Embree ends the program for what is beyond 1.8e18, or not a number. */
+/** How far from the origin a ray of the world may begin, in Embree's units; and one in
+ * the space of an object. Embree ends the program for what is beyond 1.8e18, or not a
+ * number. */
 #define WORLD_REACH 1e12f
 #define OBJECT_REACH 1e18f
 
@@ -64,7 +75,7 @@ static inline bool embree_takes(const struct RTCRay *r, float reach)
 transform placed_at(const placed *p, float time);
 
 /** @brief A shape, which must outlive it; to be committed and attached. */
-RTCGeometry shape_geometry(RTCDevice device, shape *s);
+RTCGeometry shape_geometry(RTCDevice device, given_shape *given);
 /** @brief A placed object, which must outlive it. */
 RTCGeometry placed_geometry(RTCDevice device, placed *p);
 

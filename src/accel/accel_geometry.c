@@ -20,11 +20,13 @@ enum {
     MOST_LAYERS = 256, /* of cut-outs in one primitive, against endless loops */
 };
 
-static ray from_embree(const struct RTCRay *r)
+/* In metres. */
+static ray from_embree(const struct RTCRay *r, float per_metre)
 {
-    return (ray){.origin = vec3_make(r->org_x, r->org_y, r->org_z),
+    const float metres = 1.0f / per_metre;
+    return (ray){.origin = vec3_make(r->org_x, r->org_y, r->org_z) * metres,
                  .direction = vec3_make(r->dir_x, r->dir_y, r->dir_z),
-                 .t_max = r->tfar,
+                 .t_max = r->tfar * metres,
                  .time = r->time};
 }
 
@@ -61,9 +63,10 @@ static void filter_cut_out(const struct RTCFilterFunctionNArguments *args)
     const struct RTCHit *hit = (const struct RTCHit *)args->hit;
     if (!args->valid[0] || (query->flags & RAY_SOLID))
         return;
-    ray r = from_embree(query);
-    const float tuv[3] = {query->tfar, hit->u, hit->v};
-    if (!stops(args->geometryUserPtr, &r, hit->primID, tuv))
+    const given_shape *given = args->geometryUserPtr;
+    ray r = from_embree(query, given->per_metre);
+    const float tuv[3] = {r.t_max, hit->u, hit->v};
+    if (!stops(given->shape, &r, hit->primID, tuv))
         args->valid[0] = 0;
 }
 
@@ -75,9 +78,12 @@ static void let_through(const struct RTCFilterFunctionNArguments *args)
 
 /* ---- Exact surfaces as user geometry ---- */
 
-static void give_bounds(const struct RTCBoundsFunctionArguments *args, box3 box)
+/* Of a box in metres. */
+static void give_bounds(const struct RTCBoundsFunctionArguments *args, box3 box,
+                        float per_metre)
 {
     struct RTCBounds *out = args->bounds_o;
+    box = (box3){box.low * per_metre, box.high * per_metre};
     out->lower_x = box.low[0];
     out->lower_y = box.low[1];
     out->lower_z = box.low[2];
@@ -88,27 +94,37 @@ static void give_bounds(const struct RTCBoundsFunctionArguments *args, box3 box)
 
 static void user_bounds(const struct RTCBoundsFunctionArguments *args)
 {
-    const shape *s = args->geometryUserPtr;
-    give_bounds(args, s->kind->n_primitives
-                          ? s->kind->primitive_bounds(s->self, args->primID)
-                          : s->kind->bounds(s->self));
+    const given_shape *given = args->geometryUserPtr;
+    const shape *s = given->shape;
+    give_bounds(args,
+                s->kind->n_primitives ? s->kind->primitive_bounds(s->self, args->primID)
+                                      : s->kind->bounds(s->self),
+                given->per_metre);
 }
 
-/* The nearest hit that stops the ray. */
-static bool user_meets(const shape *s, uint32_t primitive, const struct RTCRay *query,
-                       float tuv[3])
+/* The nearest hit that stops the ray, in metres. */
+static bool meets(const shape *s, uint32_t primitive, const ray *r, bool solid,
+                  float tuv[3])
 {
-    ray r = from_embree(query);
     float t_min = 0.0f;
     for (int i = 0; i < MOST_LAYERS; i++) {
-        bool met = s->kind->intersect(s->self, primitive, &r, t_min, tuv);
-        if (!met || !s->has_alpha || (query->flags & RAY_SOLID))
+        bool met = s->kind->intersect(s->self, primitive, r, t_min, tuv);
+        if (!met || !s->has_alpha || solid)
             return met;
-        if (stops(s, &r, primitive, tuv))
+        if (stops(s, r, primitive, tuv))
             return true;
         t_min = nextafterf(tuv[0], INFINITY); /* the same hit is rounded to this */
     }
     return false;
+}
+
+static bool user_meets(const given_shape *given, uint32_t primitive,
+                       const struct RTCRay *query, float tuv[3])
+{
+    ray r = from_embree(query, given->per_metre);
+    bool met = meets(given->shape, primitive, &r, query->flags & RAY_SOLID, tuv);
+    tuv[0] *= given->per_metre;
+    return met;
 }
 
 static void user_intersect(const struct RTCIntersectFunctionNArguments *args)
@@ -128,19 +144,36 @@ static void user_intersect(const struct RTCIntersectFunctionNArguments *args)
 
 static void user_occluded(const struct RTCOccludedFunctionNArguments *args)
 {
-    const shape *s = args->geometryUserPtr;
+    const given_shape *given = args->geometryUserPtr;
     struct RTCRay *query = (struct RTCRay *)args->ray;
     float tuv[3];
-    if (args->valid[0] && s->material != NO_INDEX &&
-        user_meets(s, args->primID, query, tuv))
+    if (args->valid[0] && given->shape->material != NO_INDEX &&
+        user_meets(given, args->primID, query, tuv))
         query->tfar = -INFINITY;
 }
 
-static RTCGeometry triangle_geometry(RTCDevice device, const shape *s, const mesh *m)
+/* The mesh's own positions where a metre is Embree's unit, else a copy that Embree owns.
+ */
+static void give_positions(RTCGeometry g, const mesh *m, float per_metre)
 {
+    const size_t width = 3 * sizeof(float);
+    if (per_metre == 1.0f) {
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   m->positions, 0, width, m->n_vertices);
+        return;
+    }
+    float *copy = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                          width, m->n_vertices);
+    for (size_t i = 0; copy && i < 3 * m->n_vertices; i++)
+        copy[i] = m->positions[i] * per_metre;
+}
+
+static RTCGeometry triangle_geometry(RTCDevice device, const given_shape *given,
+                                     const mesh *m)
+{
+    const shape *s = given->shape;
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                               m->positions, 0, 3 * sizeof(float), m->n_vertices);
+    give_positions(g, m, given->per_metre);
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m->indices,
                                0, 3 * sizeof(uint32_t), m->n_triangles);
     if (s->has_alpha) {
@@ -163,11 +196,12 @@ static RTCGeometry exact_geometry(RTCDevice device, const shape *s)
     return g;
 }
 
-RTCGeometry shape_geometry(RTCDevice device, shape *s)
+RTCGeometry shape_geometry(RTCDevice device, given_shape *given)
 {
+    const shape *s = given->shape;
     const mesh *m = s->kind->triangles ? s->kind->triangles(s->self) : NULL;
-    RTCGeometry g = m ? triangle_geometry(device, s, m) : exact_geometry(device, s);
-    rtcSetGeometryUserData(g, s);
+    RTCGeometry g = m ? triangle_geometry(device, given, m) : exact_geometry(device, s);
+    rtcSetGeometryUserData(g, given);
     return g;
 }
 
@@ -188,21 +222,25 @@ static void moving_bounds(const struct RTCBoundsFunctionArguments *args)
     const double *shutter = p->shutter;
     double step = (shutter[1] - shutter[0]) / (MOTION_BOXES - 1);
     double at = shutter[0] + args->timeStep * step;
-    give_bounds(args, motion_bounds(&p->is->to_world, p->bounds, at - step, at + step));
+    give_bounds(args, motion_bounds(&p->is->to_world, p->bounds, at - step, at + step),
+                p->world_per_metre);
 }
 
-/* The query in the object's space. */
+/* The query in the object's space, with the same distances along it. */
 static struct RTCRay taken_to_object(const placed *p, const struct RTCRay *query)
 {
     transform to_world = placed_at(p, query->time);
-    ray world = from_embree(query), r = instance_ray(&to_world, &world);
+    ray world = from_embree(query, p->world_per_metre);
+    ray r = instance_ray(&to_world, &world);
+    vec3 origin = r.origin * p->per_metre;
+    vec3 direction = r.direction * (p->per_metre / p->world_per_metre);
     struct RTCRay out = *query;
-    out.org_x = r.origin[0];
-    out.org_y = r.origin[1];
-    out.org_z = r.origin[2];
-    out.dir_x = r.direction[0];
-    out.dir_y = r.direction[1];
-    out.dir_z = r.direction[2];
+    out.org_x = origin[0];
+    out.org_y = origin[1];
+    out.org_z = origin[2];
+    out.dir_x = direction[0];
+    out.dir_y = direction[1];
+    out.dir_z = direction[2];
     return out;
 }
 
@@ -238,17 +276,26 @@ static void moving_occluded(const struct RTCOccludedFunctionNArguments *args)
         query->tfar = -INFINITY;
 }
 
+/* Between Embree's units of object and world. */
+static double unit_ratio(const placed *p)
+{
+    return (double)p->world_per_metre / (double)p->per_metre;
+}
+
 static RTCGeometry still_geometry(RTCDevice device, const placed *p)
 {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
     float matrix[12];
-    for (int i = 0; i < 12; i++)
-        matrix[i] = (float)p->still.m[i / 4][i % 4];
+    for (int i = 0; i < 12; i++) {
+        double scale = i % 4 == 3 ? (double)p->world_per_metre : unit_ratio(p);
+        matrix[i] = (float)(p->still.m[i / 4][i % 4] * scale);
+    }
     rtcSetGeometryInstancedScene(g, p->object);
     rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, matrix);
     return g;
 }
 
+/* Also of what stands still, but is too much larger or smaller than its object. */
 static RTCGeometry moving_geometry(RTCDevice device, placed *p)
 {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -263,15 +310,16 @@ static RTCGeometry moving_geometry(RTCDevice device, placed *p)
 
 /* Embree inverts the matrix in single precision, and hands rays on unasked: those of the
    whole world must stay within an object's reach. */
-static bool may_be_embrees(const transform *to_world)
+static bool may_be_embrees(const placed *p)
 {
     const double largest = 1e9, most_reach = (double)(OBJECT_REACH / WORLD_REACH) / 10.0;
+    const double ratio = unit_ratio(p), units = (double)p->per_metre;
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++)
-            if (!(fabs(to_world->m[i][k]) <= largest) ||
-                !(fabs(to_world->inverse[i][k]) <= most_reach))
+            if (!(fabs(p->still.m[i][k] * ratio) <= largest) ||
+                !(fabs(p->still.inverse[i][k] / ratio) <= most_reach))
                 return false;
-        if (!(fabs(to_world->inverse[i][3]) <= (double)OBJECT_REACH / 10.0))
+        if (!(fabs(p->still.inverse[i][3] * units) <= (double)OBJECT_REACH / 10.0))
             return false;
     }
     return true;
@@ -279,6 +327,6 @@ static bool may_be_embrees(const transform *to_world)
 
 RTCGeometry placed_geometry(RTCDevice device, placed *p)
 {
-    bool asks_us = p->moves || !may_be_embrees(&p->still);
+    bool asks_us = p->moves || !may_be_embrees(p);
     return asks_us ? moving_geometry(device, p) : still_geometry(device, p);
 }

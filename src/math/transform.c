@@ -272,11 +272,21 @@ bool transform_swaps_handedness(const transform *t)
     return determinant < 0.0;
 }
 
+/* The largest number of its linear part. */
+static double largest_factor(const transform *t)
+{
+    double largest = 0.0;
+    for (int i = 0; i < 9; i++)
+        largest = fmax(largest, fabs(t->m[i / 3][i % 3]));
+    return largest;
+}
+
 bool transform_equal(const transform *a, const transform *b)
 {
+    double scale = fmax(largest_factor(a), largest_factor(b));
     for (int i = 0; i < 16; i++) {
         double x = a->m[i / 4][i % 4], y = b->m[i / 4][i % 4];
-        if (fabs(x - y) > 1e-12 * fmax(1.0, fmax(fabs(x), fabs(y))))
+        if (fabs(x - y) > 1e-12 * fmax(scale, fmax(fabs(x), fabs(y))))
             return false;
     }
     return true;

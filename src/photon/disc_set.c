@@ -113,7 +113,7 @@ static int by_index(const void *a, const void *b)
 bool disc_set_cross(const disc_set *set, const ray *r, disc_crossings *out)
 {
     disc_query query = {.set = set, .out = out};
-    struct RTCRay along = embree_ray(r);
+    struct RTCRay along = embree_ray(r, 1.0f);
     out->n = 0;
     if (embree_takes(&along, WORLD_REACH))
         embree_any_within(set->scene, &query.context, &along);
