@@ -53,7 +53,7 @@ static bool read_portal(sky_portal *portal, const params *p, GError **error)
     portal->u = c[1] - c[0];
     portal->v = c[3] - c[0];
     vec3 n = cross3(portal->v, portal->u);
-    portal->area = length3(n);
+    portal->area = length3_of_area(n);
     portal->n = normalize3(n);
     float size = length3(portal->u) * length3(portal->v);
     bool is_rectangle = finite3(n) && portal->area > 0.999f * size && size > 0.0f &&

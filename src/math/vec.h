@@ -63,13 +63,6 @@ static inline float length3(vec3 a)
     return sqrtf(dot3(a, a));
 }
 
-/** @brief a / |a|; the zero vector stays zero. */
-static inline vec3 normalize3(vec3 a)
-{
-    float length = length3(a);
-    return length > 0.0f ? a / length : a;
-}
-
 /** @brief a turned, if need be, into the hemisphere around b. */
 static inline vec3 face_forward(vec3 a, vec3 b)
 {
@@ -106,6 +99,42 @@ static inline bool finite3(vec3 a)
 {
     vec3 zero = a * 0.0f;
     return isfinite(zero[0] + zero[1] + zero[2]);
+}
+
+/** @brief False if a squared length has lost digits, or all of them, to the range of
+ * floats: the areas of what is a nanometre or a million kilometres wide. */
+static inline bool is_safe_square(float length2)
+{
+    return length2 > 1e-30f && length2 < 1e30f;
+}
+
+/** @brief The power of two that brings a vector to a length near 1, changing no digit; 1
+ * of zero and of what is not finite. */
+static inline float scale_to_unit(vec3 a)
+{
+    float largest = max_component3(abs3(a));
+    if (!(largest > 0.0f && largest < INFINITY))
+        return 1.0f;
+    int exponent = -ilogbf(largest);
+    return ldexpf(1.0f, exponent > 120 ? 120 : exponent);
+}
+
+/** @brief a / |a|; the zero vector stays zero. */
+static inline vec3 normalize3(vec3 a)
+{
+    float length2 = length3_2(a);
+    if (__builtin_expect(!is_safe_square(length2), 0)) {
+        a *= scale_to_unit(a);
+        length2 = length3_2(a);
+    }
+    return length2 > 0.0f ? a / sqrtf(length2) : a;
+}
+
+/** @brief |a| of what may be an area: its square may be no float's. */
+static inline float length3_of_area(vec3 a)
+{
+    float scale = is_safe_square(length3_2(a)) ? 1.0f : scale_to_unit(a);
+    return length3(a * scale) / scale;
 }
 
 static inline float clampf(float x, float low, float high)
