@@ -147,7 +147,9 @@ static bool add_view(scene *s, const char *path, vec3 up, GError **error)
     vec3 toward = standpoint(up, 0.4f, 0.3f), center = box3_center(box);
     transform look;
     bool done = look_from(toward, vec3_make(0.0f, 0.0f, 0.0f), up, &look);
-    float distance = maxf((float)distance_to_frame(box, &look), 1e-6f);
+    float distance = (float)distance_to_frame(box, &look);
+    if (!(distance > 0.0f)) /* all is in one place */
+        distance = 1.0f;
     if (!done || !look_from(center + distance * toward, center, up, &look)) {
         error_at(error, (source_place){intern(path), 0, 0},
                  "the scene is too large to be looked at");
