@@ -217,6 +217,13 @@ static bool take_shape(scene *s, shape *made, const shape_place *at, GError **er
         shape_free(made);
         return false;
     }
+    if (s->open_object ==
+            NO_INDEX && /* what is in an object is as large as its instances */
+        !scene_check_reach(made->kind->bounds(made->self), "the shape", made->place,
+                           error)) {
+        shape_free(made);
+        return false;
+    }
     made->object = s->open_object;
     made->media = s->around;
     made->parts_media = s->around.inside != s->around.outside;
@@ -289,14 +296,16 @@ bool scene_set_filter(scene *s, const char *kind, const params *p, GError **erro
 bool scene_set_camera(scene *s, const char *kind, const params *p,
                       const transform *to_world, GError **error)
 {
+    vec3 stands = transform_point(to_world, vec3_make(0.0f, 0.0f, 0.0f));
     s->has_camera =
         scene_may_change(s, error) &&
+        scene_check_reach((box3){stands, stands}, "the camera", p->place, error) &&
         camera_init(&s->camera, kind, p, to_world, s->film.width, s->film.height, error);
     if (!s->has_camera)
         return false;
     s->camera.media = (medium_stack){.participating = s->around.outside};
     s->camera.medium_there = s->around.outside;
-    s->camera.medium_at = transform_point(to_world, vec3_make(0.0f, 0.0f, 0.0f));
+    s->camera.medium_at = stands;
     LISTENER_TELL(s, camera, kind, p, to_world);
     return true;
 }

@@ -42,6 +42,7 @@ static bool find_lights(scene *s, GError **error)
         big_free(power);
         return false;
     }
+    bool done = true;
     for (guint i = 0; i < n; i++) {
         const light *l = s->lights->pdata[i];
         if (l->kind->prepare)
@@ -51,10 +52,13 @@ static bool find_lights(scene *s, GError **error)
         light_strength strength = light_measure(l, &lines);
         power[i] = strength.power;
         bounds[i] = strength.bound;
+        done =
+            done && (!strength.bound.is_local ||
+                     scene_check_reach(strength.bound.box, "the light", l->place, error));
     }
     s->lines = light_lines_density(&lines);
     s->light_tree = light_tree_new(bounds, (int)n);
-    bool done = distribution_init(&s->light_power, power, n, error);
+    done = done && distribution_init(&s->light_power, power, n, error);
     big_free(power);
     big_free(bounds);
     return done && check_strength(s, error);

@@ -153,9 +153,54 @@ box3 scene_world_bounds(const scene *s)
     return all;
 }
 
+bool scene_check_reach(box3 box, const char *what, source_place place, GError **error)
+{
+    if (box3_is_empty(box))
+        return true;
+    vec3 far = max3(abs3(box.low), abs3(box.high));
+    bool is_finite = finite3(box.low) && finite3(box.high);
+    if (is_finite && max_component3(far) <= FARTHEST_COORDINATE)
+        return true;
+    error_at(error, place,
+             "%s extends to %g m from the origin: expected coordinates up to %g m", what,
+             is_finite ? (double)max_component3(far) : (double)INFINITY,
+             (double)FARTHEST_COORDINATE);
+    return false;
+}
+
+/* Shapes have been looked at one by one; of instances only if one is too far away. */
+static bool check_reach(const scene *s, GError **error)
+{
+    if (scene_check_reach(s->bounds, "the scene", (source_place){0}, NULL))
+        return true;
+    box3 *boxes = object_bounds(s);
+    bool near = true;
+    for (guint i = 0; i < s->instances->len && near; i++) {
+        const instance *is = instance_at(s, (int)i);
+        near = scene_check_reach(placed_bounds(s, is, boxes[is->object]), "the instance",
+                                 is->place, error);
+    }
+    g_aligned_free(boxes);
+    return near && scene_check_reach(s->bounds, "the scene", (source_place){0}, error);
+}
+
+/* What has no extent at all is no smaller than others: it is not seen. */
+static bool check_extent(box3 bounds, GError **error)
+{
+    float extent =
+        box3_is_empty(bounds) ? 0.0f : max_component3(bounds.high - bounds.low);
+    if (!(extent > 0.0f) || extent >= SMALLEST_EXTENT)
+        return true;
+    error_set(error, ERROR_INPUT, "the scene's extent is %g m: expected %g to %g m",
+              (double)extent, (double)SMALLEST_EXTENT, (double)FARTHEST_COORDINATE);
+    return false;
+}
+
 bool scene_find_bounds(scene *s, GError **error)
 {
     s->bounds = scene_world_bounds(s);
+    if (!check_reach(s, error) || !check_extent(s->bounds, error))
+        return false;
     bool is_empty = box3_is_empty(s->bounds);
     s->center = is_empty ? vec3_make(0.0f, 0.0f, 0.0f) : box3_center(s->bounds);
     /* A little larger, so that what lies on the box is inside whatever the rounding. */
@@ -164,10 +209,7 @@ bool scene_find_bounds(scene *s, GError **error)
     s->radius = 1.0001f * box3_radius(s->bounds) + 1e-6f * far;
     if (!(s->radius > 0.0f))
         s->radius = 1.0f;
-    if (isfinite(s->radius) && finite3(s->center) && s->radius < 1e18f)
-        return true;
-    error_set(error, ERROR_INPUT, "the scene is too large: its coordinates overflow");
-    return false;
+    return true;
 }
 
 /* ---- Caustics ---- */

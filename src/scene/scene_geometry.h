@@ -11,6 +11,14 @@ void scene_close_objects(scene *s);
 /** @brief Bounds of all shapes where they stand, also before the commit. */
 box3 scene_world_bounds(const scene *s);
 /** @brief bounds, center, radius. ERROR_INPUT if they overflow. */
+/** @brief Largest coordinate, m, and the extents of a scene that are told apart in
+ * floats: squares of lengths, and of areas, must be so too. */
+#define FARTHEST_COORDINATE 1e12f
+#define SMALLEST_EXTENT 1e-11f
+
+/** @brief False with ERROR_INPUT at place if a box reaches further.
+ * @param what "the shape" */
+bool scene_check_reach(box3 box, const char *what, source_place place, GError **error);
 bool scene_find_bounds(scene *s, GError **error);
 /** @brief casters, caustic_area and the sphere around them. */
 bool scene_find_casters(scene *s, GError **error);

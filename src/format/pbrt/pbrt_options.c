@@ -52,11 +52,14 @@ bool pbrt_camera(pbrt_parser *parser, source_place place)
 {
     if (!keep(parser, &parser->camera, V3_CAMERA, place))
         return false;
-    if (pbrt_is_flat(parser))
+    parser->camera.ctm = parser->camera.ctm_end = transform_identity();
+    if (pbrt_is_flat(parser)) {
         pbrt_error(parser, place,
                    "expected a transform that can be inverted, found one that flattens");
-    parser->camera.ctm = transform_inverse(&parser->state.ctm);
-    parser->camera.ctm_end = transform_inverse(&parser->state.ctm_end);
+    } else {
+        parser->camera.ctm = transform_inverse(&parser->state.ctm);
+        parser->camera.ctm_end = transform_inverse(&parser->state.ctm_end);
+    }
     parser->around_camera = parser->state.outside;
     pbrt_name_transform(parser, "camera", &parser->camera.ctm, &parser->camera.ctm_end);
     return true;
