@@ -32,6 +32,8 @@ typedef struct change {
 static const change changes[] = {
     {"thousand", "Scale 1000 1000 1000", "Scale 0.001 0.001 0.001", "1e6"},
     {"thousandth", "Scale 0.001 0.001 0.001", "Scale 1000 1000 1000", "1e-6"},
+    {"thousand millionth", "Scale 1e-9 1e-9 1e-9", "Scale 1e9 1e9 1e9", "1e-18"},
+    {"thousand million", "Scale 1e9 1e9 1e9", "Scale 1e-9 1e-9 1e-9", "1e18"},
     {"turned", "Rotate 50 1 2 3", "Rotate -50 1 2 3", "1"},
     {"mirrored", "Scale -1 1 1", "Scale -1 1 1", "1"},
     {"moved", "Translate 50 -20 70", "Translate -50 20 -70", "1"},
