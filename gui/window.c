@@ -3,56 +3,16 @@
 #include "help.h"
 #include "widgets.h"
 
-#include <stdarg.h>
 #include <string.h>
 
-enum { TOAST_MS = 4000, SIDEBAR_LEAST = 340 };
+enum { SIDEBAR_LEAST = 340 };
 
 GtkWindow *window_gtk(window *w)
 {
     return w->gtk;
 }
 
-/* ---- Messages ---- */
-
-static gboolean hide_toast(void *data)
-{
-    window *w = data;
-    w->toast_timer = 0;
-    gtk_revealer_set_reveal_child(GTK_REVEALER(w->toast), FALSE);
-    return G_SOURCE_REMOVE;
-}
-
-void window_toast(window *w, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    g_autofree char *text = g_strdup_vprintf(format, arguments);
-    va_end(arguments);
-    gtk_label_set_text(GTK_LABEL(gtk_revealer_get_child(GTK_REVEALER(w->toast))), text);
-    gtk_revealer_set_reveal_child(GTK_REVEALER(w->toast), TRUE);
-    g_clear_handle_id(&w->toast_timer, g_source_remove);
-    w->toast_timer = g_timeout_add(TOAST_MS, hide_toast, w);
-}
-
-void window_show_content(window *w, const char *page)
-{
-    bool has_views = strcmp(page, "main") == 0;
-    gtk_stack_set_visible_child_name(GTK_STACK(w->content), page);
-    gtk_widget_set_visible(w->switcher, has_views);
-    gtk_widget_set_visible(w->side_button, has_views);
-}
-
 /* ---- Opening ---- */
-
-void window_open(window *w, const char *path)
-{
-    g_autofree char *whole = g_canonicalize_filename(path, NULL);
-    w->reloading = g_strcmp0(document_path(w->document), whole) == 0;
-    document_set_path(w->document, whole);
-    session_load(w->session, whole);
-    window_update_actions(w);
-}
 
 static void file_changed(void *data)
 {

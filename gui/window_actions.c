@@ -315,32 +315,6 @@ void window_add_actions(window *w)
                                     w);
 }
 
-static void enable(window *w, const char *name, bool enabled)
-{
-    GAction *action = g_action_map_lookup_action(G_ACTION_MAP(w->gtk), name);
-    g_simple_action_set_enabled(G_SIMPLE_ACTION(action), enabled);
-}
-
-void window_update_actions(window *w)
-{
-    static const char *const of_scene[] = {
-        "play",       "restart",    "zoom-fit",        "zoom-one",
-        "zoom-in",    "zoom-out",   "search",          "save-picture",
-        "reset-view", "frame-view", "save-picture-as", "trace-photons",
-        "copy-view",  "save-view",  "save-view-as",    "focus-tool"};
-    bool rendering = w->state == SESSION_RENDERING;
-    for (size_t i = 0; i < G_N_ELEMENTS(of_scene); i++)
-        enable(w, of_scene[i], w->scene != NULL);
-    enable(w, "stop", rendering || w->state == SESSION_PAUSED);
-    enable(w, "reload", document_path(w->document) != NULL);
-    gtk_button_set_icon_name(GTK_BUTTON(w->play_button),
-                             rendering ? "media-playback-pause-symbolic"
-                                       : "media-playback-start-symbolic");
-    gtk_accessible_update_property(GTK_ACCESSIBLE(w->play_button),
-                                   GTK_ACCESSIBLE_PROPERTY_LABEL,
-                                   rendering ? "Pause" : "Start", -1);
-}
-
 /* ---- Menus ---- */
 
 static void append_section(GMenu *menu, const char *title, const char *const items[][2],

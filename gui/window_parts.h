@@ -6,6 +6,7 @@
  *   window_view.c     hands on the picture ─► the worker
  *   window_photons.c  photons alone: traced, shown, picked
  *   window_actions.c  what menus, buttons and keys do
+ *   window_shell.c    what these ask of the window; calls none of them
  */
 #pragma once
 
@@ -78,9 +79,13 @@ struct window {
     double pick_radius;      /* m; 0: each map's own */
 };
 
-/* window.c */
+/* window_shell.c */
 void window_toast(window *w, const char *format, ...) G_GNUC_PRINTF(2, 3);
 void window_show_content(window *w, const char *page);
+/** @brief Which actions make sense now. */
+void window_update_actions(window *w);
+
+/* window.c */
 
 /** @brief Opens a scene; a picture becomes what the scene is compared with. */
 void window_take_file(window *w, const char *path);
@@ -115,8 +120,6 @@ bool window_pick(window *w, const double place[2], double reach);
 
 /* window_actions.c */
 void window_add_actions(window *w);
-/** @brief Which actions make sense now. */
-void window_update_actions(window *w);
 GMenuModel *window_menu(void);
 void window_fill_scenes_menu(GMenu *menu);
 void window_apply_theme(window *w);

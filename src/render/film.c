@@ -340,17 +340,6 @@ static GPtrArray *channel_names(const film *f)
     return names;
 }
 
-void film_to_rgb(const film *f, const double sum[3], double weight, float out[3])
-{
-    float xyz[3] = {0};
-    for (int i = 0; i < 3 && fabs(weight) > 0.0; i++) {
-        const double *m = f->balance + 3 * i;
-        double balanced = m[0] * sum[0] + m[1] * sum[1] + m[2] * sum[2];
-        xyz[i] = (float)((f->balanced ? balanced : sum[i]) / weight);
-    }
-    color_space_from_xyz(f->space, xyz, out);
-}
-
 static void write_sum(const film *f, const film_sum *sum, float *out)
 {
     float *beauty = out, *layers = out + 3;

@@ -1,4 +1,5 @@
 #include "render/pace.h"
+#include "base/clock.h"
 
 #include <math.h>
 
@@ -23,11 +24,6 @@ enum {
 
 /* Time is never as short as that: a picture there must be. */
 #define LEAST_LEFT 0.05
-
-static double seconds(void)
-{
-    return (double)g_get_monotonic_time() * 1e-6;
-}
 
 static int64_t scaled(int64_t n, double share)
 {
@@ -76,13 +72,13 @@ static void look_somewhere(size_t begin, size_t end, unsigned thread, void *data
 /* Seconds for one sample, at best: what else the machine does now it may not do later. */
 static double time_samples(trial_look *all, double budget, const cancel_flag *cancel)
 {
-    double begun = seconds(), now = begun, least = (double)INFINITY;
+    double begun = clock_seconds(), now = begun, least = (double)INFINITY;
     unsigned threads = (unsigned)all->plan->how.threads;
     for (size_t n = FIRST_SAMPLES; n <= MOST_SAMPLES && !cancelled(cancel); n *= 2) {
         double start = now;
         parallel_for(n, SAMPLES_CHUNK, threads, cancel, look_somewhere, all);
         all->first += n;
-        now = seconds();
+        now = clock_seconds();
         least = fmin(least, (now - start) / (double)n);
         if (n >= LEAST_SAMPLES && now - begun > 0.5 * budget)
             break;
@@ -123,10 +119,10 @@ static void *begin_trial(transport_plan *trial, const trial_look *look, uint32_t
                          const cancel_flag *cancel, pace_costs *out, GError **error)
 {
     transport_counts counts = {0};
-    double start = seconds();
+    double start = clock_seconds();
     void *pass = look->transport->begin_pass(trial, index, cancel, &counts, error);
     double photons = counts.time_trace + counts.time_build;
-    out->pass = fmin(out->pass, fmax(seconds() - start - photons, 0.0));
+    out->pass = fmin(out->pass, fmax(clock_seconds() - start - photons, 0.0));
     out->photons = fmin(out->photons, photons);
     return pass;
 }
@@ -218,14 +214,14 @@ double pace_write_seconds(const film *f, unsigned threads, char **paths)
 {
     int rows =
         (int)MIN(ROWS_A_THREAD * MIN(threads, MOST_TRIAL_THREADS), (unsigned)f->height);
-    double start = seconds();
+    double start = clock_seconds();
     if (!paths)
         return 0.0;
     g_autoptr(image) some =
         film_image_rows(f, (f->height - rows) / 2, rows, threads, NULL);
     if (!some)
         return 0.0;
-    double took = seconds() - start;
+    double took = clock_seconds() - start;
     if (f->n_passes == 0)
         fill_with_noise(some);
     for (char **path = paths; *path; path++)

@@ -1,4 +1,5 @@
 #include "render/render.h"
+#include "base/clock.h"
 
 #include "base/memory.h"
 #include "render/gbuffer.h"
@@ -46,11 +47,6 @@ struct render {
     atomic_size_t tiles_done;
 };
 
-static double seconds(void)
-{
-    return (double)g_get_monotonic_time() * 1e-6;
-}
-
 render *render_new(const scene *s, const settings *how, GError **error)
 {
     render *r = g_aligned_alloc0(1, sizeof *r, 64);
@@ -94,14 +90,14 @@ static double pass_fraction(const render *r)
                                      (double)r->n_tiles;
     if (!(r->last_pass > 0.0))
         return 0.0;
-    return fmin((seconds() - r->pass_start) / r->last_pass, r->photon_share);
+    return fmin((clock_seconds() - r->pass_start) / r->last_pass, r->photon_share);
 }
 
 static stop_state state_of(const render *r, double pass_fraction)
 {
     return (stop_state){
         .passes = (double)r->passes_done + pass_fraction,
-        .elapsed = seconds() - r->start,
+        .elapsed = clock_seconds() - r->start,
         .last_pass = r->last_pass,
         .noise = r->statistics.noise,
         .after = r->after,
@@ -111,7 +107,7 @@ static stop_state state_of(const render *r, double pass_fraction)
 static void tell(render *r, double pass_fraction)
 {
     stop_state now = state_of(r, pass_fraction);
-    r->last_beat = seconds();
+    r->last_beat = clock_seconds();
     r->statistics.time_total = now.elapsed;
     double fraction = r->statistics.stopped_by == RENDER_GOES_ON
                           ? fmin(stop_fraction(&r->plan.how, &now), LARGEST_FRACTION)
@@ -138,7 +134,7 @@ static void beat(void *data)
     render *r = data;
     if (r->plan.how.time > 0.0)
         watch_time(r);
-    if (r->progress && seconds() - r->last_beat >= BEAT_INTERVAL)
+    if (r->progress && clock_seconds() - r->last_beat >= BEAT_INTERVAL)
         tell(r, r->prepared ? pass_fraction(r) : 0.0);
 }
 
@@ -212,10 +208,10 @@ static void find_radiance(camera_loop *loop, const ray *from_eye, sampler *rando
     transport_scratch *scratch = &loop->scratch[thread];
     sample_clock *clock = &loop->clocks[thread];
     scratch->timed = clock->n_samples++ % TIMED_SHARE == 0;
-    double start = scratch->timed ? seconds() : 0.0;
+    double start = scratch->timed ? clock_seconds() : 0.0;
     loop->render->transport->radiance(loop->pass, from_eye, random, scratch, sample);
     if (scratch->timed)
-        clock->time += seconds() - start;
+        clock->time += clock_seconds() - start;
 }
 
 /* One camera sample of a pixel, random already told which. */
@@ -391,12 +387,12 @@ static bool look(render *r, const void *pass, GError **error)
         .n_tiles_x = (f->width + FILM_TILE - 1) / FILM_TILE,
     };
     bool ready = open_loop(&loop, error);
-    double start = seconds();
+    double start = clock_seconds();
     r->n_tiles =
         (size_t)loop.n_tiles_x * (size_t)((f->height + FILM_TILE - 1) / FILM_TILE);
     bool done = ready && render_tiles(&loop);
     r->n_tiles = 0;
-    bool collected = ready && collect(&loop, seconds() - start, error);
+    bool collected = ready && collect(&loop, clock_seconds() - start, error);
     close_loop(&loop);
     if (collected && !done)
         error_set(error, ERROR_CANCELLED, "cancelled");
@@ -415,7 +411,7 @@ static void add_splats(render *r, const void *pass)
 static void note_pass(render *r, double photons_done)
 {
     render_statistics *st = &r->statistics;
-    double now = seconds();
+    double now = clock_seconds();
     r->last_pass = now - r->pass_start;
     r->photon_share = r->last_pass > 0.0 ? photons_done / r->last_pass : 0.0;
     st->passes = ++r->passes_done;
@@ -429,12 +425,12 @@ static void note_pass(render *r, double photons_done)
 static bool run_pass(render *r, GError **error)
 {
     transport_counts counts = {0};
-    r->pass_start = seconds();
+    r->pass_start = clock_seconds();
     void *pass =
         r->transport->begin_pass(&r->plan, r->passes_done, &r->cancel, &counts, error);
     if (!pass)
         return false;
-    double photons_done = seconds() - r->pass_start;
+    double photons_done = clock_seconds() - r->pass_start;
     add_counts(&r->statistics, &counts);
     bool ok = look(r, pass, error);
     if (ok)
@@ -457,10 +453,10 @@ static bool set_pace(render *r, GError **error)
     double n_pixels = (double)r->film.width * (double)r->film.height;
     if (r->paced || !(how->time > 0.0) || how->passes > 0)
         return true;
-    double left = how->time - r->after - (seconds() - r->start);
+    double left = how->time - r->after - (clock_seconds() - r->start);
     if (!pace_measure(&r->plan, &r->film, left, &r->cancel, &costs, error))
         return false;
-    left = how->time - r->after - (seconds() - r->start);
+    left = how->time - r->after - (clock_seconds() - r->start);
     r->plan.how = pace_choose(how, &costs, n_pixels, left);
     return r->paced = true;
 }
@@ -479,7 +475,7 @@ static void note_photons(render *r)
 
 static bool prepare(render *r, GError **error)
 {
-    double start = seconds();
+    double start = clock_seconds();
     if (r->prepared)
         return true;
     r->prepared =
@@ -488,7 +484,7 @@ static bool prepare(render *r, GError **error)
         error_set(error, ERROR_CANCELLED, "cancelled");
         r->prepared = false;
     }
-    r->statistics.time_prepare += seconds() - start;
+    r->statistics.time_prepare += clock_seconds() - start;
     note_photons(r);
     return r->prepared;
 }
@@ -530,7 +526,7 @@ static void end_run(render *r)
 {
     render_statistics *st = &r->statistics;
     r->cancel.beat = NULL;
-    st->time_total = seconds() - r->start;
+    st->time_total = clock_seconds() - r->start;
     st->memory_peak = memory_peak();
     st->noise = film_noise(&r->film);
     if (atomic_exchange(&r->cancel.set, false) && st->stopped_by == RENDER_GOES_ON)
@@ -541,7 +537,7 @@ bool render_run(render *r, render_progress progress, void *data, GError **error)
 {
     r->progress = progress;
     r->progress_data = data;
-    r->start = seconds() - MAX(r->statistics.time_total, r->before);
+    r->start = clock_seconds() - MAX(r->statistics.time_total, r->before);
     r->given_up = false;
     if (r->plan.how.time > 0.0)
         r->after = pace_write_seconds(&r->film, r->n_threads, r->paths);

@@ -46,39 +46,6 @@ void scene_set_medium_interface(scene *s, int inside, int outside)
                   name_of(s, around.outside));
 }
 
-/* Where a line leaves the sphere at which media end; < 0: it does not meet it, or before
-   the ray starts. *enters gets where it comes in. */
-static float sphere_end(const scene *s, const ray *r, float *enters)
-{
-    vec3 to = s->center - r->origin;
-    float middle = dot3(to, r->direction);
-    float d2 = length3_2(to - middle * r->direction);
-    float half2 = s->media_radius * s->media_radius - d2;
-    float half = sqrtf(maxf(half2, 0.0f));
-    *enters = middle - half;
-    return half2 > 0.0f ? middle + half : -1.0f;
-}
-
-float scene_medium_end(const scene *s, const ray *r, float length)
-{
-    float enters;
-    return isfinite(length) ? length : maxf(sphere_end(s, r, &enters), 0.0f);
-}
-
-void scene_leave_light(const scene *s, int i, vec3 n, ray *r)
-{
-    const light *from = scene_light(s, i);
-    float enters;
-    r->media = from->solids;
-    if (!from->kind->is_environment && !from->kind->is_parallel) {
-        r->media.participating = scene_light_medium(s, i, n, r->direction);
-        return;
-    }
-    r->media.participating = s->outer_medium;
-    if (s->outer_medium && sphere_end(s, r, &enters) > 0.0f && enters > 0.0f)
-        r->origin += enters * r->direction;
-}
-
 uint32_t scene_medium_behind(const scene *s, ray r)
 {
     surface_hit hit;

@@ -77,74 +77,6 @@ static const directive *find_directive(const token *t)
     return NULL;
 }
 
-void pbrt_report(pbrt_parser *parser, GError *error)
-{
-    if (!g_error_matches(error, NEPH_ERROR, ERROR_FAILED) || parser->fatal) {
-        g_ptr_array_add(parser->errors, g_strdup(error->message));
-        g_error_free(error);
-        return;
-    }
-    parser->fatal = error;
-}
-
-bool pbrt_has_room(pbrt_parser *parser, source_place place, size_t bytes,
-                   const char *what)
-{
-    GError *error = NULL;
-    if (memory_ask(bytes, what, &error))
-        return true;
-    GError *placed = NULL;
-    error_move_at(&placed, place, error);
-    pbrt_report(parser, placed);
-    return false;
-}
-
-void pbrt_error(pbrt_parser *parser, source_place place, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    g_autofree char *text = g_strdup_vprintf(format, args);
-    va_end(args);
-    GError *error = NULL;
-    error_at(&error, place, "%s", text);
-    pbrt_report(parser, error);
-}
-
-void pbrt_warning(const pbrt_parser *parser, source_place place, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    g_autofree char *text = g_strdup_vprintf(format, args);
-    va_end(args);
-    log_at(&parser->scene->build.log, LOG_WARNING, place, "%s", text);
-}
-
-bool pbrt_expected(pbrt_parser *parser, const char *what, const token *found)
-{
-    g_autofree char *text = token_describe(found);
-    pbrt_error(parser, found->place, "expected %s, found %s", what, text);
-    return false;
-}
-
-bool pbrt_should_stop(const pbrt_parser *parser)
-{
-    return parser->fatal || parser->errors->len >= MAX_ERRORS;
-}
-
-char *pbrt_read_string(pbrt_parser *parser, const char *what, source_place *place)
-{
-    token t = lexer_peek(parser->words);
-    if (t.kind != TOKEN_STRING) {
-        g_autofree char *quoted = g_strdup_printf("%s in quotes", what);
-        pbrt_expected(parser, quoted, &t);
-        return NULL;
-    }
-    lexer_next(parser->words);
-    if (place)
-        *place = t.place;
-    return token_string(&t);
-}
-
 /** Skips words up to the next directive or the end. */
 static void resynchronise(pbrt_parser *parser)
 {
@@ -193,47 +125,6 @@ static void read_words(pbrt_parser *parser, lexer *words)
     parser->words = outer;
 }
 
-static bool is_open(const pbrt_parser *parser, const char *path)
-{
-    for (guint i = 0; i < parser->open_files->len; i++)
-        if (strcmp(parser->open_files->pdata[i], path) == 0)
-            return true;
-    return false;
-}
-
-/* Another file, as if it stood here. */
-static void include_with(pbrt_parser *parser, const char *name, source_place place,
-                         void (*read)(pbrt_parser *parser, lexer *words, void *data),
-                         void *data)
-{
-    g_autofree char *path = g_canonicalize_filename(name, parser->base_directory);
-    if (is_open(parser, path)) {
-        pbrt_error(parser, place, "expected a file that is not being read, found \"%s\"",
-                   name);
-        return;
-    }
-    if (parser->open_files->len >= MAX_DEPTH) {
-        pbrt_error(parser, place,
-                   "expected at most %d files within each other, found "
-                   "\"%s\"",
-                   MAX_DEPTH, name);
-        return;
-    }
-    input in;
-    GError *inner = NULL, *error = NULL;
-    scene_sources_add(parser->scene->build.sources, path);
-    if (!input_open(&in, path, &inner)) {
-        error_move_at(&error, place, inner);
-        pbrt_report(parser, error);
-        return;
-    }
-    lexer words = lexer_new(path, in.data, in.size);
-    g_ptr_array_add(parser->open_files, path);
-    read(parser, &words, data);
-    g_ptr_array_remove_index(parser->open_files, parser->open_files->len - 1);
-    input_close(&in);
-}
-
 /* What a scene includes may be any file that can be read here: nothing is quoted of one
  * that is not pbrt's. */
 static void read_directives(pbrt_parser *parser, lexer *words, void *data)
@@ -248,46 +139,7 @@ static void read_directives(pbrt_parser *parser, lexer *words, void *data)
 
 void pbrt_include(pbrt_parser *parser, const char *name, source_place place)
 {
-    include_with(parser, name, place, read_directives, NULL);
-}
-
-/* Where an Include among parameters leads. */
-typedef struct parameter_file {
-    params *p;
-    bool has_some, fine;
-} parameter_file;
-
-static void read_parameters(pbrt_parser *parser, lexer *words, void *data)
-{
-    parameter_file *file = data;
-    lexer *outer = parser->words;
-    parser->words = words;
-    token first = lexer_peek(words);
-    file->has_some = pbrt_is_declaration(&first);
-    file->fine = !file->has_some || pbrt_read_param_list(parser, file->p);
-    token t = lexer_peek(words);
-    if (file->has_some && file->fine && t.kind != TOKEN_END)
-        file->fine = pbrt_expected(parser, "a parameter", &t);
-    parser->words = outer;
-}
-
-bool pbrt_include_parameters(pbrt_parser *parser, params *p, bool *fine)
-{
-    lexer before = *parser->words;
-    lexer_next(parser->words);
-    token name = lexer_peek(parser->words);
-    parameter_file file = {.p = p, .fine = true};
-    guint n_errors = parser->errors->len;
-    if (name.kind == TOKEN_STRING) {
-        lexer_next(parser->words);
-        g_autofree char *text = token_string(&name);
-        include_with(parser, text, name.place, read_parameters, &file);
-    }
-    bool failed = parser->errors->len > n_errors;
-    if (!file.has_some && !failed)
-        *parser->words = before;
-    *fine = file.fine && !failed;
-    return file.has_some || failed;
+    pbrt_read_file(parser, name, place, read_directives, NULL);
 }
 
 static bool handle_include(pbrt_parser *parser, source_place place)

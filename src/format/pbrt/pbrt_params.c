@@ -348,3 +348,48 @@ void pbrt_check_used(pbrt_parser *parser, const params *p, const char *what,
     if (!params_all_used(p, whole, &error))
         pbrt_report(parser, error);
 }
+
+/* Where an Include among parameters leads. */
+typedef struct parameter_file {
+    params *p;
+    bool has_some, fine;
+} parameter_file;
+
+static void read_parameters(pbrt_parser *parser, lexer *words, void *data)
+{
+    parameter_file *file = data;
+    lexer *outer = parser->words;
+    parser->words = words;
+    token first = lexer_peek(words);
+    file->has_some = pbrt_is_declaration(&first);
+    file->fine = !file->has_some || pbrt_read_param_list(parser, file->p);
+    token t = lexer_peek(words);
+    if (file->has_some && file->fine && t.kind != TOKEN_END)
+        file->fine = pbrt_expected(parser, "a parameter", &t);
+    parser->words = outer;
+}
+
+bool pbrt_include_parameters(pbrt_parser *parser, params *p, bool *fine)
+{
+    lexer before = *parser->words;
+    lexer_next(parser->words);
+    token name = lexer_peek(parser->words);
+    parameter_file file = {.p = p, .fine = true};
+    guint n_errors = parser->errors->len;
+    if (name.kind == TOKEN_STRING) {
+        lexer_next(parser->words);
+        g_autofree char *text = token_string(&name);
+        pbrt_read_file(parser, text, name.place, read_parameters, &file);
+    }
+    bool failed = parser->errors->len > n_errors;
+    if (!file.has_some && !failed)
+        *parser->words = before;
+    *fine = file.fine && !failed;
+    return file.has_some || failed;
+}
+
+void pbrt_clear_arguments(directive_arguments *a)
+{
+    g_free(a->kind);
+    params_free(a->p);
+}

@@ -1,7 +1,9 @@
 /*
  * The state shared by the parts of the pbrt-v4 reader.
  *
- *   pbrt.c            files, the table of directives, includes
+ *   pbrt.c            the table of directives
+ *   pbrt_report.c     errors, warnings, what was expected
+ *   pbrt_include.c    files within files
  *   pbrt_params.c     "type name" values ... lists
  *   pbrt_transform.c  the current transform
  *   pbrt_state.c      attributes: what AttributeBegin keeps and AttributeEnd brings back
@@ -11,6 +13,7 @@
  *   pbrt_lens.c       realistic cameras
  *   pbrt_late.c       what is named before it is made
  *   pbrt_v3_names.c   what is named again, in pbrt-v3
+ *   pbrt_texture.c    textures
  *   pbrt_world.c      materials, textures, lights and shapes, given to the scene
  *
  * A handler reads a directive's arguments. It returns false if they do not follow the
@@ -142,7 +145,7 @@ typedef struct pbrt_parser {
 
 typedef bool (*directive_handler)(pbrt_parser *parser, source_place place);
 
-/* ---- pbrt.c ---- */
+/* ---- pbrt_report.c ---- */
 
 /** @brief Takes an error into the list. */
 void pbrt_report(pbrt_parser *parser, GError *error);
@@ -162,6 +165,15 @@ bool pbrt_should_stop(const pbrt_parser *parser);
 /** @brief A quoted string argument; owned by the caller, NULL if there is none. `what`
  * names it in the error; *place, if not NULL, gets where it stands. */
 char *pbrt_read_string(pbrt_parser *parser, const char *what, source_place *place);
+/* ---- pbrt_include.c ---- */
+
+/** @brief Opens another file in place of the words that named it, and has it read. */
+void pbrt_read_file(pbrt_parser *parser, const char *name, source_place place,
+                    void (*read)(pbrt_parser *parser, lexer *words, void *data),
+                    void *data);
+
+/* ---- pbrt.c ---- */
+
 /** @brief Reads another file's directives as if they stood here. */
 void pbrt_include(pbrt_parser *parser, const char *name, source_place place);
 
@@ -184,6 +196,7 @@ params *pbrt_read_params(pbrt_parser *parser, source_place place);
 /** @brief The same with what Attribute gave to the target filled in. */
 params *pbrt_read_params_for(pbrt_parser *parser, source_place place,
                              attribute_target target);
+void pbrt_clear_arguments(directive_arguments *a);
 /** @brief Reports parameters that nobody asked for. */
 void pbrt_check_used(pbrt_parser *parser, const params *p, const char *what,
                      const char *kind);
@@ -216,9 +229,9 @@ int pbrt_await_material(pbrt_parser *parser, const char *name, source_place plac
 /** @brief Reports names of materials that were never made. */
 void pbrt_check_materials(pbrt_parser *parser);
 
-/* ---- pbrt_world.c ---- */
+/* ---- pbrt_texture.c ---- */
 
-void pbrt_clear_arguments(directive_arguments *a);
+/** @brief A texture of a kind by a name; what is wrong is reported. */
 void pbrt_make_texture(pbrt_parser *parser, const char *name, bool is_spectrum,
                        const char *kind, const params *p);
 

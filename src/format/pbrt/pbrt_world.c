@@ -35,12 +35,6 @@ static void translate(pbrt_parser *parser, pbrt_v3_target target, arguments *a)
         pbrt_v3_resolve(parser, a->p, true);
 }
 
-void pbrt_clear_arguments(arguments *a)
-{
-    g_free(a->kind);
-    params_free(a->p);
-}
-
 static bool is_interface(const char *kind)
 {
     return !*kind || strcmp(kind, "interface") == 0 || strcmp(kind, "none") == 0;
@@ -181,20 +175,6 @@ bool pbrt_named_material(pbrt_parser *parser, source_place place)
     parser->state.material =
         is_none ? NO_INDEX : scene_find_material(parser->scene, actual);
     return true;
-}
-
-void pbrt_make_texture(pbrt_parser *parser, const char *name, bool is_spectrum,
-                       const char *kind, const params *p)
-{
-    GError *error = NULL;
-    g_autoptr(params) replaced =
-        lenient_texture(&parser->scene->build, &kind, is_spectrum, p, &error);
-    const params *given = replaced ? replaced : p;
-    if (!error &&
-        scene_add_texture(parser->scene, name, kind, is_spectrum, given, &error))
-        pbrt_check_used(parser, given, "texture", kind);
-    else
-        pbrt_report(parser, error);
 }
 
 static void make_float_texture(pbrt_parser *parser, const char *name, const arguments *a)

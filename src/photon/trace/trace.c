@@ -468,10 +468,3 @@ bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
         trace_result_clear(result);
     return joined;
 }
-
-void trace_result_clear(trace_result *result)
-{
-    photon_store_clear(&result->photons);
-    photon_store_clear(&result->in_media);
-    *result = (trace_result){0};
-}

@@ -95,3 +95,10 @@ bool trace_result_append(trace_result *to, trace_result *from, GError **error)
     return append(&to->photons, &from->photons, error) &&
            append(&to->in_media, &from->in_media, error);
 }
+
+void trace_result_clear(trace_result *result)
+{
+    photon_store_clear(&result->photons);
+    photon_store_clear(&result->in_media);
+    *result = (trace_result){0};
+}

@@ -4,84 +4,13 @@
 
 enum { ROULETTE_BOUNCES = 4 };
 
-static radiance_layer layer_of(const camera_path *path)
-{
-    if (path->n_before > 0)
-        return LAYER_SPECULAR;
-    if (path->n_diffuse == 0)
-        return LAYER_EMISSION;
-    if (path->n_diffuse > 1)
-        return LAYER_INDIRECT;
-    return path->n_after > 0 ? LAYER_CAUSTIC : LAYER_DIRECT;
-}
-
-void camera_path_count(camera_path *path, unsigned lobe)
-{
-    path->bounces++;
-    if (lobe & LOBE_DIFFUSE) {
-        path->n_diffuse++;
-        path->n_after = 0;
-    } else if (path->n_diffuse > 0) {
-        path->n_after++;
-    } else {
-        path->n_before++;
-    }
-}
-
-bool path_is_caustic(const camera_path *path)
-{
-    return path->n_diffuse > 0 && path->n_after > 0;
-}
-
-/* True if photons too carry it. */
-static bool photons_share(const path_walk *walk, const camera_path *path)
-{
-    return walk->pass->caustics && path_is_caustic(path);
-}
-
-static bool add(path_walk *walk, const camera_path *path, spectrum radiance)
-{
-    spectrum value = path->at.throughput * radiance;
-    if (walk->pass->without_caustics && path_is_caustic(path))
-        return false;
-    if (!spectrum_is_finite(value)) {
-        walk->scratch->n_not_finite++;
-        return false;
-    }
-    walk->out->layers[layer_of(path)] += value;
-    return true;
-}
-
-void path_add_parts(path_walk *walk, const camera_path *path, spectrum radiance)
-{
-    if (!add(walk, path, radiance) || !walk->out->groups)
-        return;
-    for (int i = 0; i < walk->scene->n_light_groups; i++)
-        walk->out->groups[i] += path->at.throughput * walk->scratch->estimate.groups[i];
-}
-
-bool path_is_cut(const path_walk *walk, const camera_path *path, unsigned more)
-{
-    int64_t limit = walk->how->max_backward_bounces;
-    return limit >= 0 && path->bounces + more > limit;
-}
-
-/* Adds what came from one lamp. */
-static void add_from(path_walk *walk, const camera_path *path, spectrum radiance,
-                     int lamp)
-{
-    if (add(walk, path, radiance) && walk->out->groups)
-        walk->out->groups[scene_light_group(walk->scene, lamp)] +=
-            path->at.throughput * radiance;
-}
-
 /* What photons leave of the light that the path ran into. */
 static float left_by_photons(const path_walk *walk, const camera_path *path,
                              const met_light *met)
 {
     const surface_hit *hit = met->hit;
     vec3 d = path->at.ray.direction;
-    if (!photons_share(walk, path))
+    if (!path_photons_share(walk, path))
         return 1.0f;
     const caustic_end end = {
         .light = met->light,
@@ -103,110 +32,13 @@ static void meet_light(void *data, const met_light *met)
     float weight =
         direct_met_weight(walk->scene, walk->how, &from, path->at.ray.direction, met) *
         left_by_photons(walk, path, met);
-    add_from(walk, path, met->radiance * weight, met->light);
+    path_add_from(walk, path, met->radiance * weight, met->light);
 }
 
 static void meet_surface(void *data, const surface_hit *hit)
 {
     const path_walk *walk = data;
     direct_meet(walk->scene, &walk->pass->w, &walk->path.at.ray, hit, meet_light, data);
-}
-
-/* Grain shows on what is seen straight or in a mirror. */
-static bool samples_every_light(const camera_path *path)
-{
-    return path->n_diffuse == 0 && !path->by_either;
-}
-
-/* The bsdf whatever lane the path has kept: b, or made in room. */
-static const bsdf *all_lanes(const path_walk *walk, const camera_path *path,
-                             const surface_hit *hit, const bsdf *b, bsdf *room)
-{
-    const path_pass *pass = walk->pass;
-    if (path->at.lane == ALL_LANES)
-        return b;
-    scene_bsdf(walk->scene, hit, &pass->w, ALL_LANES, &pass->options, room);
-    return room;
-}
-
-/* Notes a place whose light lights others. */
-static void note_lit(const path_walk *walk, const camera_path *path,
-                     const surface_hit *hit, const bsdf *b, spectrum radiance)
-{
-    photon_store *lit = walk->pass->lit;
-    vec3 toward = -path->at.ray.direction;
-    const photon place = {.p = hit->p,
-                          .wi = toward,
-                          .flux = path->at.throughput * radiance,
-                          .n = face_forward(hit->n_geom, toward)};
-    if (path->n_diffuse > 0 && !b->is_phase && lit->n < lit->capacity)
-        photon_store_put(lit, &place);
-}
-
-void path_sample_lights(path_walk *walk, const camera_path *path, const surface_hit *hit,
-                        const bsdf *b)
-{
-    if (!walk->how->direct_illumination || !(b->lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)))
-        return;
-    bsdf room;
-    camera_path by_diffuse = *path, by_glossy = *path;
-    camera_path_count(&by_diffuse, LOBE_DIFFUSE);
-    camera_path_count(&by_glossy, LOBE_GLOSSY);
-    bool share = (b->lobes & LOBE_GLOSSY) && photons_share(walk, &by_glossy);
-    const direct_query query = {
-        .scene = walk->scene,
-        .w = &walk->pass->w,
-        .hit = hit,
-        .bsdf = b,
-        .wo = -path->at.ray.direction,
-        .every_light = samples_every_light(path),
-        .shadow_rays = walk->how->shadow_rays,
-        .followed = LOBE_ALL,
-        .share = share ? &walk->pass->caustics->share : NULL,
-        .all_lanes = share ? all_lanes(walk, path, hit, b, &room) : NULL,
-    };
-    direct_radiance found[FEW_LIGHTS];
-    int n = direct_light(&query, walk->random, found, &walk->scratch->shadow_rays);
-    for (int i = 0; i < n; i++) {
-        add_from(walk, &by_diffuse, found[i].diffuse, found[i].light);
-        add_from(walk, &by_glossy, found[i].glossy, found[i].light);
-        if (walk->pass->lit)
-            note_lit(walk, path, hit, b, found[i].diffuse + found[i].glossy);
-    }
-}
-
-bool path_skips_gather(path_walk *walk, camera_path *path, float p_blurred)
-{
-    float p = path->n_diffuse > 0 ? p_blurred : 1.0f;
-    if (p < 1.0f && !(sampler_1d(walk->random) < p))
-        return true;
-    path->at.throughput /= p;
-    return false;
-}
-
-/* What the caustic map says of this surface; a photon there has scattered once at least.
-   Where a path came by way of glass or metal from a diffuse surface, photons have gone
-   the same way and were counted there. Light that a lobe of n_diffuse > 0 would take from
-   photons of delta lights on glossy lobes has been counted at the diffuse surface
-   before. */
-void path_gather_caustics(path_walk *walk, const camera_path *path,
-                          const surface_hit *hit, const bsdf *b)
-{
-    const photonmap_pass *photons = walk->pass->caustics;
-    if (!photons)
-        return;
-    unsigned delta = path->n_diffuse == 0 && photons->has_unmet_lights ? LOBE_GLOSSY : 0;
-    camera_path seen = *path;
-    if (!(b->lobes & (LOBE_DIFFUSE | delta)) || path_is_caustic(path) ||
-        path_is_cut(walk, path, 2))
-        return;
-    const shading_point at = {hit, b, -path->at.ray.direction, path->n_diffuse > 0};
-    if (path_skips_gather(walk, &seen, walk->pass->plan->p_blurred))
-        return;
-    camera_path_count(&seen, LOBE_DIFFUSE);
-    seen.n_after = 1;
-    path_add_parts(walk, &seen,
-                   photonmap_gather(photons, PHOTON_CAUSTIC, &at, delta, walk->scratch));
 }
 
 /* Keeps what the share of photons depends on, where they may have one. */
@@ -216,7 +48,7 @@ static void note_density(const path_walk *walk, camera_path *path, const surface
     bsdf room;
     if (!walk->pass->caustics || path->n_diffuse == 0 || !(next->lobe & LOBE_GLOSSY))
         return;
-    const bsdf *all = all_lanes(walk, path, hit, b, &room);
+    const bsdf *all = path_all_lanes(walk, path, hit, b, &room);
     path->pdf_scatter =
         bsdf_pdf(all, -path->at.ray.direction, next->wi, LOBE_ALL, TRANSPORT_RADIANCE);
 }
@@ -240,7 +72,7 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     path->eta2 *= next.eta * next.eta;
     path->pdf = (next.lobe & LOBE_SPECULAR) ? 0.0f : next.pdf;
     path->from = hit->p;
-    path->every_light = samples_every_light(path);
+    path->every_light = path_samples_every_light(path);
     path->by_either = path->looked > 0.0f && bsdf_has_both(b);
     path->at.ray = hit_ray(hit, next.wi);
     path->at.from_eye = false;

@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include "scene/advance.h"
 #include "transport/path/path.h"
 
 /* A camera path on its way. */
@@ -56,6 +57,21 @@ bool path_is_caustic(const camera_path *path);
 /** @brief True if a gather that is seen by way of a diffuse bounce is left out by chance;
  * else the path counts for those that are. @param p_blurred of making it */
 bool path_skips_gather(path_walk *walk, camera_path *path, float p_blurred);
+
+/** @brief True if photons carry a part of such light. */
+bool path_photons_share(const path_walk *walk, const camera_path *path);
+
+/** @brief True where each light is sampled: grain shows on what is seen straight or in a
+ * mirror. */
+bool path_samples_every_light(const camera_path *path);
+
+/** @brief The bsdf whatever lane the path has kept: b, or made in room. */
+const bsdf *path_all_lanes(const path_walk *walk, const camera_path *path,
+                           const surface_hit *hit, const bsdf *b, bsdf *room);
+
+/** @brief Adds what came from one light. */
+void path_add_from(path_walk *walk, const camera_path *path, spectrum radiance,
+                   int light);
 
 /** @brief Adds what photons brought, with its parts by light groups. */
 void path_add_parts(path_walk *walk, const camera_path *path, spectrum radiance);

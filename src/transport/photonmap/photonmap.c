@@ -1,32 +1,11 @@
 #include "transport/photonmap/photonmap.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "transport/photonmap/photonmap_medium.h"
 #include "transport/places.h"
 #include "transport/plan/aim.h"
 #include "transport/plan/work.h"
-
-double photonmap_radius(double radius, double alpha, uint32_t pass)
-{
-    double r2 = radius * radius;
-    for (uint32_t i = 1; i <= pass; i++)
-        r2 *= ((double)i - 1.0 + alpha) / (double)i;
-    return sqrt(r2);
-}
-
-estimate_options photonmap_estimate_options(const settings *how, photon_class c,
-                                            double radius)
-{
-    size_t nearest = (size_t)how->class_nearest[c];
-    bool unbounded = nearest > 0 && !(how->radius > 0.0);
-    return (estimate_options){
-        .kernel = {(kernel_choice)how->class_kernel[c], (float)how->class_cone_k[c]},
-        .nearest = nearest,
-        .radius = unbounded ? INFINITY : (float)radius,
-        .flatten = (float)how->flatten,
-        .lobes = LOBE_GATHERED,
-    };
-}
 
 /* ---- Planning: who gets how many photons ---- */
 
@@ -78,11 +57,6 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
 
 /* ---- A pass ---- */
 
-static double seconds(void)
-{
-    return (double)g_get_monotonic_time() * 1e-6;
-}
-
 /* What one slice of a pass does for one class. */
 typedef struct slice_task {
     const photonmap_pass *pass;
@@ -130,13 +104,13 @@ static bool keeps_irradiance(const photonmap_pass *pass)
 static bool trace_class(const slice_task *s, const cancel_flag *cancel,
                         trace_result *result, transport_counts *counts, GError **error)
 {
-    double start = seconds();
+    double start = clock_seconds();
     trace_task task = trace_task_for(s, cancel);
     counts->radius[s->c] = radius_of(s->pass->plan, s->c, s->pass->index);
     bool oriented = s->pass->how->edges || keeps_irradiance(s->pass);
     if (!photon_trace(&task, oriented, result, error))
         return false;
-    counts->time_trace += seconds() - start;
+    counts->time_trace += clock_seconds() - start;
     counts->photon_rays += result->n_rays;
     counts->n_not_finite += result->n_not_finite;
     counts->emitted[s->c] += task.n_photons;
@@ -147,7 +121,7 @@ static bool trace_class(const slice_task *s, const cancel_flag *cancel,
 static bool build_class(photonmap_pass *pass, const slice_task *s, trace_result *result,
                         transport_counts *counts, GError **error)
 {
-    double start = seconds();
+    double start = clock_seconds();
     photon_map **map = &pass->maps[s->slice][s->c];
     float radius = pass->estimates[s->c].radius;
     photon_store store = result->photons;
@@ -160,7 +134,7 @@ static bool build_class(photonmap_pass *pass, const slice_task *s, trace_result 
                             (unsigned)pass->how->threads, error);
     bool ok =
         *map && photonmap_keep_in_media(pass, s->slice, s->c, &result->in_media, error);
-    counts->time_build += seconds() - start;
+    counts->time_build += clock_seconds() - start;
     const volume_map *in_media = pass->in_media[s->slice][s->c];
     if (ok)
         counts->memory_photons +=
@@ -216,10 +190,10 @@ static bool make_slice(photonmap_pass *pass, int slice, const cancel_flag *cance
         if (pass->plan->n_photons[c] > 0)
             ok = make_map(pass, &s, cancel, &points[c], counts, error);
     }
-    double start = seconds();
+    double start = clock_seconds();
     if (ok && keeps_irradiance(pass))
         ok = irradiance_map_build(pass, slice, points, N_PHOTON_CLASSES, error);
-    counts->time_build += seconds() - start;
+    counts->time_build += clock_seconds() - start;
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         trace_result_clear(&points[c]);
     return ok;
@@ -331,98 +305,6 @@ const photon_sender photonmap_photons = {
 static const wavelengths *pass_wavelengths(const void *pass)
 {
     return &((const photonmap_pass *)pass)->w;
-}
-
-#define LARGEST_OVER_TYPICAL 6.0f
-
-/* A place further from its radius' own place than that radius reaches is emptier still.
-   No radius is so much larger than the typical one that a look-up gets slow. */
-static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
-                          photon_hits *hits)
-{
-    const photon_map *radii = pass->plan->radius_map[c];
-    float typical = pass->estimates[c].radius;
-    if (!radii || pass->estimates[c].nearest > 0)
-        return typical;
-    float r = places_at(radii, p, -1.0f, hits);
-    if (r < 0.0f)
-        return typical;
-    float shrunk = typical / (float)pass->plan->radius[c];
-    return minf(maxf(r, sqrtf(hits->distance2[0])) * shrunk,
-                LARGEST_OVER_TYPICAL * typical);
-}
-
-estimate_options photonmap_options_at(const photonmap_pass *pass, photon_class c, vec3 p,
-                                      photon_hits *hits)
-{
-    estimate_options options = pass->estimates[c];
-    options.radius = local_radius(pass, c, p, hits);
-    return options;
-}
-
-/* Turns a bsdf with the surface that it is of. */
-static void turn_bsdf(const transform *by, vec3 n_geom, bsdf *b)
-{
-    vec3 n = face_forward(normalize3(transform_normal(by, b->shading.n)), n_geom);
-    if (dot3(b->shading.n, b->n_geom) < 0.0f)
-        n = -n;
-    b->shading = frame_from_tangent(n, transform_vector(by, b->shading.s));
-    b->n_geom = n_geom;
-}
-
-/* What the map of a slice says: of what moves or turns, where its photons are kept. */
-static spectrum gather_at(const photonmap_pass *pass, const photon_map *map,
-                          const shading_point *at, const estimate_options *options,
-                          transport_scratch *scratch)
-{
-    const scene *s = pass->scene;
-    bool moves = scene_hit_moves(s, at->hit);
-    if (!moves && !at->hit->turns)
-        return photon_estimate(map, at->hit->p, at->bsdf, at->wo, options,
-                               &scratch->estimate, NULL);
-    surface_hit hit = *at->hit;
-    bsdf turned = *at->bsdf;
-    vec3 wo = at->wo;
-    if (moves) {
-        transform by = scene_motion_to(s, &hit, options->time);
-        instance_move_hit(&by, &hit);
-        hit.time = options->time;
-        turn_bsdf(&by, hit.n_geom, &turned);
-        wo = normalize3(transform_vector(&by, wo));
-    }
-    const flat_curve flat = {s, &hit};
-    estimate_options there = *options;
-    there.curve = hit.turns ? &flat : NULL;
-    return photon_estimate(map, scene_hit_place(s, &hit), &turned, wo, &there,
-                           &scratch->estimate, NULL);
-}
-
-float photonmap_slice_time(const photonmap_pass *pass, int slice)
-{
-    return pass->scene->moves ? time_of_slice(slice, pass->n_slices) : 0.0f;
-}
-
-spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
-                          const shading_point *at, unsigned delta_lobes,
-                          transport_scratch *scratch)
-{
-    int slice = time_slice(at->hit->time, pass->n_slices);
-    const photon_map *map = pass->maps[slice][c];
-    if (!map) {
-        for (size_t i = 0; i < scratch->estimate.n_groups; i++)
-            scratch->estimate.groups[i] = (spectrum){0};
-        return (spectrum){0};
-    }
-    estimate_options options =
-        photonmap_options_at(pass, c, at->hit->p, &scratch->estimate.hits);
-    options.scene = pass->how->edges && !at->blurred ? pass->scene : NULL;
-    options.time = photonmap_slice_time(pass, slice);
-    options.delta_lobes = delta_lobes ? delta_lobes | LOBE_ANY_SIDE : 0;
-    double start = scratch->timed ? seconds() : 0.0;
-    spectrum radiance = gather_at(pass, map, at, &options, scratch);
-    if (scratch->timed)
-        scratch->time_gather += seconds() - start;
-    return radiance;
 }
 
 const transport_kind transport_photonmap = {

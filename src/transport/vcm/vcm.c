@@ -1,4 +1,5 @@
 #include "transport/vcm/vcm.h"
+#include "base/clock.h"
 
 #include "base/memory.h"
 #include "transport/photonmap/photonmap.h"
@@ -81,11 +82,6 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
 
 /* ---- A pass ---- */
 
-static double seconds(void)
-{
-    return (double)g_get_monotonic_time() * 1e-6;
-}
-
 /* What moves is kept where it is in the middle of its slice of time. */
 photon vcm_photon(const vcm_pass *pass, const light_vertex *v)
 {
@@ -111,7 +107,7 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
     const settings *how = &pass->plan->how;
     const light_paths *paths = &pass->light;
     photon_store store = {.oriented = how->edges, .homed = pass->scene->turns};
-    double start = seconds();
+    double start = clock_seconds();
     if (!photon_store_reserve(&store, paths->n_vertices, error))
         return false;
     for (size_t i = 0; i < paths->n_vertices; i++) {
@@ -121,7 +117,7 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
     }
     pass->map = photon_map_build(photon_map_chosen((map_choice)how->photon_map, false),
                                  &store, pass->radius, (unsigned)how->threads, error);
-    counts->time_build += seconds() - start;
+    counts->time_build += clock_seconds() - start;
     if (pass->map)
         counts->memory_photons += photon_map_bytes(pass->map);
     return pass->map != NULL;
@@ -130,10 +126,10 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
 static bool trace_light(vcm_pass *pass, const cancel_flag *cancel,
                         transport_counts *counts, GError **error)
 {
-    double start = seconds();
+    double start = clock_seconds();
     if (!vcm_trace_light(pass, cancel, counts, error))
         return false;
-    counts->time_trace += seconds() - start;
+    counts->time_trace += clock_seconds() - start;
     counts->emitted[PHOTON_INDIRECT] += pass->light.n;
     counts->stored[PHOTON_INDIRECT] += pass->light.n_vertices;
     counts->radius[PHOTON_INDIRECT] = (double)pass->radius;

@@ -60,13 +60,3 @@ bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **
     light_paths_clear(&pilot.light);
     return plan->density != NULL;
 }
-
-float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, photon_hits *hits)
-{
-    const photon_map *density = pass->plan->density;
-    if (!density)
-        return 1.0f;
-    vec3 p = scene_hit_place(pass->scene, hit);
-    float within = pass->ratios.merge * places_at(density, p, 0.0f, hits);
-    return 1.0f / (1.0f + fminf(within, 1e6f));
-}

@@ -1,4 +1,5 @@
 /* What light and camera subpaths have in common. */
+#include "transport/places.h"
 #include "transport/vcm/vcm.h"
 
 lobe_pair vcm_scatter(const vcm_vertex *v, vec3 wi, transport_mode mode)
@@ -87,4 +88,14 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
     walk->at.from_eye = false;
     walk->counts = vcm_count(walk->counts, (next.lobe & LOBE_DIFFUSE) != 0);
     return cosine > 0.0f && !spectrum_is_black(walk->at.throughput);
+}
+
+float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, photon_hits *hits)
+{
+    const photon_map *density = pass->plan->density;
+    if (!density)
+        return 1.0f;
+    vec3 p = scene_hit_place(pass->scene, hit);
+    float within = pass->ratios.merge * places_at(density, p, 0.0f, hits);
+    return 1.0f / (1.0f + fminf(within, 1e6f));
 }

@@ -1,0 +1,17 @@
+/*
+ * From sums on the film to colours: white balance, then the film's colour space.
+ */
+#include "render/film.h"
+
+#include <math.h>
+
+void film_to_rgb(const film *f, const double sum[3], double weight, float out[3])
+{
+    float xyz[3] = {0};
+    for (int i = 0; i < 3 && fabs(weight) > 0.0; i++) {
+        const double *m = f->balance + 3 * i;
+        double balanced = m[0] * sum[0] + m[1] * sum[1] + m[2] * sum[2];
+        xyz[i] = (float)((f->balanced ? balanced : sum[i]) / weight);
+    }
+    color_space_from_xyz(f->space, xyz, out);
+}
