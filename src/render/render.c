@@ -602,10 +602,10 @@ bool render_get_plan(render *r, render_plan *out, GError **error)
     if (!r->prepared && r->cancel.beat) /* it is being made */
         return false;
     if (!r->prepared) {
-        r->start = seconds() - MAX(r->statistics.time_total, r->before);
+        r->start = clock_seconds() - MAX(r->statistics.time_total, r->before);
         if (!prepare(r, error))
             return false;
-        r->statistics.time_total = seconds() - r->start;
+        r->statistics.time_total = clock_seconds() - r->start;
     }
     *out = render_plan_of(&r->plan);
     return true;

@@ -59,27 +59,6 @@ path_effort path_effort_measure(transport_plan *plan, photon_store *lit)
 
 /* ---- What bright spots are worth ---- */
 
-static double spot_share(int i)
-{
-    return 1.0 / (double)(1 << i);
-}
-
-/* What scattering finds alone, and what is left where both share by the power heuristic,
-   is known for each place that was looked at. */
-void spot_trial_note(spot_trial *trial, const spot_look *look)
-{
-    double p = look->pdf, q = look->pdf_scatter;
-    double x2 = look->value * p * look->value * p;
-    if (!isfinite(x2) || !(q > 0.0) || !(p > 0.0))
-        return;
-    trial->without += x2 / q / p;
-    for (int i = 0; i < SPOT_SHARES; i++) {
-        double looked = p * look->importance * spot_share(i);
-        double w = q * q / (q * q + looked * looked);
-        trial->with[i] += x2 * (w * w / q + (1.0 - w) * (1.0 - w) / looked) / p;
-    }
-}
-
 /* Paths that look from each surface. @return the variance of one. */
 static double run_spot_trial(transport_plan *plan, const path_pass *pass,
                              spot_trial *trial, uint32_t n_pairs)

@@ -1,0 +1,25 @@
+/*
+ * What looks at bright spots bring, noted by the paths of a trial.
+ */
+#pragma once
+
+enum { SPOT_SHARES = 4 };
+
+/** @brief What looks at bright spots were seen to bring, while each surface looked. */
+typedef struct spot_trial {
+    double rays;    /**< that looks cost, by their importance */
+    double without; /**< sum of squares of what paths bring without looking ... */
+    double with[SPOT_SHARES]; /**< ... and where one surface in 1, 2, 4, ... looks */
+} spot_trial;
+
+/** @brief What one look found. */
+typedef struct spot_look {
+    double importance;       /**< how likely it is where the probability is 1 */
+    double pdf, pdf_scatter; /**< of looking there and of scattering there */
+    double value; /**< that it brings, were there no other way, mean over wavelengths */
+} spot_look;
+
+/** @brief The i-th share of surfaces that look: 1, 1/2, 1/4, ... */
+double spot_share(int i);
+/** @brief Adds what a look found. */
+void spot_trial_note(spot_trial *trial, const spot_look *look);
