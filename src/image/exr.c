@@ -45,19 +45,71 @@ static ptrdiff_t skip_text(const image_source *source, size_t *at)
     return end - begin;
 }
 
+/* Types of attributes that the library reads by their type, whatever size they state: a
+ * size that is another would let it take what follows for something else. */
+static const struct {
+    const char *type;
+    int32_t size;
+} fixed_types[] = {
+    {"box2f", 16},      {"box2i", 16},   {"chromaticities", 32},
+    {"compression", 1}, {"double", 8},   {"envmap", 1},
+    {"float", 4},       {"int", 4},      {"keycode", 28},
+    {"lineOrder", 1},   {"m33d", 72},    {"m33f", 36},
+    {"m44d", 128},      {"m44f", 64},    {"rational", 8},
+    {"tiledesc", 9},    {"timecode", 8}, {"v2d", 16},
+    {"v2f", 8},         {"v2i", 8},      {"v3d", 24},
+    {"v3f", 12},        {"v3i", 12},
+};
+
+static int32_t int_at(const uint8_t *bytes)
+{
+    int32_t value;
+    memcpy(&value, bytes, sizeof value);
+    return GINT32_FROM_LE(value);
+}
+
+/* A list of channels (a name and 16 bytes each) ends with an empty name. */
+static bool channels_fit(const uint8_t *value, int32_t size)
+{
+    const image_source list = {.bytes = value, .size = (size_t)size};
+    for (size_t at = 0;;) {
+        ptrdiff_t name = skip_text(&list, &at);
+        if (name <= 0)
+            return name == 0 && at == list.size;
+        if (list.size - at < 16)
+            return false;
+        at += 16;
+    }
+}
+
+static bool value_fits(const char *type, const uint8_t *value, int32_t size)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(fixed_types); i++)
+        if (strcmp(type, fixed_types[i].type) == 0)
+            return size == fixed_types[i].size;
+    if (strcmp(type, "chlist") == 0)
+        return channels_fit(value, size);
+    if (strcmp(type, "preview") != 0)
+        return true;
+    if (size < 8 || int_at(value) < 0 || int_at(value + 4) < 0)
+        return false;
+    int64_t n_pixels = (int64_t)int_at(value) * int_at(value + 4);
+    return n_pixels <= size && 8 + 4 * n_pixels == size;
+}
+
 /* Name, type, size, value; all headers end with an empty name. @return as skip_text */
 static ptrdiff_t skip_attribute(const image_source *source, size_t *at)
 {
-    int32_t size;
     ptrdiff_t name = skip_text(source, at);
     if (name <= 0)
         return name;
-    if (skip_text(source, at) < 0 || source->size - *at < sizeof size)
+    const char *type = (const char *)source->bytes + *at;
+    if (skip_text(source, at) < 0 || source->size - *at < sizeof(int32_t))
         return -1;
-    memcpy(&size, source->bytes + *at, sizeof size);
-    size = GINT32_FROM_LE(size);
+    int32_t size = int_at(source->bytes + *at);
     *at += sizeof size;
-    if (size < 0 || (size_t)size > source->size - *at)
+    if (size < 0 || (size_t)size > source->size - *at ||
+        !value_fits(type, source->bytes + *at, size))
         return -1;
     *at += (size_t)size;
     return name;

@@ -151,6 +151,29 @@ static void test_exr_subsampled_is_refused(void)
     g_error_free(error);
 }
 
+/* A value whose size is not its type's shifts all that follows it: what the library would
+ * take for a size was 1.9 GB. Found by damage. */
+static void test_exr_attribute_sizes(void)
+{
+    static const char *const types[] = {"lineOrder", "compression", "float",
+                                        "v2f",       "box2i",       "chlist"};
+    for (size_t i = 0; i < G_N_ELEMENTS(types); i++) {
+        size_t size, length = strlen(types[i]) + 1;
+        GError *error = NULL;
+        g_autofree char *bytes = file_of(".exr", &size);
+        char *found = bytes;
+        /* the type, not a name that is the same */
+        while (memcmp(found, types[i], length) != 0 || found[length + 1] != 0)
+            g_assert_true(++found + length < bytes + size);
+        found[length]++;
+        write_bytes(bytes, size);
+        g_assert_null(image_read(path, NULL, &error));
+        assert_message_names_file(error);
+        g_assert_nonnull(strstr(error->message, "its header does not end"));
+        g_error_free(error);
+    }
+}
+
 /* A chunk that says it has 1.6 GB, in a file of 73 bytes: no memory is asked for it.
    Found by fuzzing. */
 static void test_claims(void)
@@ -202,6 +225,7 @@ int main(int argc, char **argv)
     }
     g_test_add_func("/image/exr-kinds-damaged", test_exr_kinds_damaged);
     g_test_add_func("/image/exr-subsampled", test_exr_subsampled_is_refused);
+    g_test_add_func("/image/exr-attribute-sizes", test_exr_attribute_sizes);
     g_test_add_func("/image/claims", test_claims);
     g_test_add_func("/image/silent", test_nothing_is_printed);
     int result = g_test_run();
