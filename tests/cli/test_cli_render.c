@@ -47,6 +47,23 @@ static void test_quiet_is_quiet(folder *f, gconstpointer data)
     g_assert_cmpuint(folder_count(f), ==, 2);
 }
 
+/* What is decided, in words, the same on any number of threads; and a picture. */
+static void test_explain(folder *f, gconstpointer data)
+{
+    (void)data;
+    static const char *const words[] = {"plan        ", "photons     ", "radius      ",
+                                        "bright spots", "slices      ", "planning    "};
+    g_auto(result) one = run(f, "render box.pbrt -q --explain -j 1 -o one.exr");
+    g_auto(result) three = run(f, "render box.pbrt -q --explain -j 3");
+    g_auto(result) none = run(f, "render box.pbrt -q --explain --integrator path");
+    g_assert_cmpint(one.code, ==, 0);
+    for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
+        contains(one.out, words[i]);
+    g_assert_cmpstr(one.out, ==, three.out);
+    contains(none.out, "photons     none");
+    g_assert_true(folder_has(f, "one.exr"));
+}
+
 static void test_scene_names_the_output(folder *f, gconstpointer data)
 {
     (void)data;
@@ -485,6 +502,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     folder_add_test("/cli/render", test_render_writes_all);
     folder_add_test("/cli/quiet", test_quiet_is_quiet);
+    folder_add_test("/cli/explain", test_explain);
     folder_add_test("/cli/named", test_scene_names_the_output);
     folder_add_test("/cli/render/exposure-of-gltf", test_exposure_of_gltf);
     folder_add_test("/cli/render/exposure-of-pbrt", test_exposure_of_pbrt);
