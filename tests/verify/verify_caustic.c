@@ -165,7 +165,9 @@ static double layer_green(const image *img, const char *name)
 
 /* Σ over pixels of the variance of the caustic, times photons a pass. Each seed has
    wavelengths of its own, and what they do to a colour would be variance that no photon
-   mends: light straight from the lamp, which has no noise, is the measure. */
+   mends: light straight from the lamp, which has no noise, is the measure. Each is a pass
+   as of a render of many: trials are a part of the work, and of one pass too few to learn
+   from. */
 static double caustic_variance(const scene *s, const char *emission, int photons)
 {
     enum { PASSES = 32, SIDE = 24 };
@@ -173,7 +175,8 @@ static double caustic_variance(const scene *s, const char *emission, int photons
     for (int seed = 0; seed < PASSES; seed++) {
         g_autofree char *words = g_strdup_printf(
             "integrator=photonmap passes=1 spp=16 radius=0.05 indirect_photons=1 "
-            "max_forward_bounces=4 caustic_photons=%d caustic_emission=%s seed=%d",
+            "max_forward_bounces=4 planned_passes=64 caustic_photons=%d "
+            "caustic_emission=%s seed=%d",
             photons, emission, seed);
         g_autoptr(image) img = render_with(s, words);
         size_t channel = channel_of(img, "caustic.G");
