@@ -97,8 +97,6 @@ struct light {
     medium_stack solids;    /**< that it shines in; no participating medium */
     medium_interface media; /**< around it */
     bool is_unmet;          /**< no ray can meet it: without an extent, or of alpha 0 */
-    bool is_apart; /**< stands outside the sphere around what casts caustics: from it,
-                      that sphere is a cone */
 };
 
 /** @brief Kind number i of the table; NULL behind the last. */

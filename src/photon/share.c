@@ -5,17 +5,17 @@
 /* Density of the emission in the measure that p_scatter and p_lights are compared in. */
 static float emission_density(const caustic_share *share, const caustic_end *end)
 {
-    const scene *s = share->scene;
-    const light *l = scene_light(s, end->light);
+    const caustic_casters *c = share->casters;
+    const light *l = scene_light(c->scene, end->light);
     float position, direction;
     l->kind->emit_pdf(l->self, end->p, end->n, end->direction, &position, &direction);
-    if (l->is_apart && direction > 0.0f)
-        direction = photon_cone_pdf(s, end->p);
-    float e = distribution_pdf(&s->caustic_power, (size_t)end->light) * direction;
+    if (c->is_apart[end->light] && direction > 0.0f)
+        direction = photon_cone_pdf(c, end->p);
+    float e = distribution_pdf(&c->power, (size_t)end->light) * direction;
     if (share->boost)
         e *= share->boost[end->light];
     if (l->kind->is_parallel)
-        return e / (PI_F * square(s->caustic_radius));
+        return e / (PI_F * square(c->radius));
     if (l->kind->is_delta)
         return e / square(end->distance);
     return e * position / fabsf(dot3(end->n, end->direction));
@@ -25,7 +25,7 @@ float caustic_share_of(const caustic_share *share, const caustic_end *end)
 {
     if (!share)
         return 1.0f;
-    bool unmet = scene_light(share->scene, end->light)->is_unmet;
+    bool unmet = scene_light(share->casters->scene, end->light)->is_unmet;
     float scatter = end->specular ? 1.0f : end->pdf_scatter;
     float merged = scatter * PI_F * share->discs * emission_density(share, end);
     float others = (unmet ? 0.0f : scatter) + (end->specular ? 0.0f : end->pdf_lights);

@@ -26,11 +26,11 @@
  */
 #pragma once
 
-#include "scene/scene.h"
+#include "photon/trace/casters.h"
 
 /** @brief What the shares of a pass depend on. */
 typedef struct caustic_share {
-    const scene *scene;
+    const caustic_casters *casters;
     float discs; /**< π r² N over the camera's samples that see the same photons, m² */
     const float *boost; /**< how much denser guided emission is, by light; NULL: 1 */
 } caustic_share;

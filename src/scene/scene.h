@@ -45,12 +45,6 @@ typedef struct scene_object {
     source_place place;
 } scene_object;
 
-/** @brief A surface that casts caustics. */
-typedef struct caustic_caster {
-    int shape;
-    int instance; /**< or NO_INDEX */
-} caustic_caster;
-
 /** @brief What pbrt's options switch off: for debugging, since the image is worse. */
 typedef struct scene_switches {
     bool fixed_pixels; /**< the eye sees pixels' middles, through the lens's middle, at
@@ -107,13 +101,6 @@ typedef struct scene {
     float media_radius;    /**< m, around center: where such a medium ends */
     bool moves;            /**< some instance does while the shutter is open */
     bool turns;            /**< some shape may (surface_hit.turns) */
-    caustic_caster *casters;
-    int n_casters;
-    distribution caustic_area;  /**< over casters, by area */
-    vec3 caustic_center;        /**< of a sphere around them */
-    float caustic_radius;       /**< of that sphere; 0 if there are none */
-    distribution caustic_power; /**< over lights, by the power that may meet that sphere:
-                                   which one a caustic photon starts from */
 } scene;
 
 /** @brief Those of a pass. */
@@ -267,17 +254,16 @@ static inline bool scene_is_lit(const scene *s)
     return distribution_total(&s->light_power) > 0.0;
 }
 
-/** @brief True if light may meet something that casts caustics. */
-static inline bool scene_may_cast_caustics(const scene *s)
+static inline const instance *scene_instance(const scene *s, int i)
 {
-    return s->n_casters > 0 && distribution_total(&s->caustic_power) > 0.0;
+    return &g_array_index(s->instances, instance, (guint)i);
 }
 
-/** @brief A point on the surfaces that cast caustics, uniform by area but for instances
- * that are stretched. */
-vec3 scene_caustic_target(const scene *s, float u_shape, vec2 u, float time);
-/** @brief Its density, m⁻², at a hit that casts caustics. */
-double scene_caustic_density(const scene *s, const surface_hit *hit);
+/** @brief Bounds of what an instance puts somewhere, on all of its way. */
+box3 scene_placed_bounds(const scene *s, const instance *is, box3 box);
+/** @brief How many times the area of what an instance puts somewhere becomes by that, by
+ * the mean of directions, at the opening of the shutter. */
+double scene_instance_growth(const scene *s, const instance *is);
 
 /** @brief True if the hit is on something that moves while the shutter is open. */
 static inline bool scene_hit_moves(const scene *s, const surface_hit *hit)

@@ -2,14 +2,13 @@
  * Committing a scene: what only the whole of it can tell is found once and kept, so that
  * queries need only look.
  *
- *   bounds ─► lights, prepared for them ─► casters of caustics ─► power that may meet
- * them ─► acceleration structure ─► groups, width of a pixel, solids
+ *   bounds ─► lights, prepared for them ─► acceleration structure ─► groups, width of a
+ * pixel, solids
  */
 #include "scene/scene_commit.h"
 
 #include "base/memory.h"
 #include "light/light_lines.h"
-#include "math/warp.h"
 #include "scene/scene_geometry.h"
 #include "scene/scene_media.h"
 #include "scene/scene_solids.h"
@@ -62,36 +61,6 @@ static bool find_lights(scene *s, GError **error)
     big_free(power);
     big_free(bounds);
     return done && check_strength(s, error);
-}
-
-/* The share of a light's power that may meet the sphere around what casts caustics:
-   parallel light is spread over the whole scene, that from a lamp apart from the sphere
-   over a cone and up to twice as strong as on average. */
-static float caustic_share(const scene *s, light *l, const wavelengths *w)
-{
-    if (l->kind->is_parallel)
-        return square(minf(1.0f, s->caustic_radius / s->radius));
-    light_bound bound = l->kind->bound(l->self, w);
-    vec3 nearest = max3(bound.box.low, min3(s->caustic_center, bound.box.high));
-    l->is_apart = bound.is_local &&
-                  length3(nearest - s->caustic_center) > 1.01f * s->caustic_radius;
-    double distance = (double)length3(box3_center(bound.box) - s->caustic_center);
-    double sine = (double)s->caustic_radius / distance;
-    return l->is_apart ? (float)one_minus_cos_of_sine2(sine * sine) : 1.0f;
-}
-
-static bool find_caustic_power(scene *s, GError **error)
-{
-    const wavelengths w = wavelengths_at(0.5f);
-    guint n = s->lights->len;
-    float *power = big_alloc(n, sizeof(float), "lights", error);
-    for (guint i = 0; i < n && power; i++) {
-        light *l = s->lights->pdata[i];
-        power[i] = distribution_pdf(&s->light_power, i) * caustic_share(s, l, &w);
-    }
-    bool done = power && distribution_init(&s->caustic_power, power, n, error);
-    big_free(power);
-    return done;
 }
 
 /* Index of a group by name, made if it is new. */
@@ -159,13 +128,10 @@ void scene_forget_commit(scene *s)
     distribution_clear(&s->light_power);
     g_clear_pointer(&s->light_tree, light_tree_free);
     g_clear_pointer(&s->lines, g_free);
-    distribution_clear(&s->caustic_area);
-    distribution_clear(&s->caustic_power);
     g_clear_pointer(&s->environments, g_free);
     g_clear_pointer(&s->light_groups, g_strfreev);
-    g_clear_pointer(&s->casters, big_free);
     g_clear_pointer(&s->solids, g_free);
-    s->n_environments = s->n_casters = 0;
+    s->n_environments = 0;
 }
 
 bool scene_commit(scene *s, unsigned threads, GError **error)
@@ -179,7 +145,6 @@ bool scene_commit(scene *s, unsigned threads, GError **error)
     if (!s->filter.name && !filter_init_default(&s->filter, error))
         return false;
     s->committed = scene_find_bounds(s, error) && find_lights(s, error) &&
-                   scene_find_casters(s, error) && find_caustic_power(s, error) &&
                    scene_build_accel(s, threads, error);
     if (s->committed) {
         find_light_groups(s);

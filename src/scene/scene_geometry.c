@@ -1,6 +1,6 @@
 /*
- * Where things are: objects and their instances, the scene's bounds, the surfaces that
- * cast caustics, the acceleration structure.
+ * Where things are: objects and their instances, the scene's bounds, the acceleration
+ * structure.
  *
  *   shapes ── all, of the world and of objects, in the order they were added
  *   objects ── shapes with the same shape.object
@@ -109,19 +109,20 @@ bool scene_add_instance(scene *s, int object, const motion *to_world, source_pla
     return true;
 }
 
-static const instance *instance_at(const scene *s, int i)
-{
-    return &g_array_index(s->instances, instance, (guint)i);
-}
-
 /* ---- Bounds ---- */
 
-static box3 placed_bounds(const scene *s, const instance *is, box3 box)
+box3 scene_placed_bounds(const scene *s, const instance *is, box3 box)
 {
     if (box3_is_empty(box))
         return box;
     return motion_bounds(&is->to_world, box, (double)s->camera.shutter_open,
                          (double)s->camera.shutter_close);
+}
+
+double scene_instance_growth(const scene *s, const instance *is)
+{
+    transform at = motion_at(&is->to_world, (double)s->camera.shutter_open);
+    return instance_mean_area_factor(&at);
 }
 
 static box3 *object_bounds(const scene *s)
@@ -146,8 +147,8 @@ box3 scene_world_bounds(const scene *s)
             all = box3_union(all, on->kind->bounds(on->self));
     }
     for (guint i = 0; i < s->instances->len; i++) {
-        const instance *is = instance_at(s, (int)i);
-        all = box3_union(all, placed_bounds(s, is, boxes[is->object]));
+        const instance *is = scene_instance(s, (int)i);
+        all = box3_union(all, scene_placed_bounds(s, is, boxes[is->object]));
     }
     g_aligned_free(boxes);
     return all;
@@ -176,9 +177,9 @@ static bool check_reach(const scene *s, GError **error)
     box3 *boxes = object_bounds(s);
     bool near = true;
     for (guint i = 0; i < s->instances->len && near; i++) {
-        const instance *is = instance_at(s, (int)i);
-        near = scene_check_reach(placed_bounds(s, is, boxes[is->object]), "the instance",
-                                 is->place, error);
+        const instance *is = scene_instance(s, (int)i);
+        near = scene_check_reach(scene_placed_bounds(s, is, boxes[is->object]),
+                                 "the instance", is->place, error);
     }
     g_aligned_free(boxes);
     return near && scene_check_reach(s->bounds, "the scene", (source_place){0}, error);
@@ -210,125 +211,6 @@ bool scene_find_bounds(scene *s, GError **error)
     if (!(s->radius > 0.0f))
         s->radius = 1.0f;
     return true;
-}
-
-/* ---- Caustics ---- */
-
-static bool casts_caustics(const scene *s, const shape *on)
-{
-    return on->material != NO_INDEX && on->area > 0.0f &&
-           material_casts_caustics(s->materials->pdata[on->material]);
-}
-
-static void add_caster(scene *s, float *areas, int i, int of_instance, double factor)
-{
-    const shape *on = s->shapes->pdata[i];
-    areas[s->n_casters] = (float)((double)on->area * factor);
-    s->casters[s->n_casters++] = (caustic_caster){i, of_instance};
-}
-
-/* The shapes of each object, or (first) of the world, that cast caustics. */
-static GArray **casters_by_object(const scene *s)
-{
-    size_t n = (size_t)s->objects->len + 1;
-    GArray **lists = g_new0(GArray *, n);
-    for (size_t i = 0; i < n; i++)
-        lists[i] = g_array_new(FALSE, FALSE, sizeof(int));
-    for (guint i = 0; i < s->shapes->len; i++) {
-        const shape *on = s->shapes->pdata[i];
-        int index = (int)i;
-        if (casts_caustics(s, on))
-            g_array_append_val(lists[on->object + 1], index);
-    }
-    return lists;
-}
-
-/* Those of the world, if is is NULL, or of an instance. */
-static void list_casters(scene *s, const GArray *list, int of_instance, float *areas,
-                         box3 *box)
-{
-    const instance *is = of_instance == NO_INDEX ? NULL : instance_at(s, of_instance);
-    double factor = 1.0;
-    if (is) {
-        transform at = motion_at(&is->to_world, (double)s->camera.shutter_open);
-        factor = instance_mean_area_factor(&at);
-    }
-    for (guint k = 0; k < list->len; k++) {
-        int i = g_array_index(list, int, k);
-        const shape *on = s->shapes->pdata[i];
-        box3 bounds = on->kind->bounds(on->self);
-        add_caster(s, areas, i, of_instance, factor);
-        *box = box3_union(*box, is ? placed_bounds(s, is, bounds) : bounds);
-    }
-}
-
-static size_t count_casters(const scene *s, GArray **lists)
-{
-    size_t n = lists[0]->len;
-    for (guint i = 0; i < s->instances->len; i++)
-        n += lists[instance_at(s, (int)i)->object + 1]->len;
-    return n;
-}
-
-/* A shape is one as often as there are instances of it: many can be asked for by few
-   words. @param areas owned by the caller (big_free); NULL: memory is short */
-static float *list_all_casters(scene *s, GArray **lists, box3 *box, GError **error)
-{
-    size_t n = count_casters(s, lists);
-    if (n > INT_MAX) {
-        error_set(error, ERROR_FAILED,
-                  "expected at most %d casters of caustics, found %zu", INT_MAX, n);
-        return NULL;
-    }
-    float *areas = big_alloc(n, sizeof *areas, "casters of caustics", error);
-    if (areas)
-        s->casters = big_alloc(n, sizeof *s->casters, "casters of caustics", error);
-    if (!s->casters) {
-        big_free(areas);
-        return NULL;
-    }
-    list_casters(s, lists[0], NO_INDEX, areas, box);
-    for (guint i = 0; i < s->instances->len; i++)
-        list_casters(s, lists[instance_at(s, (int)i)->object + 1], (int)i, areas, box);
-    return areas;
-}
-
-bool scene_find_casters(scene *s, GError **error)
-{
-    box3 box = box3_empty();
-    GArray **lists = casters_by_object(s);
-    float *areas = list_all_casters(s, lists, &box, error);
-    for (guint i = 0; i <= s->objects->len; i++)
-        g_array_unref(lists[i]);
-    g_free(lists);
-    s->caustic_center = box3_is_empty(box) ? s->center : box3_center(box);
-    s->caustic_radius = 1.001f * box3_radius(box);
-    bool done =
-        areas && distribution_init(&s->caustic_area, areas, (size_t)s->n_casters, error);
-    big_free(areas);
-    return done;
-}
-
-vec3 scene_caustic_target(const scene *s, float u_shape, vec2 u, float time)
-{
-    size_t i = distribution_sample(&s->caustic_area, &u_shape);
-    const caustic_caster *caster = &s->casters[i];
-    vec3 p = shape_sample_area(s->shapes->pdata[caster->shape], u_shape, u).p;
-    if (caster->instance == NO_INDEX)
-        return p;
-    transform to_world = accel_instance_at(s->accel, caster->instance, time);
-    return transform_point(&to_world, p);
-}
-
-double scene_caustic_density(const scene *s, const surface_hit *hit)
-{
-    double p = 1.0 / distribution_total(&s->caustic_area);
-    if (hit->instance == NO_INDEX)
-        return p;
-    transform at = accel_instance_at(s->accel, hit->instance, hit->time);
-    transform open = motion_at(&instance_at(s, hit->instance)->to_world,
-                               (double)s->camera.shutter_open);
-    return p * instance_mean_area_factor(&open) / instance_area_factor(&at, hit->n_geom);
 }
 
 /* ---- What turns ---- */

@@ -20,7 +20,5 @@ box3 scene_world_bounds(const scene *s);
  * @param what "the shape" */
 bool scene_check_reach(box3 box, const char *what, source_place place, GError **error);
 bool scene_find_bounds(scene *s, GError **error);
-/** @brief casters, caustic_area and the sphere around them. */
-bool scene_find_casters(scene *s, GError **error);
 /** @brief accel, moves. */
 bool scene_build_accel(scene *s, unsigned threads, GError **error);

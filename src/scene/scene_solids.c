@@ -26,9 +26,8 @@ static float *object_scales(const scene *s)
 {
     float *scales = g_new0(float, MAX(s->objects->len, 1));
     for (guint i = 0; i < s->instances->len; i++) {
-        const instance *is = &g_array_index(s->instances, instance, i);
-        transform at = motion_at(&is->to_world, (double)s->camera.shutter_open);
-        float scale = sqrtf((float)instance_mean_area_factor(&at));
+        const instance *is = scene_instance(s, (int)i);
+        float scale = sqrtf((float)scene_instance_growth(s, is));
         scales[is->object] = maxf(scales[is->object], scale);
     }
     return scales;

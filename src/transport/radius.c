@@ -151,6 +151,7 @@ static bool send_pilot(const pilot *p, photon_class c, const cancel_flag *cancel
         .w = p->w,
         .pass = PILOT_PASS,
         .photon_class = c,
+        .casters = plan->casters,
         .guide = plan->guide,
         .share = plan->shares ? &plan->share : NULL,
         .n_photons = n_pilots(plan, c),

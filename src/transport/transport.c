@@ -57,8 +57,16 @@ bool transport_plan_prepare(transport_plan *plan, const cancel_flag *cancel,
     return transport_find(plan->how.integrator)->prepare(plan, cancel, error);
 }
 
+bool transport_plan_find_casters(transport_plan *plan, GError **error)
+{
+    if (!plan->casters)
+        plan->casters = caustic_casters_new(plan->scene, error);
+    return plan->casters != NULL;
+}
+
 void transport_plan_clear(transport_plan *plan)
 {
+    g_clear_pointer(&plan->casters, caustic_casters_free);
     emission_guide_free(plan->guide);
     plan->guide = NULL;
     g_clear_pointer(&plan->boost, g_free);

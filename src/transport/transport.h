@@ -110,6 +110,7 @@ typedef struct transport_plan {
     size_t n_sight;
     const cancel_flag *cancel; /**< of the render that this is for: once set, passes and
                                   samples end as they are, worth nothing; NULL: never */
+    caustic_casters *casters; /**< owned; NULL: nobody has asked for them yet */
     uint64_t
         n_photons[N_PHOTON_CLASSES]; /**< emitted each pass; 0: the class is not needed */
     double radius[N_PHOTON_CLASSES]; /**< of pass 0, m: everywhere, or the median */
@@ -143,6 +144,8 @@ transport_plan transport_plan_of(const scene *s, const settings *how);
  * was decided before is forgotten. Deterministic. */
 bool transport_plan_prepare(transport_plan *plan, const cancel_flag *cancel,
                             GError **error);
+/** @brief Finds the plan's casters of caustics, if they are not known. */
+bool transport_plan_find_casters(transport_plan *plan, GError **error);
 /** @brief Frees what the plan owns. */
 void transport_plan_clear(transport_plan *plan);
 

@@ -76,10 +76,12 @@ static void test_photons(void)
                "0 -2 2 0 -2 -2 .5 2 -2 "
                ".5 2 2 .5 -2 2 .5] \"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7]\n");
     settings how = s->settings;
+    g_autoptr(caustic_casters) casters = caustic_casters_new(s, NULL);
     trace_task task = {.scene = s,
                        .how = &how,
                        .w = wavelengths_at(0.5f),
                        .photon_class = PHOTON_CAUSTIC,
+                       .casters = casters,
                        .n_photons = 100000};
     trace_result result;
     g_assert_true(photon_trace(&task, false, &result, NULL));
@@ -175,10 +177,12 @@ static double beam_through(const char *from, const char *bodies, const char *flo
     g_autoptr(scene) s = scene_of(text);
     settings how = s->settings;
     how.caustic_emission = EMISSION_UNIFORM;
+    g_autoptr(caustic_casters) casters = caustic_casters_new(s, NULL);
     trace_task task = {.scene = s,
                        .how = &how,
                        .w = wavelengths_at(0.5f),
                        .photon_class = PHOTON_CAUSTIC,
+                       .casters = casters,
                        .n_photons = 2000};
     trace_result result;
     g_assert_true(photon_trace(&task, false, &result, NULL));

@@ -256,12 +256,14 @@ static void test_trace_is_the_same_on_any_number_of_threads(void)
     g_autofree char *text =
         g_strconcat(CAMERA "WorldBegin\n" BOX CASTERS, lights[2], NULL);
     g_autoptr(scene) s = scene_of(text);
+    g_autoptr(caustic_casters) casters = caustic_casters_new(s, NULL);
     settings one = quick_settings(), two = quick_settings();
     one.threads = 1;
     two.threads = 3;
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         trace_result a, b;
         trace_task task = task_for(s, &one, (photon_class)c, 20000);
+        task.casters = casters;
         g_assert_true(photon_trace(&task, true, &a, NULL));
         task.how = &two;
         g_assert_true(photon_trace(&task, true, &b, NULL));
@@ -402,14 +404,15 @@ static void test_flux_into_the_cone(void)
         scene_of(CAMERA "WorldBegin LightSource \"point\" \"rgb I\" [1 1 1] \"point3 "
                         "from\" [0 0 5]\n"
                         "Material \"dielectric\" Shape \"sphere\" \"float radius\" 1\n");
+    g_autoptr(caustic_casters) casters = caustic_casters_new(s, NULL);
     trace_task task = task_for(s, &how, PHOTON_CAUSTIC, 1);
     double intensity = (double)spectrum_mean(power_of_lights(s, &task.w)) / (4 * G_PI);
     for (uint64_t i = 0; i < 100; i++) {
         sampler random = sampler_make(7, i);
         photon_start at = {0};
-        g_assert_true(photon_emit_caustic(s, &task.w, NULL, &random, &at));
-        double found =
-            (double)spectrum_mean(at.flux) * (double)photon_cone_pdf(s, at.ray.origin);
+        g_assert_true(photon_emit_caustic(casters, &task.w, NULL, &random, &at));
+        double found = (double)spectrum_mean(at.flux) *
+                       (double)photon_cone_pdf(casters, at.ray.origin);
         g_assert_cmpfloat(fabs(found / intensity - 1), <, 1e-4);
     }
 }

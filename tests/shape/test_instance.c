@@ -166,44 +166,6 @@ static void test_rays_from_nowhere(void)
         }
 }
 
-/* Places for aimed photons, where instances are not stretched: the same number, area and
- * sphere as copies have, and a density whose integral is one. */
-static void test_casters_are_found(void)
-{
-    static const char *const ball =
-        "Material \"dielectric\"\nShape \"sphere\" \"float radius\" 0.5\n";
-    g_autofree char *text = g_strdup_printf(
-        START "ObjectBegin \"ball\"\n%sObjectEnd\n"
-              "AttributeBegin Translate 2 0 0 ObjectInstance \"ball\" AttributeEnd\n"
-              "AttributeBegin Scale 1 -2 1 Scale 2 1 2 ObjectInstance \"ball\" "
-              "AttributeEnd\n%s",
-        ball, ball);
-    g_autoptr(scene) s = scene_of(text);
-    g_assert_cmpint(s->n_casters, ==, 3);
-    g_assert_cmpfloat(fabs(distribution_total(&s->caustic_area) - 6 * G_PI), <, 1e-3);
-    g_assert_cmpfloat(s->caustic_radius, >, 1.7f);
-    unsigned n[3] = {0}, total = 6000;
-    for (uint32_t i = 0; i < total; i++) {
-        sampler random = sampler_make(9, i);
-        float u = sampler_1d(&random);
-        vec3 p = scene_caustic_target(s, u, sampler_2d(&random), 0.0f);
-        float to[3] = {length3(p - vec3_make(2, 0, 0)) - 0.5f, length3(p) - 1.0f,
-                       length3(p) - 0.5f};
-        int on = 0;
-        for (int k = 0; k < 3; k++)
-            if (fabsf(to[k]) < fabsf(to[on]))
-                on = k;
-        g_assert_cmpfloat(fabsf(to[on]), <, 1e-5f);
-        n[on]++;
-    }
-    g_assert_cmpfloat(fabs(n[1] - total * 4 / 6.0), <, 5 * sqrt(total * 2 / 9.0));
-    g_assert_cmpfloat(fabs(n[0] - total / 6.0), <, 5 * sqrt(total * 5 / 36.0));
-    ray r = {.origin = {2, 0, 5}, .direction = {0, 0, -1}, .t_max = INFINITY};
-    surface_hit hit;
-    g_assert_true(scene_intersect(s, &r, &hit));
-    g_assert_cmpfloat(fabs(scene_caustic_density(s, &hit) * 6 * G_PI - 1), <, 1e-4);
-}
-
 /* ---- Motion ---- */
 
 /* The things on their way, at a share x of the time; still if x < 0. */
@@ -282,8 +244,6 @@ static void test_a_shape_that_moves(void)
         g_assert_true(fabsf(2 * time - 2 * r.time) < 1.01f ||
                       !scene_intersect(s, &r, &hit) || hit.t > 5.0f);
     }
-    g_assert_cmpint(s->n_casters, ==, 1);
-    g_assert_cmpfloat(s->caustic_radius, >, 1.9f); /* all of its way */
 }
 
 /* Twice as large in the end: the area of what it carries four times. */
@@ -341,7 +301,6 @@ int main(int argc, char **argv)
     g_test_add_func("/instance/strange-sizes", test_strange_sizes);
     g_test_add_func("/instance/rays-from-nowhere", test_rays_from_nowhere);
     g_test_add_func("/instance/copies", test_instances_are_copies);
-    g_test_add_func("/instance/casters", test_casters_are_found);
     g_test_add_func("/instance/motion/times", test_motion_at_every_time);
     g_test_add_func("/instance/motion/shutter", test_times_and_shutter);
     g_test_add_func("/instance/motion/shape", test_a_shape_that_moves);

@@ -24,6 +24,7 @@ static inline flux_mean flux_left(const transport_plan *plan, photon_class c,
                                   bool in_media, uint64_t n)
 {
     enum { BATCHES = 16 };
+    g_autoptr(caustic_casters) casters = caustic_casters_new(plan->scene, NULL);
     double sum = 0, sum2 = 0;
     for (uint32_t batch = 0; batch < BATCHES; batch++) {
         const trace_task task = {.scene = plan->scene,
@@ -31,6 +32,7 @@ static inline flux_mean flux_left(const transport_plan *plan, photon_class c,
                                  .w = wavelengths_at(0.5f),
                                  .pass = batch,
                                  .photon_class = c,
+                                 .casters = casters,
                                  .guide = plan->guide,
                                  .n_photons = n / BATCHES};
         trace_result result;

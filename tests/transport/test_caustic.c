@@ -19,10 +19,12 @@
 
 static trace_result caustic_photons(const scene *s, settings *how, uint64_t n)
 {
+    g_autoptr(caustic_casters) casters = caustic_casters_new(s, NULL);
     trace_task task = {.scene = s,
                        .how = how,
                        .w = wavelengths_at(0.5f),
                        .photon_class = PHOTON_CAUSTIC,
+                       .casters = casters,
                        .n_photons = n};
     trace_result result;
     g_assert_true(photon_trace(&task, false, &result, NULL));

@@ -3,48 +3,44 @@
 #include "math/warp.h"
 #include "scene/advance.h"
 
-static bool casts_caustics(const scene *s, const surface_hit *hit)
-{
-    return hit->material != NO_INDEX &&
-           material_casts_caustics(s->materials->pdata[hit->material]);
-}
-
 /* A point by area on all surfaces that cast caustics. */
-static vec3 caustic_target(const scene *s, float time, sampler *random)
+static vec3 caustic_target(const caustic_casters *c, float time, sampler *random)
 {
     float u_shape = sampler_1d(random);
-    return scene_caustic_target(s, u_shape, sampler_2d(random), time);
+    return caustic_casters_sample(c, u_shape, sampler_2d(random), time);
 }
 
 /* The density with which targets chosen by area give this ray: per solid angle at its
    origin, or for parallel light per area across it. Cut-outs are solid, as targets on
    them are. */
-static double aimed_density(const scene *s, ray r, bool parallel)
+static double aimed_density(const caustic_casters *c, ray r, bool parallel)
 {
     double density = 0.0;
     float distance = 0.0f;
     vec3 from = r.origin;
     surface_hit hit;
-    for (int i = 0; i < MOST_CROSSINGS && scene_cross(s, &r, &hit); i++) {
+    for (int i = 0; i < MOST_CROSSINGS && scene_cross(c->scene, &r, &hit); i++) {
         distance += length3(hit.p - from);
         from = r.origin;
-        if (casts_caustics(s, &hit)) {
+        if (caustic_casters_include(c, &hit)) {
             double cosine = fabs((double)dot3(hit.n_geom, r.direction));
             double d2 = parallel ? 1.0 : (double)distance * (double)distance;
-            density += cosine > 0.0 ? scene_caustic_density(s, &hit) * d2 / cosine : 0.0;
+            double by_area = caustic_casters_density(c, &hit);
+            density += cosine > 0.0 ? by_area * d2 / cosine : 0.0;
         }
     }
     return density;
 }
 
 /* True if the first surface that stops the ray casts caustics. */
-static bool meets_caster(const scene *s, const wavelengths *w, ray r)
+static bool meets_caster(const caustic_casters *c, const wavelengths *w, ray r)
 {
     uint64_t untold = 0;
-    const scene_traveller who = {.scene = s, .w = w, .n_rays = &untold};
+    const scene_traveller who = {.scene = c->scene, .w = w, .n_rays = &untold};
     path_segment way = {.ray = r};
     surface_hit hit;
-    return scene_advance(&who, &way, &hit) == EVENT_SURFACE && casts_caustics(s, &hit);
+    return scene_advance(&who, &way, &hit) == EVENT_SURFACE &&
+           caustic_casters_include(c, &hit);
 }
 
 /* Chooses a light by power; *u becomes uniform again. */
@@ -67,23 +63,23 @@ static bool finish(const light_emission *emission, float density, photon_start *
     return !spectrum_is_black(out->flux) && spectrum_is_finite(out->flux);
 }
 
-bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
+bool photon_emit_aimed(const caustic_casters *c, const wavelengths *w, sampler *random,
                        photon_start *out)
 {
     light_emission emission;
     float u_light = sampler_1d(random), u_primitive = sampler_1d(random);
     vec2 u = sampler_2d(random);
-    if (!(distribution_total(&s->caustic_power) > 0.0))
+    if (!(distribution_total(&c->power) > 0.0))
         return false;
-    const light *l = choose_light(s, &s->caustic_power, &u_light, out);
-    vec3 target = caustic_target(s, out->ray.time, random);
+    const light *l = choose_light(c->scene, &c->power, &u_light, out);
+    vec3 target = caustic_target(c, out->ray.time, random);
     if (!l->kind->emit_toward(l->self, w, u_primitive, u, target, &emission))
         return false;
     emission.ray.time = out->ray.time;
-    if (!meets_caster(s, w, emission.ray) ||
+    if (!meets_caster(c, w, emission.ray) ||
         (l->kind->admits && !l->kind->admits(l->self, &emission.ray)))
         return false;
-    double density = aimed_density(s, emission.ray, l->kind->is_parallel);
+    double density = aimed_density(c, emission.ray, l->kind->is_parallel);
     return density > 0.0 && finish(&emission, (float)density, out);
 }
 
@@ -102,15 +98,15 @@ bool photon_emit(const scene *s, const wavelengths *w, sampler *random, photon_s
 }
 
 /* Parallel light through the disc of the sphere around what casts caustics. */
-static bool emit_at_disc(const scene *s, const light *l, const wavelengths *w,
+static bool emit_at_disc(const caustic_casters *c, const light *l, const wavelengths *w,
                          const float u[EMISSION_DIMENSIONS], light_emission *out)
 {
     vec2 u_direction = {u[4], u[5]}, disk = warp_disk((vec2){u[2], u[3]});
-    if (!l->kind->emit_toward(l->self, w, u[1], u_direction, s->caustic_center, out))
+    if (!l->kind->emit_toward(l->self, w, u[1], u_direction, c->center, out))
         return false;
     frame f = frame_from_normal(out->ray.direction);
-    out->ray.origin += s->caustic_radius * (disk.x * f.s + disk.y * f.t);
-    out->flux *= PI_F * s->caustic_radius * s->caustic_radius;
+    out->ray.origin += c->radius * (disk.x * f.s + disk.y * f.t);
+    out->flux *= PI_F * c->radius * c->radius;
     return !l->kind->admits || l->kind->admits(l->self, &out->ray);
 }
 
@@ -119,24 +115,24 @@ static bool emit_at_disc(const scene *s, const light *l, const wavelengths *w,
 
 /* 1 - cos of the half angle of the cone in which p sees the sphere, for all that rounding
    does to the directions in it. */
-static float cone_of_sphere(const scene *s, vec3 p)
+static float cone_of_sphere(const caustic_casters *c, vec3 p)
 {
-    double distance = (double)length3(s->caustic_center - p);
-    double sine = (double)s->caustic_radius / distance + DIRECTION_ERROR;
+    double distance = (double)length3(c->center - p);
+    double sine = (double)c->radius / distance + DIRECTION_ERROR;
     return (float)one_minus_cos_of_sine2(fmin(sine * sine, 1.0));
 }
 
-float photon_cone_pdf(const scene *s, vec3 p)
+float photon_cone_pdf(const caustic_casters *c, vec3 p)
 {
-    return warp_cone_pdf(cone_of_sphere(s, p));
+    return warp_cone_pdf(cone_of_sphere(c, p));
 }
 
 /* A direction, uniform in that cone, and its density. */
-static vec3 direction_to_sphere(const scene *s, vec3 p, vec2 u, float *density)
+static vec3 direction_to_sphere(const caustic_casters *c, vec3 p, vec2 u, float *density)
 {
-    frame f = frame_from_normal(normalize3(s->caustic_center - p));
-    *density = photon_cone_pdf(s, p);
-    return frame_to_world(&f, warp_cone(u, cone_of_sphere(s, p)));
+    frame f = frame_from_normal(normalize3(c->center - p));
+    *density = photon_cone_pdf(c, p);
+    return frame_to_world(&f, warp_cone(u, cone_of_sphere(c, p)));
 }
 
 /* A point in direction d from p and at least as far as q: so far that rounding of its
@@ -148,33 +144,34 @@ static vec3 far_along(vec3 p, vec3 d, vec3 q)
 
 /* From a lamp apart: the place is drawn by the lamp, the direction in the cone. The lamp
    is asked twice, since the cone depends on the place. */
-static bool emit_in_cone(const scene *s, const light *l, const wavelengths *w,
+static bool emit_in_cone(const caustic_casters *c, const light *l, const wavelengths *w,
                          const float u[EMISSION_DIMENSIONS], light_emission *out)
 {
     vec2 u_place = {u[2], u[3]};
     float density;
     *out = (light_emission){0};
-    l->kind->emit_toward(l->self, w, u[1], u_place, s->caustic_center, out);
-    vec3 d = direction_to_sphere(s, out->ray.origin, (vec2){u[4], u[5]}, &density);
-    vec3 target = far_along(out->ray.origin, d, s->caustic_center);
+    l->kind->emit_toward(l->self, w, u[1], u_place, c->center, out);
+    vec3 d = direction_to_sphere(c, out->ray.origin, (vec2){u[4], u[5]}, &density);
+    vec3 target = far_along(out->ray.origin, d, c->center);
     if (!l->kind->emit_toward(l->self, w, u[1], u_place, target, out))
         return false;
     out->flux /= density;
     return true;
 }
 
-bool photon_emit_caustic(const scene *s, const wavelengths *w,
+bool photon_emit_caustic(const caustic_casters *c, const wavelengths *w,
                          const emission_guide *guide, sampler *random, photon_start *out)
 {
     float u[EMISSION_DIMENSIONS];
     light_emission emission;
-    if (!(distribution_total(&s->caustic_power) > 0.0))
+    if (!(distribution_total(&c->power) > 0.0))
         return false;
     float density = emission_guide_draw(guide, random, u);
-    const light *l = choose_light(s, &s->caustic_power, &u[0], out);
-    bool emitted = l->kind->is_parallel ? emit_at_disc(s, l, w, u, &emission)
-                   : l->is_apart        ? emit_in_cone(s, l, w, u, &emission)
-                                 : l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]},
-                                                 (vec2){u[4], u[5]}, &emission);
+    const light *l = choose_light(c->scene, &c->power, &u[0], out);
+    bool emitted = l->kind->is_parallel ? emit_at_disc(c, l, w, u, &emission)
+                   : c->is_apart[out->light]
+                       ? emit_in_cone(c, l, w, u, &emission)
+                       : l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]},
+                                       (vec2){u[4], u[5]}, &emission);
     return emitted && finish(&emission, density, out);
 }

@@ -13,6 +13,7 @@
  */
 #pragma once
 
+#include "photon/trace/casters.h"
 #include "photon/trace/guide.h"
 #include "scene/scene.h"
 
@@ -34,14 +35,14 @@ bool photon_emit(const scene *s, const wavelengths *w, sampler *random,
 
 /** @brief Emits one caustic photon by the guide's numbers, only into the sphere around
  * what casts caustics. As above. */
-bool photon_emit_caustic(const scene *s, const wavelengths *w,
+bool photon_emit_caustic(const caustic_casters *c, const wavelengths *w,
                          const emission_guide *guide, sampler *random, photon_start *out);
 
 /** @brief Density per solid angle of a caustic photon's direction, where a light that
- * stands apart (light.is_apart) sends it from p, guide apart. */
-float photon_cone_pdf(const scene *s, vec3 p);
+ * stands apart (casters.is_apart) sends it from p, guide apart. */
+float photon_cone_pdf(const caustic_casters *c, vec3 p);
 
 /** @brief Emits one caustic photon toward the surfaces that cast caustics
  * (specular-area). */
-bool photon_emit_aimed(const scene *s, const wavelengths *w, sampler *random,
+bool photon_emit_aimed(const caustic_casters *c, const wavelengths *w, sampler *random,
                        photon_start *out);

@@ -85,8 +85,8 @@ static bool start(const trace_task *task, sampler *random, photon_start *out)
         task->how->caustic_emission == EMISSION_UNIFORM)
         return photon_emit(task->scene, &task->w, random, out);
     if (task->how->caustic_emission == EMISSION_SPECULAR_AREA)
-        return photon_emit_aimed(task->scene, &task->w, random, out);
-    return photon_emit_caustic(task->scene, &task->w, guide_of(task), random, out);
+        return photon_emit_aimed(task->casters, &task->w, random, out);
+    return photon_emit_caustic(task->casters, &task->w, guide_of(task), random, out);
 }
 
 /* The time of a photon, 0 where nothing moves. */

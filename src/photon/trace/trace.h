@@ -41,6 +41,7 @@ typedef struct trace_task {
     wavelengths w;
     uint32_t pass;
     photon_class photon_class;
+    const caustic_casters *casters; /**< for caustics that are not EMISSION_UNIFORM */
     const emission_guide *guide; /**< for EMISSION_GUIDED caustics; NULL: uniform */
     const caustic_share *share;  /**< of caustics: what they leave to paths from the eye;
                                     NULL: nothing. With it, photons that landed go on and

@@ -17,7 +17,8 @@ static caustic_share trial_share(transport_plan *plan)
         radius = TRIAL_PIXELS * (double)visible_pixel(plan);
     if (!(radius > 0.0))
         radius = 0.01 * (double)plan->scene->radius;
-    return (caustic_share){.scene = plan->scene, .discs = caustic_discs(plan, radius)};
+    return (caustic_share){.casters = plan->casters,
+                           .discs = caustic_discs(plan, radius)};
 }
 
 enum {
@@ -140,6 +141,8 @@ static bool try_spots(transport_plan *plan, const cancel_flag *cancel, GError **
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
     path_effort paths;
+    if (!transport_plan_find_casters(plan, error))
+        return false;
     plan_ask(plan, 0.0);
     plan->n_photons[PHOTON_CAUSTIC] = caustics_most(plan);
     plan->shares = plan->n_photons[PHOTON_CAUSTIC] > 0;

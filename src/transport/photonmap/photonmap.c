@@ -22,7 +22,7 @@ static bool class_needed(const transport_plan *plan, photon_class c)
     case PHOTON_DIRECT:
         return needs_direct_map(&plan->how);
     case PHOTON_CAUSTIC:
-        return scene_may_cast_caustics(plan->scene);
+        return caustic_casters_are_lit(plan->casters);
     default:
         return plan->how.max_forward_bounces != 0;
     }
@@ -46,6 +46,8 @@ static void share_photons(transport_plan *plan)
 
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
+    if (!transport_plan_find_casters(plan, error))
+        return false;
     share_photons(plan);
     double n_photons = 0.0;
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
@@ -85,6 +87,7 @@ static trace_task trace_task_for(const slice_task *s, const cancel_flag *cancel)
         .w = pass->w,
         .pass = pass->index,
         .photon_class = s->c,
+        .casters = pass->plan->casters,
         .guide = pass->plan->guide,
         .share = pass->plan->shares ? &pass->share : NULL,
         .n_photons = each,

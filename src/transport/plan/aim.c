@@ -251,7 +251,7 @@ static void note_result(const trials *all)
     for (size_t i = 0; i < all->n_arrived; i++) {
         const emission_record *r = &all->records[all->n_known + i];
         float u_light = r->u[0];
-        size_t from = distribution_sample(&s->caustic_power, &u_light);
+        size_t from = distribution_sample(&all->task.casters->power, &u_light);
         value[from] += (double)r->value;
         dense[from] += (double)(r->value * r->density);
     }
@@ -339,6 +339,7 @@ static trials trials_of(transport_plan *plan, const emission_guide *guide,
                 .scene = plan->scene,
                 .how = &plan->how,
                 .photon_class = PHOTON_CAUSTIC,
+                .casters = plan->casters,
                 .guide = guide,
                 .share = plan->shares ? &plan->share : NULL,
                 .n_photons = each,

@@ -17,7 +17,7 @@ uint64_t caustics_most(const transport_plan *plan)
     int64_t own = how->class_photons[PHOTON_CAUSTIC];
     int64_t samples = (int64_t)film->width * film->height * how->spp;
     int64_t most = MAX(PHOTONS_PER_SAMPLE * samples, PHOTONS_AT_ONCE);
-    if (!scene_may_cast_caustics(plan->scene))
+    if (!caustic_casters_are_lit(plan->casters))
         return 0;
     return (uint64_t)(own > 0 ? own : MIN(settings_photons(how), most));
 }
