@@ -354,6 +354,8 @@ bool aim_caustics(transport_plan *plan, aim_result *result, const cancel_flag *c
     bool guides = plan->how.caustic_emission == EMISSION_GUIDED;
     if (plan->n_photons[PHOTON_CAUSTIC] == 0 || !(guides || result))
         return true;
+    if (!transport_plan_find_casters(plan, error))
+        return false;
     plan_look(plan);
     g_autoptr(photon_map) visible = visible_map(plan, error);
     if (!visible)
