@@ -11,7 +11,7 @@
 #include "photon/map/lanes.h"
 
 /** Steps from the centre of the square to its edge; the L1 norm of the points. */
-enum { OCTAHEDRON_STEPS = 16383 };
+enum { OCTAHEDRON_STEPS = 16383 }; /* math: what 15 bits of an axis hold */
 
 static inline vec3 direction_octahedron(uint32_t packed)
 {

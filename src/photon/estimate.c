@@ -24,7 +24,7 @@
    for no further than this many times as far as lie so many of all. */
 #define CURVE_REACH 3.0f
 
-enum { BLOCK = 64 };
+enum { BLOCK = 64 }; /* size: of photons that are weighed at a time */
 
 typedef struct gather gather;
 

@@ -23,9 +23,10 @@ typedef struct kernel {
     float cone_k; /**< >= 1, of the cone (Jensen 1996): κ = 1 - d/(k r) */
 } kernel;
 
+/** math: Jensen's filter */
 #define GAUSSIAN_ALPHA 0.918f
 #define GAUSSIAN_BETA 1.953f
-/** 1 - e^-β */
+/** math: 1 - e^-β */
 #define GAUSSIAN_RANGE 0.85815211f
 
 /** @brief κ at squared distance d2 <= r2. */
@@ -36,6 +37,7 @@ float kernel_area(const kernel *k, float r2);
 /** @brief e^-x for 0 <= x < 1, to 1e-7: Taylor's series around the middle. */
 static inline floats8 exp_negative8(floats8 x)
 {
+    /* math: the series */
     static const float inverse_factorial[] = {
         1.0f, 1.0f, 1.0f / 2, 1.0f / 6, 1.0f / 24, 1.0f / 120, 1.0f / 720, 1.0f / 5040};
     floats8 y = 0.5f - x, sum = fill8(inverse_factorial[7]);

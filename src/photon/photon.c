@@ -14,7 +14,7 @@
 #include "base/parallel.h"
 #include "photon/direction.h"
 
-/* Room after the last photon, so that eight can be loaded from any. */
+/* size: room after the last photon, so that eight can be loaded from any. */
 enum { STORE_BLOCK = 16 };
 
 static size_t padded(size_t n)

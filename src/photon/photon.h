@@ -29,12 +29,12 @@ typedef enum photon_class {
     N_PHOTON_CLASSES
 } photon_class;
 
-/** @brief Came from a light no ray can hit (point, spot, distant) by specular bounces
+/** id: Came from a light no ray can hit (point, spot, distant) by specular bounces
  * only: a camera path that meets it on a glossy lobe has no other way to find this light.
  */
 enum { PHOTON_FROM_DELTA = 1u };
 
-/** @brief Arrived on the side of its surface that the geometric normal points away from.
+/** id: Arrived on the side of its surface that the geometric normal points away from.
  */
 enum { PHOTON_BEHIND = 2u };
 

@@ -3,7 +3,10 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-enum { MOST_PLACES = 8192, CHUNK = 256 };
+enum { CHUNK = 256 }; /* size: of a thread's work */
+
+/* A place for each patch as wide as a hundredth of what holds the scene. */
+enum { MOST_PLACES = 8192 };
 
 float places_distance(const photon_map *map, vec3 p, photon_hits *hits)
 {

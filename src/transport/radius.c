@@ -23,9 +23,7 @@
 #include "transport/visible.h"
 
 enum {
-    MOST_PILOTS = 20000, /* photons: of 16 that a distance is measured by, some for each
-                            of a thousand places */
-    PROBES = 512,        /* places that the typical radius is a median of */
+    PROBES = 512, /* places that the typical radius is a median of */
 };
 
 /* Photons wanted within the radius, summed over all passes: what they are shared among
@@ -46,7 +44,7 @@ static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
 /* Caustics finer than this many pixels cannot be seen. */
 #define LEAST_PIXELS 1.0f
 
-/* A pass number no render reaches: the pilot's photons are not those of pass 0. */
+/* id: a pass number no render reaches: the pilot's photons are not those of pass 0. */
 #define PILOT_PASS 0xffffffffu
 
 typedef struct pilot {

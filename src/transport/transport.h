@@ -75,11 +75,23 @@ typedef struct transport_counts {
     uint64_t memory_photons; /**< bytes of the maps */
 } transport_counts;
 
+/** @brief From so many bounces on, weak paths from the eye end by chance: a picture has
+ * little light that came by more, and what comes by fewer shows each chance as grain. */
+enum { ROULETTE_BOUNCES = 4 };
+
 /** @brief A point where the camera looks (transport/visible.h). */
 typedef struct visible_point {
     vec3 p;
     float pixel; /**< width of a pixel's footprint there, m */
 } visible_point;
+
+/** Of how much there may be of a technique trials compare all, 1/2, 1/4 ...: with fewer
+ * photons than a sixteenth the picture is a blur, which no variance tells of. */
+enum { N_SHARES = 5 };
+static inline double plan_share(int i)
+{
+    return 1.0 / (double)(1 << i);
+}
 
 /** @brief What one of something costs, as trials measured it. */
 typedef struct plan_cost {

@@ -16,7 +16,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-enum { N_BINS = 512, CHUNK = 1 << 15 };
+enum { N_BINS = 512, CHUNK = 1 << 15 }; /* size: of a thread's work */
 
 typedef struct pair {
     size_t cell, element;

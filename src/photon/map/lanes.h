@@ -16,7 +16,7 @@
 #include <immintrin.h>
 #endif
 
-enum { LANES = 8 };
+enum { LANES = 8 }; /* size: of a vector */
 
 typedef float floats8 __attribute__((vector_size(32)));
 typedef int32_t ints8 __attribute__((vector_size(32)));

@@ -26,9 +26,9 @@
 #include "photon/map/nearest.h"
 
 enum {
-    MAX_CELLS_AN_AXIS = 1 << 20,
-    MIN_SLOTS = 1 << 12,
-    MAX_HASHED_ROWS = 256, /* a query that meets more looks at all photons */
+    MAX_CELLS_AN_AXIS = 1 << 20, /* size: their numbers are exact in floats */
+    MIN_SLOTS = 1 << 12,         /* size: of the smallest table */
+    MAX_HASHED_ROWS = 256,       /* size: a query that meets more looks at all photons */
 };
 
 typedef struct grid {

@@ -20,11 +20,11 @@
 #include "photon/map/nearest.h"
 
 enum {
-    WIDTH = 8,
-    LEAF = 16,
-    MAX_LEVELS = 20,
+    WIDTH = 8,       /* size: of a vector */
+    LEAF = 16,       /* size: photons of one */
+    MAX_LEVELS = 20, /* size: of 2^64 photons, to spare */
     MAX_STACK = MAX_LEVELS * (WIDTH - 1) + WIDTH,
-    TASK = 1 << 15, /* photons that one task sorts down to leaves by itself */
+    TASK = 1 << 15, /* size: photons that one task sorts down to leaves by itself */
 };
 
 /* The boxes of eight subtrees; an absent one is empty, infinitely far from everything. */
@@ -75,7 +75,7 @@ static size_t partition(kd_item *items, size_t n, int axis, float pivot, bool or
 /* A value of items that should stand near rank, from a sample. */
 static float choose_pivot(const kd_item *items, size_t n, int axis, size_t rank)
 {
-    enum { MOST = 31 };
+    enum { MOST = 31 }; /* size: of the sample */
     float sample[MOST];
     size_t n_sample = n < 32 ? 1 : n < 1024 ? 7 : MOST;
     for (size_t i = 0; i < n_sample; i++) {

@@ -110,7 +110,7 @@ static bool emit_at_disc(const caustic_casters *c, const light *l, const wavelen
     return !l->kind->admits || l->kind->admits(l->self, &out->ray);
 }
 
-/* How far off rounding may turn a unit direction (radians). */
+/* math: how far off rounding may turn a unit direction (radians). */
 #define DIRECTION_ERROR 2e-7
 
 /* 1 - cos of the half angle of the cone in which p sees the sphere, for all that rounding

@@ -6,7 +6,7 @@ enum {
     BINS = 4, /* an axis' unevenness is judged in quarters */
     MAX_CELLS = 4096,
     MIN_ARRIVALS = 24, /* a cell with fewer is not split */
-    MAX_DEPTH = 40,
+    MAX_DEPTH = 40,    /* math: cells finer than floats tell apart are none */
     N_PAIRS = EMISSION_DIMENSIONS * (EMISSION_DIMENSIONS - 1) / 2,
 };
 
@@ -18,9 +18,11 @@ enum {
    not much heavier than its neighbours. */
 #define DEFENSIVE_SPLIT 0.05
 
-/* A pair of axes is uneven from this χ² on, for 15 degrees of freedom, and if it is this
-   share of the arrivals. */
+/* math: a pair of axes is uneven from this χ² on, one in 10⁴ by chance of 15 degrees of
+   freedom, */
 #define CHI2_BY_CHANCE 45.0
+
+/* and if it is this share of the arrivals. */
 #define CORRELATED 0.4
 
 /* A cell is split if the fullest and emptiest quarters along some axis differ by this

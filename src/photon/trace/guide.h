@@ -23,7 +23,8 @@
 
 #include <glib.h>
 
-enum { EMISSION_DIMENSIONS = 6 }; /**< light, primitive, position (2), direction (2) */
+/** math: of a start: light, primitive, position (2), direction (2) */
+enum { EMISSION_DIMENSIONS = 6 };
 
 typedef struct emission_guide emission_guide;
 

@@ -5,7 +5,7 @@
 #include "photon/trace/trace_chunk.h"
 #include "scene/advance.h"
 
-/* Photons emitted per parallel piece of work. */
+/* size: photons emitted per parallel piece of work */
 enum { CHUNK = 4096 };
 
 /* Ways through media that each leave a photon, before fewer do. */

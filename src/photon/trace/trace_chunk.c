@@ -1,6 +1,6 @@
 #include "photon/trace/trace_chunk.h"
 
-enum { LEAST_ROOM = 4096 };
+enum { LEAST_ROOM = 4096 }; /* size: photons there is room for at first */
 
 void trace_chunk_put(trace_chunk *chunk, photon_store *store, const photon *p)
 {

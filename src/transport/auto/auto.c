@@ -21,10 +21,7 @@ static caustic_share trial_share(transport_plan *plan)
                            .discs = caustic_discs(plan, radius)};
 }
 
-enum {
-    MOST_LIT = 8192,           /* size: places that light sampling found lit */
-    MOST_SPOT_PHOTONS = 20000, /* of a trial: forty for each spot */
-};
+enum { MOST_LIT = 8192 }; /* size: places that light sampling found lit */
 
 /* Spots of the places that light sampling found lit and of the pass' photons. */
 static bool find_spots(path_pass *pass, GError **error)
@@ -111,7 +108,7 @@ static transport_plan small_pass(const transport_plan *plan)
     transport_plan small = *plan;
     uint64_t *n = &small.n_photons[PHOTON_CAUSTIC];
     small.how.seed = (int64_t)(hash_mix((uint64_t)plan->how.seed, 0x736d616c6cu) >> 1);
-    *n = MIN(*n, plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_SPOT_PHOTONS));
+    *n = MIN(*n, plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_PILOTS));
     double fewer = (double)plan->n_photons[PHOTON_CAUSTIC] / (double)MAX(*n, 1);
     small.radius[PHOTON_CAUSTIC] *= sqrt(fewer);
     small.radius_in_media[PHOTON_CAUSTIC] *= cbrt(fewer);

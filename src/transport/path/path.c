@@ -2,8 +2,6 @@
 #include "transport/path/path_walk.h"
 #include "transport/photonmap/photonmap.h"
 
-enum { ROULETTE_BOUNCES = 4 };
-
 /* What photons leave of the light that the path ran into. */
 static float left_by_photons(const path_walk *walk, const camera_path *path,
                              const met_light *met)

@@ -3,11 +3,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-double spot_share(int i)
-{
-    return 1.0 / (double)(1 << i);
-}
-
 /* What scattering finds alone, and what is left where both share by the power heuristic,
    is known for each place that was looked at. */
 void spot_trial_note(spot_trial *trial, const spot_look *look)
@@ -17,8 +12,8 @@ void spot_trial_note(spot_trial *trial, const spot_look *look)
     if (!isfinite(x2) || !(q > 0.0) || !(p > 0.0))
         return;
     trial->without += x2 / q / p;
-    for (int i = 0; i < SPOT_SHARES; i++) {
-        double looked = p * look->importance * spot_share(i);
+    for (int i = 0; i < N_SHARES; i++) {
+        double looked = p * look->importance * plan_share(i);
         double w = q * q / (q * q + looked * looked);
         trial->with[i] += x2 * (w * w / q + (1.0 - w) * (1.0 - w) / looked) / p;
     }

@@ -3,13 +3,13 @@
  */
 #pragma once
 
-enum { SPOT_SHARES = 4 };
+#include "transport/transport.h"
 
 /** @brief What looks at bright spots were seen to bring, while each surface looked. */
 typedef struct spot_trial {
-    double rays;    /**< that looks cost, by their importance */
-    double without; /**< sum of squares of what paths bring without looking ... */
-    double with[SPOT_SHARES]; /**< ... and where one surface in 1, 2, 4, ... looks */
+    double rays;           /**< that looks cost, by their importance */
+    double without;        /**< sum of squares of what paths bring without looking ... */
+    double with[N_SHARES]; /**< ... and where one surface in 1, 2, 4, ... looks */
 } spot_trial;
 
 /** @brief What one look found. */
@@ -19,7 +19,5 @@ typedef struct spot_look {
     double value; /**< that it brings, were there no other way, mean over wavelengths */
 } spot_look;
 
-/** @brief The i-th share of surfaces that look: 1, 1/2, 1/4, ... */
-double spot_share(int i);
 /** @brief Adds what a look found. */
 void spot_trial_note(spot_trial *trial, const spot_look *look);

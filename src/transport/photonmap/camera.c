@@ -10,10 +10,7 @@
 #include "transport/direct.h"
 #include "transport/photonmap/photonmap_medium.h"
 
-enum {
-    SPLIT_BOUNCES = 3,    /* up to here reflection and refraction are both followed */
-    ROULETTE_BOUNCES = 4, /* from here on weak paths end by chance */
-};
+enum { SPLIT_BOUNCES = 3 }; /* up to here reflection and refraction are both followed */
 
 /* Shared by all branches of one camera ray. */
 typedef struct camera_tree {

@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 
-enum { CHUNK = 1024 };
+enum { CHUNK = 1024 }; /* size: of a thread's work */
 
 typedef struct radius_loop {
     const photon_store *store;

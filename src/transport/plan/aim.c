@@ -11,8 +11,8 @@ enum {
     MOST_TRIALS = 1 << 16,     /* photons a round: what a 2000th of them finds is found by
                                   thirty, enough for a cell of the guide to be split */
     ENOUGH_ARRIVALS = 1 << 13, /* a round: two for each cell that the guide may have */
-    CHUNK = 256,              /* size: of a thread's work */
-    BATCHES = 16,             /* size: a round is seldom longer by more than such a part */
+    CHUNK = 256,               /* size: of a thread's work */
+    BATCHES = 16, /* size: a round is seldom longer by more than such a part */
 };
 
 /* id: trial photons are those of passes that no render reaches. */
@@ -29,7 +29,7 @@ enum {
 /* What a trial photon adds to the noise that paths would have, and to what is left of it
    with shares of all photons. */
 typedef struct trial_noise {
-    double of_paths, left[AIM_SHARES];
+    double of_paths, left[N_SHARES];
     double seen, unseen; /* flux that landed in the camera's sight, and out of it */
     uint32_t rays;
 } trial_noise;
@@ -143,8 +143,8 @@ static void add_noise(trial_noise *sum, const photon_event *event, float sight)
     double flux = (double)spectrum_mean(event->flux) * survived / w;
     double noise = flux * flux * odds / (survived * (double)sight);
     sum->of_paths += noise;
-    for (int i = 0; i < AIM_SHARES; i++)
-        sum->left[i] += noise / (1.0 + aim_share(i) * odds);
+    for (int i = 0; i < N_SHARES; i++)
+        sum->left[i] += noise / (1.0 + plan_share(i) * odds);
 }
 
 static void note_arrival(const photon_event *event, void *data)
@@ -227,13 +227,13 @@ static void sum_noise(const trials *all)
         sum.of_paths += noise->of_paths;
         sum.seen += noise->seen;
         sum.unseen += noise->unseen;
-        for (int k = 0; k < AIM_SHARES; k++)
+        for (int k = 0; k < N_SHARES; k++)
             sum.left[k] += noise->left[k];
     }
     out->noise = sum.of_paths * scale;
     out->rays = all->round.rays / fmax(all->round.n, 1.0);
     out->unseen = sum.unseen > 0.0 ? sum.unseen / (sum.seen + sum.unseen) : 0.0;
-    for (int k = 0; k < AIM_SHARES; k++)
+    for (int k = 0; k < N_SHARES; k++)
         out->left[k] = sum.left[k] * scale;
 }
 

@@ -7,14 +7,6 @@
 #include "photon/trace/guide.h"
 #include "transport/transport.h"
 
-enum { AIM_SHARES = 5 }; /* fewer photons are a blur, which no variance tells of */
-
-/** @brief Of all photons of a pass: 1, 1/2, 1/4, ... */
-static inline double aim_share(int i)
-{
-    return 1.0 / (double)(1 << i);
-}
-
 /** @brief What the last trials brought. */
 typedef struct aim_result {
     double noise;  /**< square of the noise that a camera sample had if it had to find by
@@ -22,15 +14,16 @@ typedef struct aim_result {
     double unseen; /**< share of what photons bring that lands out of the camera's sight:
                       it is in the picture by way of other surfaces only, and not in
                       noise */
-    double left[AIM_SHARES]; /**< what is left of it where so many photons help */
-    double rays;             /**< of a photon */
+    double left[N_SHARES]; /**< what is left of it where so many photons help */
+    double rays;           /**< of a photon */
     float *boost; /**< by light: how much denser than by the light's own emission useful
                      photons are sent; the caller frees it with g_free */
 } aim_result;
 
 /** @brief Sends trial photons of the caustic class; from them makes plan->guide where the
- * settings ask for it and photons with it are less noisy for their rays than those without. false when
- * cancelled or out of memory. Deterministic: it depends on scene and settings only.
+ * settings ask for it and photons with it are less noisy for their rays than those
+ * without. false when cancelled or out of memory. Deterministic: it depends on scene and
+ * settings only.
  * @param result NULL: not asked for; unchanged where no photons are sent
  */
 bool aim_caustics(transport_plan *plan, aim_result *result, const cancel_flag *cancel,

@@ -39,7 +39,7 @@ static double samples_a_pass(const transport_plan *plan)
 static plan_cost cost_with(const transport_plan *plan, const aim_result *found,
                            const path_effort *paths, int i)
 {
-    double photons = aim_share(i) * (double)plan->n_photons[PHOTON_CAUSTIC];
+    double photons = plan_share(i) * (double)plan->n_photons[PHOTON_CAUSTIC];
     return (plan_cost){paths->noise + found->left[i],
                        paths->rays + gather_rays(paths) +
                            photons * found->rays / samples_a_pass(plan)};
@@ -57,11 +57,11 @@ static double best_share(transport_plan *plan, const aim_result *found,
     const plan_cost without = {paths->noise + found->noise, paths->rays};
     plan_cost best = cost_with(plan, found, paths, 0);
     double share = 1.0;
-    for (int i = 1; i < AIM_SHARES; i++) {
+    for (int i = 1; i < N_SHARES; i++) {
         plan_cost with = cost_with(plan, found, paths, i);
         if (product(with) < product(best)) {
             best = with;
-            share = aim_share(i);
+            share = plan_share(i);
         }
     }
     bool taken = product(best) < CLEARLY_BETTER * product(without);

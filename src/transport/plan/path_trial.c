@@ -97,8 +97,8 @@ void spots_decide(transport_plan *plan, const path_pass *pass)
                          plan->sample_rays + plan->photon_rays};
     plan_cost best = {rest + trial.with[0] * each, without.rays + trial.rays * each};
     double least = CLEARLY_BETTER * without.variance * without.rays;
-    for (int i = 0; i < SPOT_SHARES; i++) {
-        double share = spot_share(i);
+    for (int i = 0; i < N_SHARES; i++) {
+        double share = plan_share(i);
         plan_cost with = {rest + trial.with[i] * each,
                           without.rays + share * trial.rays * each};
         if (with.variance * with.rays >= least)

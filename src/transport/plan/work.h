@@ -36,6 +36,10 @@
 /** Fewer trials of anything tell nothing: then the decision is the cheap one. */
 enum { LEAST_TRIALS = 16 };
 
+/** Photons, or light subpaths, that tell how dense they lie: of 16 that a distance is
+ * measured by, some for each of a thousand places. */
+enum { MOST_PILOTS = 20000 };
+
 /** @brief Camera samples of all passes that are planned. */
 double plan_samples(const transport_plan *plan);
 

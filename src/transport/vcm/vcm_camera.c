@@ -2,9 +2,6 @@
 #include "transport/direct.h"
 #include "transport/vcm/vcm.h"
 
-enum { ROULETTE_BOUNCES = 4 };
-#define MOST_SURVIVAL 0.99f
-
 /* One camera subpath on its way. */
 typedef struct camera_walk {
     vcm_walk walk;

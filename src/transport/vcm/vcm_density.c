@@ -9,8 +9,7 @@
 
 #include <float.h>
 
-enum { MOST_PATHS = 20000 };
-
+/* id: a pass that no render reaches. */
 #define PILOT_PASS 0xfffffffeu
 
 static photon_map *map_of(const light_paths *paths, unsigned threads, GError **error)
@@ -48,7 +47,7 @@ bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **
         .strategies.merge = true,
         .n_slices = 1,
         .light.n = MIN(plan->n_photons[PHOTON_INDIRECT],
-                       plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_PATHS)),
+                       plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_PILOTS)),
     };
     if (!vcm_trace_light(&pilot, cancel, &counts, error))
         return false;

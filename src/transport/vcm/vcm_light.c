@@ -8,12 +8,8 @@
 
 #include <string.h>
 
-/* Light subpaths per parallel piece of work. */
+/* size: light subpaths per parallel piece of work */
 enum { CHUNK = 1024 };
-
-/* The most a light subpath is likely to survive a bounce with: it ends also in a box of
-   mirrors. */
-#define MOST_SURVIVAL 0.99f
 
 /* What the eye sees this close to its target, as a share of the way, is the target. */
 #define SHORTENING 1e-4f
