@@ -13,7 +13,7 @@ enum {
     LEAST_SAMPLES = 256,
     MOST_SAMPLES = 1 << 14,
     SAMPLES_CHUNK = 8,
-    TRIAL_PLANNED = 1 << 18, /* samples that its planning counts on: few */
+    TRIAL_PLANNED = 1 << 15, /* samples that its planning counts on: few */
     ROWS_A_THREAD = 16,      /* of a trial write: OpenEXR's chunks have as many */
     TRIAL_PASSES = 2,        /* the first one finds the machine cold */
 };
