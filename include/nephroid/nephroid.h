@@ -426,6 +426,8 @@ typedef struct NephPlan {
                                                 median */
     bool radius_is_set;                      /**< by the settings; else it is measured */
     bool guided;            /**< caustic photons start where they were seen to arrive */
+    double discs;           /**< m²: by discs π r² N over the camera's samples photons
+                               share caustics with paths; 0: they do not share */
     double spots;           /**< probability of looking at bright spots from a surface */
     double blurred_gathers; /**< probability that caustics are gathered where they are
                                seen by way of a diffuse bounce */

@@ -30,6 +30,9 @@ static void put_ways(GString *out, const NephPlan *plan)
         g_string_append_printf(out, "%-12s%s\n%-12s%g of the blurred ones\n", "emission",
                                plan->guided ? "guided" : "not guided", "gathers",
                                plan->blurred_gathers);
+    if (plan->discs > 0.0)
+        g_string_append_printf(out, "%-12sof caustics with paths, by discs of %.4g m2\n",
+                               "share", plan->discs);
     if (plan->spots > 0.0)
         g_string_append_printf(out, "%-12slooked at with probability %g\n",
                                "bright spots", plan->spots);

@@ -97,6 +97,7 @@ static NephPlan plan_export(const render_plan *from)
     NephPlan out = {.integrator = transport_find((int)from->integrator)->name,
                     .radius_is_set = from->radius_is_set,
                     .guided = from->guided,
+                    .discs = from->discs,
                     .spots = from->p_spots,
                     .blurred_gathers = from->p_blurred,
                     .time_slices = from->time_slices,

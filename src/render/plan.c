@@ -1,5 +1,7 @@
 #include "render/plan.h"
 
+#include "transport/photonmap/photonmap.h"
+
 render_plan render_plan_of(const transport_plan *plan)
 {
     render_plan out = {
@@ -13,6 +15,8 @@ render_plan render_plan_of(const transport_plan *plan)
         .planning = plan->planning,
         .n_trials = plan->n_trials,
     };
+    if (plan->shares && plan->n_photons[PHOTON_CAUSTIC] > 0)
+        out.discs = (double)caustic_discs(plan, plan->radius[PHOTON_CAUSTIC]);
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         out.photons[c] = plan->n_photons[c];
         out.radius[c] = plan->n_photons[c] > 0 ? plan->radius[c] : 0.0;

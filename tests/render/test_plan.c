@@ -50,6 +50,7 @@ static void same_plan(const render_plan *a, const render_plan *b)
         g_assert_cmpfloat(a->radius[c], ==, b->radius[c]);
     }
     g_assert_cmpint(a->guided, ==, b->guided);
+    g_assert_cmpfloat(a->discs, ==, b->discs);
     g_assert_cmpfloat(a->p_spots, ==, b->p_spots);
     g_assert_cmpfloat(a->p_blurred, ==, b->p_blurred);
     g_assert_cmpfloat(a->planning, ==, b->planning);
