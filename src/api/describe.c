@@ -160,6 +160,7 @@ char *neph_scene_describe(const NephScene *s, bool as_json)
 {
     summary all;
     summary_init(&all, s->scene);
+    all.sources = s->sources;
     char *text =
         as_json ? describe_as_json(s->scene, &all) : describe_as_text(s->scene, &all);
     summary_clear(&all);

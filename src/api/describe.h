@@ -21,9 +21,10 @@ typedef struct tally {
 /** @brief All counts; every array holds tally, in the order of first appearance. */
 typedef struct summary {
     GArray *shapes, *lights, *materials, *media;
-    GArray *textures;         /**< in the order of their kinds' names */
-    GPtrArray *caustic_names; /**< const char*, of materials that cast caustics */
-    GPtrArray *warnings;      /**< char* */
+    GArray *textures;             /**< in the order of their kinds' names */
+    GPtrArray *caustic_names;     /**< const char*, of materials that cast caustics */
+    GPtrArray *warnings;          /**< char* */
+    const scene_sources *sources; /**< borrowed */
     size_t n_float_textures, n_spectrum_textures;
     size_t render_bytes;   /**< about what rendering takes, meshes with it */
     size_t geometry_bytes; /**< of mesh arrays */

@@ -93,10 +93,10 @@ static void put_media(json *j, const summary *all)
     json_array_end(j);
 }
 
-static void put_files(json *j, const scene *s)
+static void put_files(json *j, const summary *all)
 {
     json_array_begin(j, "files");
-    for (const char *const *path = scene_sources_paths(s->build.sources); *path; path++)
+    for (const char *const *path = scene_sources_paths(all->sources); *path; path++)
         json_string(j, NULL, *path);
     json_array_end(j);
 }
@@ -153,7 +153,7 @@ char *describe_as_json(const scene *s, const summary *all)
     json_count(&j, "peak", all->process_bytes);
     json_count(&j, "rendering", all->render_bytes);
     json_object_end(&j);
-    put_files(&j, s);
+    put_files(&j, all);
     put_list(&j, "warnings", all->warnings);
     json_object_end(&j);
     return json_finish(&j);

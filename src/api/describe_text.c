@@ -148,9 +148,9 @@ static void put_memory(GString *out, const summary *all)
                            geometry, peak, rendering);
 }
 
-static void put_files(GString *out, const scene *s)
+static void put_files(GString *out, const summary *all)
 {
-    const char *const *paths = scene_sources_paths(s->build.sources);
+    const char *const *paths = scene_sources_paths(all->sources);
     guint n = g_strv_length((char **)paths);
     g_string_append_printf(out, "read from        %u file%s\n", n, n == 1 ? "" : "s");
     for (guint i = 0; i < MIN(n, MOST_NAMES); i++) {
@@ -184,7 +184,7 @@ char *describe_as_text(const scene *s, const summary *all)
     if (out->len == before)
         g_string_append(out, "  none\n");
     put_memory(out, all);
-    put_files(out, s);
+    put_files(out, all);
     put_warnings(out, all);
     return g_string_free(out, FALSE);
 }

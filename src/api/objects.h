@@ -5,6 +5,7 @@
 
 #include "image/image.h"
 #include "nephroid/nephroid.h"
+#include "params/sources.h"
 #include "scene/scene.h"
 #include "settings/settings.h"
 
@@ -14,8 +15,9 @@ struct NephSettings {
 
 struct NephScene {
     scene *scene;
-    bool shares;     /**< what another's scene owns */
-    NephLogFunc log; /**< the caller's, may be NULL; used while the scene lives */
+    scene_sources *sources; /**< the files that it was read from */
+    bool shares;            /**< what another's scene owns */
+    NephLogFunc log;        /**< the caller's, may be NULL; used while a scene is read */
     void *log_data;
 };
 

@@ -29,12 +29,12 @@ NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options
     *s = (NephScene){.log = options->log, .log_data = options->log_data};
     const log_sink sink = {forward_log, s};
     asking a;
+    s->sources = scene_sources_new(options->file, options->file_data);
     const load_options how = {.threads = options->threads,
                               .lenient = options->lenient,
                               .thin_glass = options->thin_glass,
                               .log = &sink,
-                              .source = options->file,
-                              .source_data = options->file_data,
+                              .sources = s->sources,
                               .cancel =
                                   asking_begin(&a, options->go_on, options->go_on_data)};
     s->scene = format_load_with(path, &how, error);
@@ -56,15 +56,17 @@ bool neph_scene_convert_with(const char *in, const char *out,
 {
     NephScene to = {.log = options->log, .log_data = options->log_data};
     const log_sink sink = {forward_log, &to};
+    scene_sources *sources = scene_sources_new(options->file, options->file_data);
     asking a;
     const load_options how = {.lenient = options->lenient,
                               .thin_glass = options->thin_glass,
                               .log = &sink,
-                              .source = options->file,
-                              .source_data = options->file_data,
+                              .sources = sources,
                               .cancel =
                                   asking_begin(&a, options->go_on, options->go_on_data)};
-    return format_convert(in, out, &how, error);
+    bool done = format_convert(in, out, &how, error);
+    scene_sources_free(sources);
+    return done;
 }
 
 bool neph_scene_convert(const char *in, const char *out, NephLogFunc log, void *log_data,
@@ -78,10 +80,12 @@ void neph_scene_free(NephScene *s)
 {
     if (!s)
         return;
-    if (s->shares)
+    if (s->shares) {
         g_free(s->scene);
-    else
+    } else {
         scene_free(s->scene);
+        scene_sources_free(s->sources);
+    }
     g_free(s);
 }
 
@@ -89,6 +93,7 @@ NephScene *neph_scene_share(const NephScene *s)
 {
     NephScene *other = g_new(NephScene, 1);
     *other = (NephScene){.scene = scene_share(s->scene),
+                         .sources = s->sources,
                          .shares = true,
                          .log = s->log,
                          .log_data = s->log_data};
@@ -121,7 +126,7 @@ bool neph_scene_resize(NephScene *s, int width, int height, GError **error)
 
 const char *const *neph_scene_files(const NephScene *s)
 {
-    return scene_sources_paths(s->scene->build.sources);
+    return scene_sources_paths(s->sources);
 }
 
 bool neph_scene_says_exposure(const NephScene *s)

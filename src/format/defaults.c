@@ -86,26 +86,26 @@ static vec3 standpoint(vec3 up, float right, float above)
     return normalize3(cross3(side, up) + right * side + above * up);
 }
 
-static bool add_sky(scene *s, const char *path, vec3 up, GError **error)
+static bool add_sky(scene_builder *to, const char *path, vec3 up, GError **error)
 {
     transform to_world = upright(up);
     g_autofree char *name = g_strdup_printf("%s.sky.pfm", path);
     g_autofree char *absolute = g_canonicalize_filename(name, NULL);
     g_autoptr(GBytes) picture = sky_picture(&to_world, up, standpoint(up, -0.8f, 1.1f));
     g_autoptr(params) p = list(path);
-    build_context_add_file(&s->build, absolute, picture);
+    build_context_add_file(&to->build, absolute, picture);
     give_text(p, PARAM_STRING, "filename", absolute);
-    log_message(&s->build.log, LOG_NOTE, "%s: no %s in it; a soft sky is added", path,
-                s->lights->len > 0 ? "lamp, only what glows a little," : "light");
-    return scene_add_light(s, "infinite", p, &to_world, error);
+    log_message(&to->build.log, LOG_NOTE, "%s: no %s in it; a soft sky is added", path,
+                to->scene->lights->len > 0 ? "lamp, only what glows a little," : "light");
+    return builder_add_light(to, "infinite", p, &to_world, error);
 }
 
-static bool set_film(scene *s, const char *path, GError **error)
+static bool set_film(scene_builder *to, const char *path, GError **error)
 {
     g_autoptr(params) p = list(path);
     give_integer(p, "xresolution", DEFAULT_WIDTH);
     give_integer(p, "yresolution", DEFAULT_HEIGHT);
-    return scene_set_film(s, "rgb", p, error);
+    return builder_set_film(to, "rgb", p, error);
 }
 
 /* How far back from the centre a view has to stand so that a box is in it. */
@@ -141,9 +141,9 @@ static bool look_from(vec3 from, vec3 at, vec3 up, transform *out)
     return true;
 }
 
-static bool add_view(scene *s, const char *path, vec3 up, GError **error)
+static bool add_view(scene_builder *to, const char *path, vec3 up, GError **error)
 {
-    box3 box = scene_world_bounds(s);
+    box3 box = scene_world_bounds(to->scene);
     vec3 toward = standpoint(up, 0.4f, 0.3f), center = box3_center(box);
     transform look;
     bool done = look_from(toward, vec3_make(0.0f, 0.0f, 0.0f), up, &look);
@@ -158,10 +158,10 @@ static bool add_view(scene *s, const char *path, vec3 up, GError **error)
     look = transform_inverse(&look);
     g_autoptr(params) p = list(path);
     give_float(p, "fov", DEFAULT_FOV);
-    log_message(&s->build.log, LOG_NOTE,
+    log_message(&to->build.log, LOG_NOTE,
                 "%s: no camera in it; one that frames it is added", path);
-    return set_film(s, path, error) &&
-           scene_set_camera(s, "perspective", p, &look, error);
+    return set_film(to, path, error) &&
+           builder_set_camera(to, "perspective", p, &look, error);
 }
 
 /* ---- Whether there is light ---- */
@@ -184,12 +184,12 @@ static double luminous_power(const light *l)
     return sum;
 }
 
-static bool is_lit(const scene *s, bool glow_is_look)
+static bool is_lit(const scene_builder *to, bool glow_is_look)
 {
-    const box3 box = scene_world_bounds(s);
+    const box3 box = scene_world_bounds(to->scene);
     double glow = 0.0, radius = 0.5 * (double)length3(box.high - box.low);
-    for (guint i = 0; i < s->lights->len; i++) {
-        const light *l = s->lights->pdata[i];
+    for (guint i = 0; i < to->scene->lights->len; i++) {
+        const light *l = to->scene->lights->pdata[i];
         if (l->kind->is_delta || l->kind->is_environment)
             return true;
         glow += luminous_power(l);
@@ -199,16 +199,16 @@ static bool is_lit(const scene *s, bool glow_is_look)
     return !glow_is_look && glow > 0.0 && glow >= LEAST_GLOW * sky;
 }
 
-bool scene_complete(scene *s, const char *path, vec3 up, bool glow_is_look,
+bool scene_complete(scene_builder *to, const char *path, vec3 up, bool glow_is_look,
                     GError **error)
 {
-    if (s->shapes->len == 0) {
+    if (to->scene->shapes->len == 0) {
         error_at(error, (source_place){intern(path), 0, 0},
                  "expected something with a surface, found nothing");
         return false;
     }
-    bool done = (is_lit(s, glow_is_look) || add_sky(s, path, up, error)) &&
-                (s->has_camera || add_view(s, path, up, error));
-    s->film.is_unexposed = true;
+    bool done = (is_lit(to, glow_is_look) || add_sky(to, path, up, error)) &&
+                (to->has_camera || add_view(to, path, up, error));
+    to->film.is_unexposed = true;
     return done;
 }

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/builder.h"
 
 /** @brief Gives a scene that has no light a soft sky, and one without a camera a view
  * that frames it, each with a note; and a film if the file had none. Its formats do not
@@ -14,5 +14,5 @@
  * @param up the direction that is up in the file, unit
  * @param glow_is_look surfaces that shine are meant to be seen, not to light anything
  * @return false with ERROR_INPUT naming the file if there is nothing to look at */
-bool scene_complete(scene *s, const char *path, vec3 up, bool glow_is_look,
+bool scene_complete(scene_builder *to, const char *path, vec3 up, bool glow_is_look,
                     GError **error);

@@ -71,52 +71,56 @@ static void refuse(const char *path, GError **error)
 }
 
 /** In the dark a scene can be looked at all the same. */
-static void warn_of_darkness(const scene *s, const char *path)
+static void warn_of_darkness(const scene *s, const char *path, const log_sink *log)
 {
     if (!scene_is_lit(s))
-        log_message(&s->build.log, LOG_WARNING,
+        log_message(log, LOG_WARNING,
                     "%s: the scene has no light%s: its picture is black", path,
                     s->lights->len ? " but what is black" : "");
 }
 
+bool format_read(scene_builder *to, const char *path, GError **error)
+{
+    const format_reader *reader = find_reader(path);
+    scene_sources_add(to->build.sources, path);
+    if (reader)
+        return reader->read(to, path, error);
+    refuse(path, error);
+    return false;
+}
+
 /** What is wrong in a file is told with its place. What only the whole scene can tell has
  * no line, and want of memory no file: the scene's is named. */
-static bool load(scene *s, const char *path, unsigned threads, GError **error)
+static scene *load(scene_builder *b, const char *path, unsigned threads, GError **error)
 {
     GError *inner = NULL;
-    bool read = format_read(s, path, &inner);
-    if (read && scene_commit(s, threads, &inner)) {
-        warn_of_darkness(s, path);
-        return true;
+    bool read = format_read(b, path, &inner);
+    scene *made = read ? scene_builder_commit(b, threads, &inner) : NULL;
+    if (made) {
+        warn_of_darkness(made, path, &b->build.log);
+        return made;
     }
     bool has_place = !read && g_error_matches(inner, NEPH_ERROR, ERROR_INPUT);
     if (!has_place && !strstr(inner->message, path))
         g_prefix_error(&inner, "%s: ", path);
     g_propagate_error(error, inner);
-    return false;
+    return NULL;
 }
 
-bool format_read(scene *s, const char *path, GError **error)
+scene_builder *format_builder(const load_options *options)
 {
-    const format_reader *reader = find_reader(path);
-    scene_sources_add(s->build.sources, path);
-    if (reader)
-        return reader->read(s, path, error);
-    refuse(path, error);
-    return false;
+    scene_builder *b = scene_builder_new(options->log);
+    b->build.lenient = options->lenient;
+    b->build.sources = options->sources;
+    b->build.cancel = options->cancel;
+    b->thin_glass = options->thin_glass;
+    return b;
 }
 
 scene *format_load_with(const char *path, const load_options *options, GError **error)
 {
-    g_autoptr(scene) s = scene_new(options->log);
-    s->build.lenient = options->lenient;
-    s->thin_glass = options->thin_glass;
-    s->build.sources = scene_sources_new(options->source, options->source_data);
-    s->build.cancel = options->cancel;
-    if (!load(s, path, options->threads, error))
-        return NULL;
-    s->build.cancel = NULL;
-    return g_steal_pointer(&s);
+    g_autoptr(scene_builder) b = format_builder(options);
+    return load(b, path, options->threads, error);
 }
 
 scene *format_load(const char *path, unsigned threads, const log_sink *log,

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/builder.h"
 
 typedef struct format_reader {
     const char *name;              /**< as messages call it */
@@ -11,7 +11,7 @@ typedef struct format_reader {
     /** By its first bytes, whatever its name; NULL: by the name alone. */
     bool (*recognises)(const char *bytes, size_t size);
     /** Builds the scene from the file; does not commit. false with an error. */
-    bool (*read)(scene *s, const char *path, GError **error);
+    bool (*read)(scene_builder *to, const char *path, GError **error);
 } format_reader;
 
 extern const format_reader pbrt_reader;

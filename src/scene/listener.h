@@ -9,10 +9,9 @@
 #include "params/params.h"
 
 struct mesh;
-struct scene;
 struct shape_place;
 
-/** @brief Any of the calls may be NULL. See the scene_ functions of the like names. */
+/** @brief Any of the calls may be NULL. See the builder_ functions of the like names. */
 typedef struct scene_listener {
     void *data;
     void (*texture)(void *data, const char *name, const char *kind, bool is_spectrum,
@@ -42,9 +41,9 @@ typedef struct scene_listener {
     void (*instance)(void *data, int object, const motion *to_world);
 } scene_listener;
 
-/** @brief Calls one of the functions of the scene's listener, if it has it. */
-#define LISTENER_TELL(s, call, ...)                                                      \
+/** @brief Calls one of the functions of a builder's listener, if it has it. */
+#define LISTENER_TELL(b, call, ...)                                                      \
     do {                                                                                 \
-        if ((s)->listener && (s)->listener->call)                                        \
-            (s)->listener->call((s)->listener->data, __VA_ARGS__);                       \
+        if ((b)->listener && (b)->listener->call)                                        \
+            (b)->listener->call((b)->listener->data, __VA_ARGS__);                       \
     } while (0)

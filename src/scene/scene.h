@@ -1,12 +1,6 @@
 /*
- * The world: built by calls, committed once, const afterwards.
- *
- *   scene_new ─► scene_add_* / scene_set_* (any order, one thread)
- *             ─► scene_commit ─► queries
- *
- * After the commit every query is const and thread-safe; what it finds goes to the
- * caller's own struct. Calls before it return false or NO_INDEX with an ERROR_INPUT that
- * names the place.
+ * The world, as a builder (scene/builder.h) made it: const. Every query is thread-safe;
+ * what it finds goes to the caller's own struct.
  */
 #pragma once
 
@@ -16,8 +10,7 @@
 #include "light/light.h"
 #include "material/material.h"
 #include "medium/medium.h"
-#include "params/sources.h"
-#include "scene/listener.h"
+#include "params/params.h"
 #include "settings/settings.h"
 #include "shape/instance.h"
 #include "texture/texture.h"
@@ -39,6 +32,9 @@ typedef struct film_settings {
     const color_space *space;
 } film_settings;
 
+/** @brief What an instance takes: an array that grows holds up to twice what is in it. */
+#define INSTANCE_SIZE (2 * sizeof(instance))
+
 /** @brief Shapes that instances put into the world; they lie in scene->shapes. */
 typedef struct scene_object {
     char *name; /**< NULL: of one shape that moves */
@@ -54,32 +50,22 @@ typedef struct scene_switches {
 } scene_switches;
 
 typedef struct scene {
-    GPtrArray *shapes;          /**< shape* */
-    GPtrArray *materials;       /**< material* */
-    GPtrArray *lights;          /**< light* */
-    GPtrArray *textures;        /**< texture* */
-    build_context build;        /**< while the scene is built */
-    GHashTable *material_names; /**< name -> index + 1 */
-    GPtrArray *media;           /**< medium*, participating */
-    GHashTable *medium_names;   /**< name -> index + 1 */
-    medium_interface around;    /**< what is added from here on */
-    GArray *objects;            /**< scene_object */
-    GHashTable *object_names;   /**< theirs -> index + 1 */
-    GArray *instances;          /**< instance */
-    size_t instance_room;       /**< as many have their memory reserved */
-    int open_object; /**< that shapes are added to now, or NO_INDEX: the world */
+    GPtrArray *shapes;    /**< shape* */
+    GPtrArray *materials; /**< material* */
+    GPtrArray *lights;    /**< light* */
+    GPtrArray *textures;  /**< texture* */
+    GPtrArray *media;     /**< medium*, participating */
+    GArray *objects;      /**< scene_object */
+    GArray *instances;    /**< instance */
+    size_t instance_room; /**< as many have their memory reserved */
+    float shutter[2];     /**< s, when it opens and closes */
     camera camera;
-    bool has_camera;
     film_settings film;
     pixel_filter filter;
     scene_switches switches;
     settings settings; /**< defaults, then what the file asks for */
-    bool thin_glass; /**< closed meshes of glass without a volume are no solid glass: for
-                        readers, set before anything is added */
-    const scene_listener *listener; /**< borrowed; NULL: nobody */
 
-    /* From here on valid once committed. */
-    bool committed;
+    /* From here on found by the commit. */
     float pixel_width, pixel_spread; /**< m, and m a metre: how wide a pixel sees */
     accel *accel;
     box3 bounds;  /**< of all shapes */
@@ -112,71 +98,21 @@ wavelengths scene_trial_wavelengths(const scene *s, uint32_t trial);
 /** @brief The same committed scene with a size and a camera of its own; all else stays
  * the first one's, which must outlive it. Freed by g_free. */
 scene *scene_share(const scene *s);
-scene *scene_new(const log_sink *log);
+/** @brief An empty one, for a builder. */
+scene *scene_new(void);
+/** @brief Frees all that a commit finds: a builder may go on. */
+void scene_forget_commit(scene *s);
 void scene_free(scene *s);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(scene, scene_free)
 
-bool scene_add_texture(scene *s, const char *name, const char *kind, bool is_spectrum,
-                       const params *p, GError **error);
-/** @brief name may be NULL. @return index, or NO_INDEX. */
-int scene_add_material(scene *s, const char *name, const char *kind, const params *p,
-                       GError **error);
-/** @brief Keeps a place for a material that shapes have before it is made; adding it by
- * its name fills the place, which must come before the commit. @return its index */
-int scene_await_material(scene *s, const char *name);
-/** @brief True from scene_await_material until it is made. */
-bool scene_material_is_awaited(const scene *s, const char *name);
-/** @brief Makes an awaited material none: the shapes that have it are interfaces. */
-void scene_make_interface(scene *s, const char *name, const params *p);
-/** @brief Index of a named material, made or awaited, or NO_INDEX. */
-int scene_find_material(const scene *s, const char *name);
-/** @brief A participating medium. @return index, or NO_INDEX. */
-int scene_add_medium(scene *s, const char *name, const char *kind, const params *p,
-                     GError **error);
-/** @brief Index of a named medium, or NO_INDEX. */
-int scene_find_medium(const scene *s, const char *name);
-/** @brief From here on shapes part these media, by index or NO_INDEX for none (the same
- * twice: they part nothing), and lights and the camera stand in the outer one. */
-void scene_set_medium_interface(scene *s, int inside, int outside);
-bool scene_add_light(scene *s, const char *kind, const params *p,
-                     const transform *to_world, GError **error);
-/** @brief A shape from parameters; with at->area_light also its light. */
-bool scene_add_shape(scene *s, const char *kind, const params *p, const shape_place *at,
-                     GError **error);
-/** @brief A shape from a mesh in object space, whose arrays are taken. */
-bool scene_add_mesh(scene *s, mesh *m, const shape_place *at, source_place place,
-                    GError **error);
-/** @brief Shapes added from here to scene_object_end are part of a new object, in whose
- * space at->to_world puts them. @param name may be NULL @return its index, or NO_INDEX */
-int scene_object_begin(scene *s, const char *name, source_place place, GError **error);
-void scene_object_end(scene *s);
-/** @brief Index of a named object, or NO_INDEX. */
-int scene_find_object(const scene *s, const char *name);
-/** @brief Reserves the memory of n instances, so that they are refused before the first
- * of them is made. Not needed, but for counts that a small file may state. */
-bool scene_expect_instances(scene *s, size_t n, source_place place, GError **error);
-/** @brief Puts an object into the world once more. Times of the motion in seconds. */
-bool scene_add_instance(scene *s, int object, const motion *to_world, source_place place,
-                        GError **error);
-bool scene_set_film(scene *s, const char *kind, const params *p, GError **error);
-bool scene_set_filter(scene *s, const char *kind, const params *p, GError **error);
-/** @brief The film must be set before (readers keep the directive until then). */
-bool scene_set_camera(scene *s, const char *kind, const params *p,
-                      const transform *to_world, GError **error);
-/** @brief Lets the camera that was set move; times in seconds. */
-void scene_move_camera(scene *s, const motion *to_world);
-/** @brief Ends building. Checks what only the whole can tell: a camera, a light.
- *  @param threads for the acceleration structure; 0 = all */
-bool scene_commit(scene *s, unsigned threads, GError **error);
-/** @brief Another image size; allowed before and after the commit, not while rendering.
- */
+/** @brief Another image size; not while rendering. */
 void scene_resize(scene *s, int width, int height);
 
 /** @brief What radiance is multiplied by on the film, as pbrt's sensor does it: iso / 100
  * times the seconds that the shutter is open. */
 float scene_imaging_ratio(const scene *s);
 
-/* ---- Queries on a committed scene ---- */
+/* ---- Queries ---- */
 
 /** @brief What a hit's shape is made of. */
 static inline void scene_fill_hit(const scene *s, const ray *r, surface_hit *hit)

@@ -5,10 +5,11 @@
  *   bounds ─► lights, prepared for them ─► acceleration structure ─► groups, width of a
  * pixel, solids
  */
-#include "scene/scene_commit.h"
+#include "scene/builder.h"
 
 #include "base/memory.h"
 #include "light/light_lines.h"
+#include "scene/scene_film.h"
 #include "scene/scene_geometry.h"
 #include "scene/scene_media.h"
 #include "scene/scene_solids.h"
@@ -106,56 +107,49 @@ void scene_resize(scene *s, int width, int height)
 {
     s->film.width = width;
     s->film.height = height;
-    if (s->has_camera)
-        camera_resize(&s->camera, width, height);
-    if (s->committed)
-        find_pixel_width(s);
+    camera_resize(&s->camera, width, height);
+    find_pixel_width(s);
 }
 
 /* ---- All of it ---- */
 
-bool scene_may_change(const scene *s, GError **error)
+/* What the file says of the eye goes over to the scene. */
+static void take_view(scene *s, scene_builder *b)
 {
-    if (s->committed)
-        error_set(error, ERROR_USAGE, "the scene is committed and can not be changed");
-    return !s->committed;
+    s->camera = b->camera;
+    s->film = b->film;
+    s->filter = b->filter;
+    b->film = film_default();
+    b->filter = (pixel_filter){0};
 }
 
-void scene_forget_commit(scene *s)
+static void finish(scene *s)
 {
-    accel_free(s->accel);
-    s->accel = NULL;
-    distribution_clear(&s->light_power);
-    g_clear_pointer(&s->light_tree, light_tree_free);
-    g_clear_pointer(&s->lines, g_free);
-    g_clear_pointer(&s->environments, g_free);
-    g_clear_pointer(&s->light_groups, g_strfreev);
-    g_clear_pointer(&s->solids, g_free);
-    s->n_environments = 0;
+    find_light_groups(s);
+    find_pixel_width(s);
+    scene_find_solids(s);
+    scene_find_eye_medium(s);
+    scene_find_outer_medium(s);
 }
 
-bool scene_commit(scene *s, unsigned threads, GError **error)
+scene *scene_builder_commit(scene_builder *b, unsigned threads, GError **error)
 {
-    if (!scene_may_change(s, error))
-        return false;
-    if (!s->has_camera) {
+    scene *s = b->scene;
+    if (!builder_may_change(b, error))
+        return NULL;
+    if (!b->has_camera) {
         error_set(error, ERROR_INPUT, "the scene has no camera");
-        return false;
+        return NULL;
     }
-    if (!s->filter.name && !filter_init_default(&s->filter, error))
-        return false;
-    s->committed = scene_find_bounds(s, error) && find_lights(s, error) &&
-                   scene_build_accel(s, threads, error);
-    if (s->committed) {
-        find_light_groups(s);
-        find_pixel_width(s);
-        scene_find_solids(s);
-        scene_find_eye_medium(s);
-        scene_find_outer_medium(s);
-        g_hash_table_remove_all(s->build.files);
-        g_hash_table_remove_all(s->build.pictures);
-    } else {
+    if (!b->filter.name && !filter_init_default(&b->filter, error))
+        return NULL;
+    if (!scene_find_bounds(s, error) || !find_lights(s, error) ||
+        !scene_build_accel(s, threads, error)) {
         scene_forget_commit(s);
+        return NULL;
     }
-    return s->committed;
+    take_view(s, b);
+    finish(s);
+    b->scene = NULL;
+    return s;
 }

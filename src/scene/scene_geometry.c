@@ -2,112 +2,10 @@
  * Where things are: objects and their instances, the scene's bounds, the acceleration
  * structure.
  *
- *   shapes ── all, of the world and of objects, in the order they were added
- *   objects ── shapes with the same shape.object
- *   instances ── an object and a motion; a shape that moves is an object of its own
- *
  * Instances are taken at the opening of the shutter where one number must do for all
  * times (areas), and over the whole time where bounds are asked for.
  */
 #include "scene/scene_geometry.h"
-
-#include "base/memory.h"
-
-/* ---- Objects and instances ---- */
-
-/* An array that grows holds up to twice what is in it. */
-#define INSTANCE_SIZE (2 * sizeof(instance))
-
-/* About what an object takes in lists. */
-enum { OBJECT_SIZE = 256 };
-
-static void clear_object(void *data)
-{
-    g_free(((scene_object *)data)->name);
-}
-
-void scene_open_objects(scene *s)
-{
-    s->objects = g_array_new(FALSE, TRUE, sizeof(scene_object));
-    g_array_set_clear_func(s->objects, clear_object);
-    s->object_names = g_hash_table_new(g_str_hash, g_str_equal);
-    s->instances = g_array_new(FALSE, TRUE, sizeof(instance));
-    s->open_object = NO_INDEX;
-}
-
-void scene_close_objects(scene *s)
-{
-    g_hash_table_unref(s->object_names);
-    g_array_unref(s->objects);
-    memory_release(s->instance_room * INSTANCE_SIZE);
-    g_array_unref(s->instances);
-}
-
-int scene_object_begin(scene *s, const char *name, source_place place, GError **error)
-{
-    if (s->open_object != NO_INDEX) {
-        error_at(error, place, "an object can not hold another one, or one that moves");
-        return NO_INDEX;
-    }
-    if (name && scene_find_object(s, name) != NO_INDEX) {
-        error_at(error, place, "object \"%s\" is there already", name);
-        return NO_INDEX;
-    }
-    if (!memory_ask(OBJECT_SIZE, "objects", error))
-        return NO_INDEX;
-    scene_object made = {g_strdup(name), place};
-    g_array_append_val(s->objects, made);
-    s->open_object = (int)s->objects->len - 1;
-    if (made.name)
-        g_hash_table_insert(s->object_names, made.name,
-                            GINT_TO_POINTER(s->open_object + 1));
-    LISTENER_TELL(s, object_begin, s->open_object, name);
-    return s->open_object;
-}
-
-void scene_object_end(scene *s)
-{
-    if (s->listener && s->listener->object_end)
-        s->listener->object_end(s->listener->data);
-    s->open_object = NO_INDEX;
-}
-
-int scene_find_object(const scene *s, const char *name)
-{
-    int found = GPOINTER_TO_INT(g_hash_table_lookup(s->object_names, name));
-    return found ? found - 1 : NO_INDEX;
-}
-
-bool scene_expect_instances(scene *s, size_t n, source_place place, GError **error)
-{
-    size_t size;
-    g_autofree char *what = g_strdup_printf("%zu instance%s", n, n == 1 ? "" : "s");
-    GError *refused = NULL;
-    if (__builtin_mul_overflow(n, INSTANCE_SIZE, &size))
-        size = SIZE_MAX;
-    if (memory_reserve(size, what, &refused)) {
-        s->instance_room += n;
-        return true;
-    }
-    error_move_at(error, place, refused);
-    return false;
-}
-
-bool scene_add_instance(scene *s, int object, const motion *to_world, source_place place,
-                        GError **error)
-{
-    if (s->committed || object < 0 || (guint)object >= s->objects->len) {
-        error_at(error, place, "an instance needs an object, before the scene is whole");
-        return false;
-    }
-    if (s->instances->len == s->instance_room &&
-        !scene_expect_instances(s, 1, place, error))
-        return false;
-    instance made = {object, *to_world, place};
-    LISTENER_TELL(s, instance, object, to_world);
-    g_array_append_val(s->instances, made);
-    return true;
-}
 
 /* ---- Bounds ---- */
 
@@ -115,13 +13,13 @@ box3 scene_placed_bounds(const scene *s, const instance *is, box3 box)
 {
     if (box3_is_empty(box))
         return box;
-    return motion_bounds(&is->to_world, box, (double)s->camera.shutter_open,
-                         (double)s->camera.shutter_close);
+    return motion_bounds(&is->to_world, box, (double)s->shutter[0],
+                         (double)s->shutter[1]);
 }
 
 double scene_instance_growth(const scene *s, const instance *is)
 {
-    transform at = motion_at(&is->to_world, (double)s->camera.shutter_open);
+    transform at = motion_at(&is->to_world, (double)s->shutter[0]);
     return instance_mean_area_factor(&at);
 }
 
@@ -296,7 +194,7 @@ bool scene_build_accel(scene *s, unsigned threads, GError **error)
         .instances = (const instance *)(void *)s->instances->data,
         .n_instances = s->instances->len,
         .n_objects = s->objects->len,
-        .shutter = {(double)s->camera.shutter_open, (double)s->camera.shutter_close},
+        .shutter = {(double)s->shutter[0], (double)s->shutter[1]},
     };
     s->accel = accel_build(&in, threads, error);
     s->moves = s->turns = false;

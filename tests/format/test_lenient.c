@@ -32,7 +32,6 @@ static scene *refused_or_replaced(const char *text, const char *error_text,
     g_assert_no_error(error);
     g_assert_cmpuint(warnings->len, ==, 1);
     g_assert_cmpstr(warnings->pdata[0], ==, warning);
-    s->build.log = (log_sink){0};
     folder_remove(&f);
     return s;
 }

@@ -5,8 +5,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(scene) s = scene_new(NULL);
-    bool read = format_read(s, fuzz_file(".pbrt", data, size), &error);
+    g_autoptr(scene_builder) b = scene_builder_new(NULL);
+    bool read = format_read(b, fuzz_file(".pbrt", data, size), &error);
     g_assert_true(read == (error == NULL));
     return 0;
 }

@@ -3,7 +3,7 @@
  * for would have it.
  */
 #include "math/sampler.h"
-#include "scene/scene.h"
+#include "scene/builder.h"
 
 #include <glib/gstdio.h>
 #include <string.h>
@@ -114,12 +114,12 @@ static void test_normal_scale(void)
 /* The plane lifted by d(u, v) has the normal (-dd/dx, -dd/dy, 1). */
 static void test_displacement(void)
 {
-    scene *s = scene_new(NULL);
+    scene_builder *s = scene_builder_new(NULL);
     params *p = list();
     const char *path = height_path, *name = "heights";
     params_add_strings(p, here, PARAM_STRING, "filename", &path, 1, NULL);
     GError *error = NULL;
-    scene_add_texture(s, name, "imagemap", false, p, &error);
+    builder_add_texture(s, name, "imagemap", false, p, &error);
     g_assert_no_error(error);
     params_free(p);
     for (int mirrored = 0; mirrored < 2; mirrored++) {
@@ -133,7 +133,7 @@ static void test_displacement(void)
         g_assert_cmpfloat(length3(bsdf_at(&s->build, p, &hit).shading.n - expected), <,
                           2e-2f);
     }
-    scene_free(s);
+    scene_builder_free(s);
 }
 
 static void refuse(params *p, const char *part)

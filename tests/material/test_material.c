@@ -5,7 +5,7 @@
 #include "bsdf/bsdf_models.h"
 #include "bsdf/fresnel.h"
 #include "material/material.h"
-#include "scene/scene.h"
+#include "scene/builder.h"
 
 #include <string.h>
 
@@ -364,11 +364,11 @@ static void test_textured_inputs(void)
  * own normals; and its lobes are known. */
 static void test_mix(void)
 {
-    scene *s = scene_new(NULL);
+    scene_builder *s = scene_builder_new(NULL);
     GError *error = NULL;
     params *matt = list(), *metal = list();
-    scene_add_material(s, "matt", "diffuse", matt, &error);
-    scene_add_material(s, "metal", "conductor", metal, &error);
+    builder_add_material(s, "matt", "diffuse", matt, &error);
+    builder_add_material(s, "metal", "conductor", metal, &error);
     g_assert_no_error(error);
     for (int k = 0; k < 5; k++) {
         const float amount = (float[]){0, 0.1f, 0.5f, 0.9f, 1}[k];
@@ -405,7 +405,7 @@ static void test_mix(void)
     params_free(p);
     params_free(matt);
     params_free(metal);
-    scene_free(s);
+    scene_builder_free(s);
     refuse("mix", list(), "m.pbrt:2:1: a mix needs \"string materials\" with two names");
 }
 

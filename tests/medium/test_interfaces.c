@@ -202,9 +202,10 @@ static uint32_t medium_named(const scene *s, const char *name)
 {
     if (!name)
         return 0;
-    int found = scene_find_medium(s, name);
-    g_assert_cmpint(found, !=, NO_INDEX);
-    return (uint32_t)found + 1;
+    for (uint32_t number = 1; number <= s->media->len; number++)
+        if (strcmp(scene_medium(s, number)->name, name) == 0)
+            return number;
+    g_error("no medium \"%s\"", name);
 }
 
 static ray ray_of(const scene *s, const crossing *c)

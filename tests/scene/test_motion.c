@@ -170,7 +170,8 @@ static void test_camera_moves(void)
             g_strconcat(SIZE(20) VIEW LAMP FLOOR "Translate 0 0 0.6\n", wall, NULL);
         g_autoptr(scene) s = scene_of(plain);
         motion stand = motion_still(&here);
-        scene_move_camera(s, &stand);
+        s->camera.path = stand;
+        s->camera.to_world = here;
         g_autofree char *words =
             g_strdup_printf("integrator=path passes=1 spp=32 seed=%d", i);
         render_blocks(s, words, still, 1.0 / 16);

@@ -3,7 +3,7 @@
  * asked as one.
  */
 #include "light/light_kinds.h"
-#include "scene/scene.h"
+#include "scene/builder.h"
 #include "scene_text.h"
 #include "shape_subjects.h"
 
@@ -19,35 +19,36 @@ static params *one_number(const char *name, float value)
     return p;
 }
 
-static void set_camera(scene *s)
+static void set_camera(scene_builder *b)
 {
     g_autoptr(params) p = no_params();
     transform identity = transform_identity();
     GError *error = NULL;
-    g_assert_true(scene_set_camera(s, "perspective", p, &identity, &error));
+    g_assert_true(builder_set_camera(b, "perspective", p, &identity, &error));
     g_assert_no_error(error);
 }
 
-static void add_light(scene *s, const char *kind, float scale)
+static void add_light(scene_builder *b, const char *kind, float scale)
 {
     g_autoptr(params) p = one_number("scale", scale);
     transform identity = transform_identity();
     GError *error = NULL;
-    g_assert_true(scene_add_light(s, kind, p, &identity, &error));
+    g_assert_true(builder_add_light(b, kind, p, &identity, &error));
     g_assert_no_error(error);
 }
 
-static int add_material(scene *s, const char *name, const char *kind)
+static int add_material(scene_builder *b, const char *name, const char *kind)
 {
     g_autoptr(params) p = no_params();
     GError *error = NULL;
-    int index = scene_add_material(s, name, kind, p, &error);
+    int index = builder_add_material(b, name, kind, p, &error);
     g_assert_no_error(error);
     return index;
 }
 
 /* A ball at (x, y, z), shining if scale > 0. */
-static void add_ball(scene *s, const float p[3], float radius, int made_of, float scale)
+static void add_ball(scene_builder *b, const float p[3], float radius, int made_of,
+                     float scale)
 {
     g_autoptr(params) ball = one_number("radius", radius);
     g_autoptr(params) shine = one_number("scale", scale);
@@ -56,34 +57,34 @@ static void add_ball(scene *s, const float p[3], float radius, int made_of, floa
                       .material = made_of,
                       .area_light = scale > 0 ? shine : NULL};
     GError *error = NULL;
-    g_assert_true(scene_add_shape(s, "sphere", ball, &at, &error));
+    g_assert_true(builder_add_shape(b, "sphere", ball, &at, &error));
     g_assert_no_error(error);
 }
 
-static void commit(scene *s)
+static scene *commit(scene_builder *b)
 {
     GError *error = NULL;
-    g_assert_true(scene_commit(s, 1, &error));
+    scene *s = scene_builder_commit(b, 1, &error);
     g_assert_no_error(error);
+    return s;
 }
 
 /* White floor ball, glass ball, two lamps of power 1 : 8, a point light and a sky. */
 static scene *make_scene(float unit)
 {
-    scene *s = scene_new(NULL);
-    set_camera(s);
-    int white = add_material(s, "white", "diffuse");
-    int glass = add_material(s, "glass", "dielectric");
+    g_autoptr(scene_builder) b = scene_builder_new(NULL);
+    set_camera(b);
+    int white = add_material(b, "white", "diffuse");
+    int glass = add_material(b, "glass", "dielectric");
     const float at[4][3] = {
         {0, 0, -3 * unit}, {0, 0, 0}, {-2 * unit, 0, 2 * unit}, {2 * unit, 0, 2 * unit}};
-    add_ball(s, at[0], unit, white, 0);
-    add_ball(s, at[1], unit, glass, 0);
-    add_ball(s, at[2], 0.25f * unit, white, 1);
-    add_ball(s, at[3], 0.5f * unit, NO_INDEX, 2);
-    add_light(s, "point", square(unit));
-    add_light(s, "infinite", 0.1f);
-    commit(s);
-    return s;
+    add_ball(b, at[0], unit, white, 0);
+    add_ball(b, at[1], unit, glass, 0);
+    add_ball(b, at[2], 0.25f * unit, white, 1);
+    add_ball(b, at[3], 0.5f * unit, NO_INDEX, 2);
+    add_light(b, "point", square(unit));
+    add_light(b, "infinite", 0.1f);
+    return commit(b);
 }
 
 static void test_commit_finds_the_world(void)
@@ -270,10 +271,10 @@ static void test_scale_by_thousand(void)
     }
 }
 
-static void expect_commit_error(scene *s, const char *text)
+static void expect_commit_error(scene_builder *b, const char *text)
 {
     GError *error = NULL;
-    g_assert_false(scene_commit(s, 1, &error));
+    g_assert_null(scene_builder_commit(b, 1, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
     g_assert_nonnull(strstr(error->message, text));
     g_error_free(error);
@@ -281,44 +282,44 @@ static void expect_commit_error(scene *s, const char *text)
 
 static void test_what_only_the_whole_can_tell(void)
 {
-    g_autoptr(scene) s = scene_new(NULL);
-    expect_commit_error(s, "no camera");
-    set_camera(s);
-    add_light(s, "infinite", 1);
-    commit(s); /* nothing but sky */
+    g_autoptr(scene_builder) b = scene_builder_new(NULL);
+    expect_commit_error(b, "no camera");
+    set_camera(b);
+    add_light(b, "infinite", 1);
+    g_autoptr(scene) s = commit(b); /* nothing but sky */
     g_assert_cmpfloat(s->radius, >, 0);
     g_autoptr(params) p = no_params();
     GError *error = NULL;
     transform identity = transform_identity();
-    g_assert_false(scene_add_light(s, "point", p, &identity, &error));
+    g_assert_false(builder_add_light(b, "point", p, &identity, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_USAGE);
     g_clear_error(&error);
-    g_assert_false(scene_commit(s, 1, &error));
+    g_assert_null(scene_builder_commit(b, 1, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_USAGE);
     g_error_free(error);
 }
 
 static void test_names(void)
 {
-    g_autoptr(scene) s = scene_new(NULL);
-    g_assert_cmpint(add_material(s, NULL, "diffuse"), ==, 0);
-    g_assert_cmpint(add_material(s, "a", "diffuse"), ==, 1);
-    g_assert_cmpint(scene_find_material(s, "a"), ==, 1);
-    g_assert_cmpint(scene_find_material(s, "b"), ==, NO_INDEX);
+    g_autoptr(scene_builder) b = scene_builder_new(NULL);
+    g_assert_cmpint(add_material(b, NULL, "diffuse"), ==, 0);
+    g_assert_cmpint(add_material(b, "a", "diffuse"), ==, 1);
+    g_assert_cmpint(builder_find_material(b, "a"), ==, 1);
+    g_assert_cmpint(builder_find_material(b, "b"), ==, NO_INDEX);
     g_autoptr(params) p = no_params();
     GError *error = NULL;
-    g_assert_cmpint(scene_add_material(s, "a", "diffuse", p, &error), ==, NO_INDEX);
+    g_assert_cmpint(builder_add_material(b, "a", "diffuse", p, &error), ==, NO_INDEX);
     g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
     g_clear_error(&error);
     shape_place at = {.to_world = transform_identity(), .material = 7};
-    g_assert_false(scene_add_shape(s, "sphere", p, &at, &error));
+    g_assert_false(builder_add_shape(b, "sphere", p, &at, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
     g_clear_error(&error);
     g_autoptr(params) bad = one_number("scale", -1);
     at = (shape_place){.to_world = at.to_world, .material = 0, .area_light = bad};
-    g_assert_false(scene_add_shape(s, "sphere", p, &at, &error));
+    g_assert_false(builder_add_shape(b, "sphere", p, &at, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
-    g_assert_cmpuint(s->shapes->len + s->lights->len, ==, 0);
+    g_assert_cmpuint(b->scene->shapes->len + b->scene->lights->len, ==, 0);
     g_error_free(error);
 }
 
@@ -332,9 +333,9 @@ static void add_integers(params *p, param_type type, const char *name, const int
 
 static void test_film(void)
 {
-    g_autoptr(scene) s = scene_new(NULL);
-    g_assert_cmpint(s->film.width, ==, 1280);
-    g_assert_cmpint(s->film.height, ==, 720);
+    g_autoptr(scene_builder) b = scene_builder_new(NULL);
+    g_assert_cmpint(b->film.width, ==, 1280);
+    g_assert_cmpint(b->film.height, ==, 720);
     g_autoptr(params) p = one_number("iso", 200);
     const int size[2] = {400, 300}, bounds[4] = {10, 399, 0, 17};
     const char *const name[1] = {"a.exr"};
@@ -343,14 +344,15 @@ static void test_film(void)
     add_integers(p, PARAM_INTEGER, "pixelbounds", bounds, 4);
     params_add_strings(p, here, PARAM_STRING, "filename", name, 1, NULL);
     GError *error = NULL;
-    g_assert_true(scene_set_film(s, "rgb", p, &error));
+    g_assert_true(builder_set_film(b, "rgb", p, &error));
     g_assert_no_error(error);
-    set_camera(s);
-    g_assert_cmpint(s->camera.width, ==, 400);
-    g_assert_cmpstr(s->film.filename, ==, "a.exr");
-    g_assert_cmpfloat(fabsf(scene_imaging_ratio(s) - 2), <, 1e-6);
+    set_camera(b);
+    g_assert_cmpint(b->camera.width, ==, 400);
+    g_assert_cmpstr(b->film.filename, ==, "a.exr");
     for (int i = 0; i < 4; i++)
-        g_assert_cmpint((int)ceilf(s->film.crop[i] * (float)size[i / 2]), ==, bounds[i]);
+        g_assert_cmpint((int)ceilf(b->film.crop[i] * (float)size[i / 2]), ==, bounds[i]);
+    g_autoptr(scene) s = commit(b);
+    g_assert_cmpfloat(fabsf(scene_imaging_ratio(s) - 2), <, 1e-6);
     scene_resize(s, 40, 30);
     g_assert_cmpint(s->film.height, ==, 30);
     g_assert_cmpint(s->camera.height, ==, 30);
@@ -358,9 +360,9 @@ static void test_film(void)
 
 static void expect_film_error(params *p, const char *kind, const char *text)
 {
-    g_autoptr(scene) s = scene_new(NULL);
+    g_autoptr(scene_builder) b = scene_builder_new(NULL);
     GError *error = NULL;
-    g_assert_false(scene_set_film(s, kind, p, &error));
+    g_assert_false(builder_set_film(b, kind, p, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
     g_assert_true(g_str_has_prefix(error->message, "shapes.pbrt:7:3: "));
     g_assert_nonnull(strstr(error->message, text));
@@ -401,20 +403,20 @@ static void test_bad_film_is_named(void)
 static void test_memory_refused(void)
 {
     for (unsigned n = 1;; n++) {
-        g_autoptr(scene) s = scene_new(NULL);
-        set_camera(s);
-        add_ball(s, (const float[3]){0, 0, 0}, 1, NO_INDEX, 1);
+        g_autoptr(scene_builder) b = scene_builder_new(NULL);
+        set_camera(b);
+        add_ball(b, (const float[3]){0, 0, 0}, 1, NO_INDEX, 1);
         GError *error = NULL;
         big_alloc_fail_at(n);
-        bool done = scene_commit(s, 1, &error);
+        g_autoptr(scene) s = scene_builder_commit(b, 1, &error);
         big_alloc_fail_at(0);
-        if (done) {
+        if (s) {
             g_assert_cmpuint(n, >, 4);
             return;
         }
         g_assert_error(error, NEPH_ERROR, ERROR_FAILED);
         g_error_free(error);
-        commit(s); /* a second attempt goes through */
+        s = commit(b); /* a second attempt goes through */
     }
 }
 

@@ -86,8 +86,6 @@ static inline scene *load_bytes(const char *name, const char *bytes, gssize size
     const load_options how = {
         .threads = 1, .thin_glass = thin_glass, .log = kept ? &sink : NULL};
     scene *s = format_load_with(path, &how, error);
-    if (s && kept)
-        s->build.log = (log_sink){0};
     folder_remove(&f);
     return s;
 }

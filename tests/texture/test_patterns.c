@@ -5,7 +5,7 @@
 #include "math/noise.h"
 #include "math/sampler.h"
 #include "math/transform.h"
-#include "scene/scene.h"
+#include "scene/builder.h"
 
 #include <string.h>
 
@@ -35,10 +35,11 @@ static params *named(params *p, const char *name, const char *of)
     return p;
 }
 
-static texture *make(const scene *s, const char *kind, bool is_spectrum, params *p)
+static texture *make(const scene_builder *s, const char *kind, bool is_spectrum,
+                     params *p)
 {
     GError *error = NULL;
-    texture *t = texture_new(&s->build, kind, is_spectrum, p, &error);
+    texture *t = texture_new(s ? &s->build : NULL, kind, is_spectrum, p, &error);
     g_assert_no_error(error);
     params_free(p);
     return t;
@@ -82,15 +83,15 @@ static void test_scale_and_mix(void)
 /* Textures within textures, of both types. */
 static void test_nested(void)
 {
-    scene *s = scene_new(NULL);
+    scene_builder *s = scene_builder_new(NULL);
     GError *error = NULL;
     g_autoptr(params) half = number(list(), "value", 0.5);
-    scene_add_texture(s, "half", "constant", false, half, &error);
+    builder_add_texture(s, "half", "constant", false, half, &error);
     g_assert_no_error(error);
     const float red[3] = {0.9f, 0.1f, 0.1f};
     g_autoptr(params) colour = list();
     params_add_numbers(colour, here, PARAM_RGB, "value", red, 3, NULL);
-    scene_add_texture(s, "red", "constant", true, colour, &error);
+    builder_add_texture(s, "red", "constant", true, colour, &error);
     g_assert_no_error(error);
     texture *t =
         make(s, "scale", true, named(named(list(), "tex", "red"), "scale", "half"));
@@ -107,7 +108,7 @@ static void test_nested(void)
     for (int i = 0; i < N_LANES; i++)
         close_to((double)found[i], (double)expected[i]);
     texture_free(t);
-    scene_free(s);
+    scene_builder_free(s);
 }
 
 static void test_direction_mix(void)

@@ -2,7 +2,7 @@
  * pictures: texels keep every bit of an image in as few bytes as can be, are halved to
  * means, and are shared by all that read a file alike.
  */
-#include "scene/scene.h"
+#include "scene/builder.h"
 #include "scene_text.h"
 #include "texture/picture.h"
 
@@ -61,7 +61,7 @@ static void test_halved(void)
     texels_free(t);
 }
 
-static picture *read_with(const scene *s, params *p, image_encoding encoding)
+static picture *read_with(const scene_builder *s, params *p, image_encoding encoding)
 {
     const image_read_options options = {.encoding = encoding, .gamma = 1.0f};
     GError *error = NULL;
@@ -80,7 +80,7 @@ static void test_shared(void)
     g_assert_true(image_write(img, path, NULL, NULL));
     image_free(img);
     g_ptr_array_add(f.files, g_strdup(path));
-    g_autoptr(scene) s = scene_new(NULL);
+    g_autoptr(scene_builder) s = scene_builder_new(NULL);
     const source_place here = {"test", 1, 1};
     const char *const paths[] = {path};
     g_autoptr(params) p = params_new(here, NULL, NULL);

@@ -2,7 +2,7 @@
  * Writing a scene down while it is built: every call that a reader makes becomes the
  * directive that makes pbrt's reader do the same.
  *
- *   reader ─► scene_add_* ─► listener ─► world, options (text) ─► OUT.pbrt
+ *   reader ─► builder_add_* ─► listener ─► world, options (text) ─► OUT.pbrt
  *                                  └──► OUT-files/  meshes as PLY, images as they were
  *
  * The options (film, camera ...) may come last, so both texts are kept till the end.
@@ -21,7 +21,7 @@
 #include <string.h>
 
 typedef struct converter {
-    scene *scene; /**< being built; its tables name textures */
+    scene_builder *builder; /**< being built; its tables name textures */
     converted_files files;
     GString *world, *film, *filter, *media, *camera;
     GString *around;      /**< the MediumInterface that holds now; empty: none yet */
@@ -249,7 +249,7 @@ static const char *texture_name(const converter *c, const texture *t)
 {
     GHashTableIter iter;
     gpointer name, value;
-    g_hash_table_iter_init(&iter, c->scene->build.float_textures);
+    g_hash_table_iter_init(&iter, c->builder->build.float_textures);
     while (g_hash_table_iter_next(&iter, &name, &value))
         if (value == t)
             return name;
@@ -416,8 +416,8 @@ static bool write_scene(converter *c, const char *in, const char *path, GError *
     g_string_append_printf(text, "# %s\n", g_strdelimit(base, "\r\n", ' '));
     g_string_append_len(text, c->film->str, (gssize)c->film->len);
     g_string_append(text, c->filter->str);
-    convert_append_switches(text, &c->scene->switches);
-    convert_append_settings(text, &c->scene->settings);
+    convert_append_switches(text, &c->builder->scene->switches);
+    convert_append_settings(text, &c->builder->scene->settings);
     g_string_append(text, c->media->str);
     g_string_append(text, c->camera->str);
     g_string_append(text, "WorldBegin\n");
@@ -476,22 +476,22 @@ bool format_convert(const char *in, const char *out, const load_options *options
                                      .object_begin = on_object_begin,
                                      .object_end = on_object_end,
                                      .instance = on_instance};
-    g_autoptr(scene) s = scene_new(options ? options->log : NULL);
-    s->build.lenient = options && options->lenient;
-    s->thin_glass = options && options->thin_glass;
-    s->build.sources = scene_sources_new(options ? options->source : NULL,
-                                         options ? options->source_data : NULL);
-    s->build.cancel = options ? options->cancel : NULL;
-    s->listener = &listener;
-    c.scene = s;
-    c.files.scene = s;
-    bool done = output_possible(out, error) && format_read(s, in, error);
+    const load_options nothing_said = {0};
+    g_autoptr(scene_builder) b = format_builder(options ? options : &nothing_said);
+    scene_sources *own = b->build.sources ? NULL : scene_sources_new(NULL, NULL);
+    if (own)
+        b->build.sources = own;
+    b->listener = &listener;
+    c.builder = b;
+    c.files.builder = b;
+    bool done = output_possible(out, error) && format_read(b, in, error);
     if (done && c.files.error) {
         g_propagate_error(error, g_steal_pointer(&c.files.error));
         done = false;
     }
-    done = done && output_spares(out, scene_sources_paths(s->build.sources), error) &&
+    done = done && output_spares(out, scene_sources_paths(b->build.sources), error) &&
            converted_files_commit(&c.files, error) && write_scene(&c, in, out, error);
     converter_clear(&c);
+    scene_sources_free(own);
     return done;
 }

@@ -1,7 +1,7 @@
 #include "format/convert/convert_files.h"
 
 #include "base/input.h"
-#include "scene/scene.h"
+#include "scene/builder.h"
 
 #include <errno.h>
 #include <glib/gstdio.h>
@@ -59,7 +59,7 @@ void converted_files_close(converted_files *f, const char *name, output *out)
 
 bool converted_files_commit(converted_files *f, GError **error)
 {
-    const char *const *sources = scene_sources_paths(f->scene->build.sources);
+    const char *const *sources = scene_sources_paths(f->builder->build.sources);
     bool done = true;
     for (guint i = 0; i < f->paths->len && done; i++)
         done = output_spares(f->paths->pdata[i], sources, error);
@@ -87,7 +87,7 @@ static char *free_name(converted_files *f, const char *path)
 
 static GBytes *bytes_of(converted_files *f, const char *path)
 {
-    GBytes *inside = g_hash_table_lookup(f->scene->build.files, path);
+    GBytes *inside = g_hash_table_lookup(f->builder->build.files, path);
     if (inside)
         return g_bytes_ref(inside);
     return input_bytes(path, NULL);

@@ -14,16 +14,17 @@
 #include <glib.h>
 #include <stdbool.h>
 
-struct scene;
+struct scene_builder;
 
 typedef struct converted_files {
-    const struct scene *scene; /**< that may hold some of them itself; borrowed */
-    char *directory, *folder;  /**< owned: its path, and its name beside the scene */
-    GHashTable *names;         /**< absolute path -> name relative to the scene */
-    GPtrArray *outputs;        /**< closed, of all files; owned */
-    GPtrArray *paths;          /**< where each will be; owned */
-    bool made_folder;          /**< it was not there before */
-    GError *error;             /**< the first one */
+    const struct scene_builder
+        *builder;             /**< that may hold some of them itself; borrowed */
+    char *directory, *folder; /**< owned: its path, and its name beside the scene */
+    GHashTable *names;        /**< absolute path -> name relative to the scene */
+    GPtrArray *outputs;       /**< closed, of all files; owned */
+    GPtrArray *paths;         /**< where each will be; owned */
+    bool made_folder;         /**< it was not there before */
+    GError *error;            /**< the first one */
 } converted_files;
 
 /** @brief For a scene that is written to `out`; nothing is made yet. */

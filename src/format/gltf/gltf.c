@@ -276,12 +276,12 @@ static bool read_input(gltf *g, const input *in, GError **error)
     json_close(&g->json);
     /* A model that just glows here and there is looked at by a viewer's light; who makes
      * it brighter than paper, or sets up a camera, lights something by it. */
-    bool is_look = !g->shines && !g->scene->has_camera;
-    return !*error &&
-           scene_complete(g->scene, g->path, vec3_make(0.0f, 1.0f, 0.0f), is_look, error);
+    bool is_look = !g->shines && !g->builder->has_camera;
+    return !*error && scene_complete(g->builder, g->path, vec3_make(0.0f, 1.0f, 0.0f),
+                                     is_look, error);
 }
 
-static bool read_gltf(scene *s, const char *path, GError **error)
+static bool read_gltf(scene_builder *to, const char *path, GError **error)
 {
     input in;
     g_autoptr(GError) inner = NULL;
@@ -290,11 +290,11 @@ static bool read_gltf(scene *s, const char *path, GError **error)
         return false;
     }
     g_autofree char *absolute = g_canonicalize_filename(path, NULL);
-    gltf g = {.scene = s,
+    gltf g = {.builder = to,
               .path = path,
               .directory = g_path_get_dirname(absolute),
               .notes = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
-              .solid = !s->thin_glass};
+              .solid = !to->thin_glass};
     bool done = read_input(&g, &in, &inner);
     clear(&g);
     input_close(&in);

@@ -17,7 +17,7 @@
 #pragma once
 
 #include "format/json_read.h"
-#include "scene/scene.h"
+#include "scene/builder.h"
 
 /** @brief Largest index or count that a file may name. */
 #define GLTF_MOST G_GINT64_CONSTANT(0x7fffffff)
@@ -45,7 +45,7 @@ typedef struct gltf_mesh_info {
 } gltf_mesh_info;
 
 typedef struct gltf {
-    scene *scene;
+    scene_builder *builder;
     const char *path; /**< of the file */
     char *directory;  /**< that names in it are relative to */
     json_reader json;

@@ -77,7 +77,7 @@ GBytes *gltf_uri_bytes(gltf *g, const json_value *at, const char *uri)
     if (!path)
         return NULL;
     g_autoptr(GError) error = NULL;
-    scene_sources_add(g->scene->build.sources, path);
+    scene_sources_add(g->builder->build.sources, path);
     GBytes *bytes = input_bytes(path, &error);
     if (!bytes)
         gltf_take_error(g, at, g_steal_pointer(&error));

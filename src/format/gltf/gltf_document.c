@@ -21,7 +21,7 @@ void gltf_note(gltf *g, log_level level, const char *format, ...)
     char *text = g_strdup_vprintf(format, args);
     va_end(args);
     if (!g_hash_table_contains(g->notes, text))
-        log_message(&g->scene->build.log, level, "%s: %s", g->path, text);
+        log_message(&g->builder->build.log, level, "%s: %s", g->path, text);
     g_hash_table_add(g->notes, text);
 }
 

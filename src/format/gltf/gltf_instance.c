@@ -69,14 +69,14 @@ static void make_object(gltf *g, const json_value *of, const gltf_pose *pose,
     if (info->is_made)
         return;
     info->is_made = true;
-    int object = scene_object_begin(g->scene, NULL, place, &error);
+    int object = builder_object_begin(g->builder, NULL, place, &error);
     if (object == NO_INDEX) {
         gltf_take_error(g, of, error);
         return;
     }
     if (gltf_add_primitives(g, of, pose, GLTF_DARK, &identity) > 0)
         info->object = object;
-    scene_object_end(g->scene);
+    builder_object_end(g->builder);
 }
 
 /* What nodes show, and how. */
@@ -102,7 +102,7 @@ static void place_mesh(gltf *g, const shown_mesh *shown, const transform *to_wor
     if (!gltf_failed(g))
         gltf_add_primitives(g, of, pose, GLTF_SHINING, to_world);
     if (!gltf_failed(g) && info->object != NO_INDEX &&
-        !scene_add_instance(g->scene, info->object, &still, place, &error))
+        !builder_add_instance(g->builder, info->object, &still, place, &error))
         gltf_take_error(g, of, error);
 }
 
@@ -129,7 +129,7 @@ static bool expect_copies(gltf *g, const shown_mesh *shown, size_t n)
 {
     const source_place whole = {NULL, 0, 0};
     GError *error = NULL;
-    if (scene_expect_instances(g->scene, n, whole, &error))
+    if (builder_expect_instances(g->builder, n, whole, &error))
         return true;
     gltf_take_error(g, &shown->of, error);
     return false;

@@ -149,7 +149,8 @@ static void add_light(gltf *g, const json_value *lamp, const transform *to_world
         return;
     GError *error = NULL;
     g_autoptr(params) p = found->make(g, lamp);
-    if (!gltf_failed(g) && !scene_add_light(g->scene, found->kind, p, to_world, &error))
+    if (!gltf_failed(g) &&
+        !builder_add_light(g->builder, found->kind, p, to_world, &error))
         gltf_take_error(g, lamp, error);
 }
 
@@ -196,7 +197,7 @@ static void give_film(gltf *g, const json_value *at, double aspect)
     aspect = CLAMP(aspect, 0.05, 20.0);
     give_integer(p, "yresolution", DEFAULT_HEIGHT);
     give_integer(p, "xresolution", MAX(1, (int)lround(DEFAULT_HEIGHT * aspect)));
-    if (!scene_set_film(g->scene, "rgb", p, &error))
+    if (!builder_set_film(g->builder, "rgb", p, &error))
         gltf_take_error(g, at, error);
 }
 
@@ -253,8 +254,8 @@ void gltf_add_camera(gltf *g, const json_value *node, const transform *to_world)
         return;
     if (!camera_place(to_world, &place))
         json_fail(node, "the camera's transform flattens space");
-    else if (!scene_set_camera(g->scene, is_flat ? "orthographic" : "perspective", p,
-                               &place, &error))
+    else if (!builder_set_camera(g->builder, is_flat ? "orthographic" : "perspective", p,
+                                 &place, &error))
         gltf_take_error(g, node, error);
     g->has_camera = !gltf_failed(g);
 }

@@ -357,12 +357,12 @@ static void make(gltf *g, const json_value *m, gltf_material_info *info, bool so
     const char *name = json_text(m, "name");
     g_autofree char *unique =
         name ? g_strdup_printf("%s%s", name, solid ? " (solid)" : "") : NULL;
-    if (unique && scene_find_material(g->scene, unique) != NO_INDEX)
+    if (unique && builder_find_material(g->builder, unique) != NO_INDEX)
         g_clear_pointer(&unique, g_free);
     g_autoptr(params) p = material_params(g, m, info->colored, solid);
     if (gltf_failed(g))
         return;
-    int made = scene_add_material(g->scene, unique, "gltf", p, &error);
+    int made = builder_add_material(g->builder, unique, "gltf", p, &error);
     if (made == NO_INDEX)
         gltf_take_error(g, m, error);
     *(solid ? &info->solid_index : &info->index) = made;

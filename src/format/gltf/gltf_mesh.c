@@ -228,14 +228,14 @@ static void add_shape(gltf *g, const json_value *primitive, mesh *m,
     float_input alpha;
     const source_place place = {intern(g->path), 0, 0};
     if (info->alpha) {
-        if (!float_input_init(&alpha, &g->scene->build, info->alpha, "alpha", 1.0f,
+        if (!float_input_init(&alpha, &g->builder->build, info->alpha, "alpha", 1.0f,
                               &error)) {
             gltf_take_error(g, primitive, error);
             return;
         }
         at.alpha = &alpha;
     }
-    if (!alpha_hides_all(&at) && !scene_add_mesh(g->scene, m, &at, place, &error))
+    if (!alpha_hides_all(&at) && !builder_add_mesh(g->builder, m, &at, place, &error))
         gltf_take_error(g, primitive, error);
 }
 

@@ -31,7 +31,7 @@ static const char *embedded_path(gltf *g, GBytes *bytes, gint64 index)
     g_autofree char *path = g_canonicalize_filename(g->path, NULL);
     g_autofree char *name =
         g_strdup_printf("%s.image%d.%s", path, (int)index, is_png ? "png" : "jpg");
-    build_context_add_file(&g->scene->build, name, bytes);
+    build_context_add_file(&g->builder->build, name, bytes);
     return intern(name);
 }
 
@@ -143,11 +143,11 @@ static void give_texture(gltf *g, params *p, const char *name, const json_value 
                          const params *img, bool is_number)
 {
     g_autofree char *unique = texture_name(img);
-    GHashTable *known =
-        is_number ? g->scene->build.float_textures : g->scene->build.spectrum_textures;
+    GHashTable *known = is_number ? g->builder->build.float_textures
+                                  : g->builder->build.spectrum_textures;
     GError *error = NULL;
     if (!gltf_failed(g) && !g_hash_table_contains(known, unique) &&
-        !scene_add_texture(g->scene, unique, "gltf", !is_number, img, &error))
+        !builder_add_texture(g->builder, unique, "gltf", !is_number, img, &error))
         gltf_take_error(g, info, error);
     give_text(p, PARAM_TEXTURE, name, unique);
 }

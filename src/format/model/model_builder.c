@@ -20,7 +20,7 @@ void model_tell(model_builder *b, const char *format, ...)
     char *text = g_strdup_vprintf(format, args);
     va_end(args);
     if (!g_hash_table_contains(b->notes, text))
-        log_message(&b->scene->build.log, LOG_WARNING, "%s: %s", b->path, text);
+        log_message(&b->builder->build.log, LOG_WARNING, "%s: %s", b->path, text);
     g_hash_table_add(b->notes, text);
 }
 

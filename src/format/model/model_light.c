@@ -56,7 +56,7 @@ static bool add_light(model_builder *b, const stream_light *l, GError **error)
     if (lamp != STREAM_POINT)
         give_point(p, "to", to);
     model_tell(b, "lamps are taken to shine in W/sr and W/m²");
-    return scene_add_light(b->scene, kinds[lamp], p, &to_world, error);
+    return builder_add_light(b->builder, kinds[lamp], p, &to_world, error);
 }
 
 bool model_add_lights(model_builder *b, GError **error)
@@ -104,6 +104,6 @@ bool model_add_camera(model_builder *b, GError **error)
     give_integer(film, "yresolution", HEIGHT);
     give_integer(film, "xresolution", (int)lround(HEIGHT * aspect));
     give_float(p, "fov", 2.0 * atan(aspect > 1.0 ? wide / aspect : wide) * DEGREES);
-    return scene_set_film(b->scene, "rgb", film, error) &&
-           scene_set_camera(b->scene, "perspective", p, &place, error);
+    return builder_set_film(b->builder, "rgb", film, error) &&
+           builder_set_camera(b->builder, "perspective", p, &place, error);
 }

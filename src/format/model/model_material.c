@@ -60,7 +60,7 @@ static char *embedded_path(model_builder *b, const char *name)
     guint number = (guint)(image_is - &g_array_index(b->source->images, model_image, 0));
     char *path = g_strdup_printf("%s.%u.%s", absolute, number, extension);
     g_autoptr(GBytes) bytes = g_bytes_new(image_is->bytes, image_is->size);
-    build_context_add_file(&b->scene->build, path, bytes);
+    build_context_add_file(&b->builder->build, path, bytes);
     return path;
 }
 
@@ -76,7 +76,7 @@ static char *texture_path(model_builder *b, const model_material *m, stream_map 
         return inside;
     g_autofree char *mended = g_strdelimit(g_strdup(name), "\\", '/');
     char *path = g_canonicalize_filename(mended, b->directory);
-    scene_sources_add(b->scene->build.sources, path);
+    scene_sources_add(b->builder->build.sources, path);
     if (g_file_test(path, G_FILE_TEST_IS_REGULAR))
         return path;
     g_free(path);
@@ -95,7 +95,7 @@ static bool is_readable(model_builder *b, const char *path, image_encoding encod
 {
     const image_read_options options = {.encoding = encoding};
     g_autoptr(GError) error = NULL;
-    picture *pic = picture_read_file(&b->scene->build, path, &options, &error);
+    picture *pic = picture_read_file(&b->builder->build, path, &options, &error);
     if (!pic)
         model_tell(b, "a texture is left out: %s", error->message);
     bool readable = pic != NULL;
@@ -111,8 +111,8 @@ static char *add_texture(model_builder *b, const model_material *m, stream_map m
     if (!path)
         return NULL;
     char *name = g_strdup(path);
-    GHashTable *known =
-        is_spectrum ? b->scene->build.spectrum_textures : b->scene->build.float_textures;
+    GHashTable *known = is_spectrum ? b->builder->build.spectrum_textures
+                                    : b->builder->build.float_textures;
     if (g_hash_table_contains(known, name))
         return name;
     g_autoptr(params) p = model_params(b);
@@ -120,7 +120,7 @@ static char *add_texture(model_builder *b, const model_material *m, stream_map m
     if (!is_spectrum)
         give_text(p, PARAM_STRING, "encoding", "linear");
     if (is_readable(b, path, is_spectrum ? ENCODING_AUTO : ENCODING_LINEAR) &&
-        scene_add_texture(b->scene, name, "imagemap", is_spectrum, p, error))
+        builder_add_texture(b->builder, name, "imagemap", is_spectrum, p, error))
         return name;
     g_free(name);
     return NULL;
@@ -190,7 +190,7 @@ static void give_heights(model_builder *b, params *p, const model_material *m)
     if (!path || !is_readable(b, path, linear.encoding))
         return;
     g_autoptr(image) heights =
-        build_context_read_image(&b->scene->build, path, &linear, NULL);
+        build_context_read_image(&b->builder->build, path, &linear, NULL);
     if (!height_map_is_normals(heights)) {
         g_autoptr(GBytes) normals = height_map_as_normals(heights, strength);
         if (!normals) {
@@ -200,7 +200,7 @@ static void give_heights(model_builder *b, params *p, const model_material *m)
         char *name = g_strdup_printf("%s.%g.normals.pfm", path, strength);
         g_free(path);
         path = name;
-        build_context_add_file(&b->scene->build, path, normals);
+        build_context_add_file(&b->builder->build, path, normals);
         model_tell(b, "maps of height say nothing of how high: a step from black to "
                       "white across a texel is read as a slope of 45 degrees");
     }
@@ -311,10 +311,10 @@ int model_material_index(model_builder *b, unsigned index, bool closed, GError *
         return *made;
     const model_material *m = &g_array_index(b->source->materials, model_material, index);
     g_autofree char *name = g_utf8_make_valid(m->name, -1);
-    bool is_new = *name && scene_find_material(b->scene, name) == NO_INDEX;
+    bool is_new = *name && builder_find_material(b->builder, name) == NO_INDEX;
     g_autoptr(params) p = model_params(b);
     const char *kind = choose_kind(b, m, p, closed, error);
     if (kind)
-        *made = scene_add_material(b->scene, is_new ? name : NULL, kind, p, error);
+        *made = builder_add_material(b->builder, is_new ? name : NULL, kind, p, error);
     return *made;
 }

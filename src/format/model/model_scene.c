@@ -81,14 +81,14 @@ static bool add_shape(model_builder *b, mesh *m, const model_look *look, int ind
         .to_world = *to_world, .material = index, .area_light = look->area_light};
     const source_place place = {intern(b->path), 0, 0};
     if (look->alpha) {
-        if (!float_input_init(&alpha, &b->scene->build, look->alpha, "alpha", 1.0f,
+        if (!float_input_init(&alpha, &b->builder->build, look->alpha, "alpha", 1.0f,
                               error))
             return false;
         if (!alpha.texture && !(alpha.constant > 0.0f))
             return true;
         at.alpha = &alpha;
     }
-    return scene_add_mesh(b->scene, m, &at, place, error);
+    return builder_add_mesh(b->builder, m, &at, place, error);
 }
 
 static bool is_closed(const mesh *m, bool thin, bool *closed, GError **error)
@@ -107,8 +107,9 @@ static bool add_mesh(model_builder *b, const model_mesh *from, const transform *
     mesh m = {0};
     bool closed = true;
     const model_look *look = model_look_of(b, from->material, error);
-    bool done = look && copy_mesh(from, &m, error) &&
-                (!look->is_glass || is_closed(&m, b->scene->thin_glass, &closed, error));
+    bool done =
+        look && copy_mesh(from, &m, error) &&
+        (!look->is_glass || is_closed(&m, b->builder->thin_glass, &closed, error));
     if (done && m.n_triangles > 0) {
         int index = model_material_index(b, from->material, closed, error);
         done = index != NO_INDEX && add_shape(b, &m, look, index, to_world, error);
@@ -193,21 +194,21 @@ static bool build(model_builder *b, GError **error)
 {
     return is_bearable(b, error) && add_instances(b, error) &&
            model_add_lights(b, error) && model_add_camera(b, error) &&
-           scene_complete(b->scene, b->path, b->up, false, error);
+           scene_complete(b->builder, b->path, b->up, false, error);
 }
 
-static bool ask_importer(scene *s, const char *path, const model_format *format,
+static bool ask_importer(scene_builder *to, const char *path, const model_format *format,
                          void **bytes, size_t *size, GError **error)
 {
     g_autoptr(GArray) files = strcmp(format->extension, ".obj") == 0
-                                  ? obj_material_files(s, path)
+                                  ? obj_material_files(to, path)
                                   : g_array_new(FALSE, FALSE, sizeof(import_file));
     const import_job job = {.path = path,
                             .extension = format->extension + 1,
                             .format = format->name,
                             .files = (const import_file *)(void *)files->data,
                             .n_files = files->len,
-                            .cancel = s->build.cancel};
+                            .cancel = to->build.cancel};
     *bytes = importer_run(&job, size, error);
     return *bytes != NULL;
 }
@@ -233,19 +234,19 @@ static void free_looks(model_builder *b)
     g_free(b->looks);
 }
 
-static bool read_model(scene *s, const char *path, GError **error)
+static bool read_model(scene_builder *to, const char *path, GError **error)
 {
     const model_format *format = format_of(path);
     void *bytes;
     size_t size;
     model m = {0};
-    if (!ask_importer(s, path, format, &bytes, &size, error))
+    if (!ask_importer(to, path, format, &bytes, &size, error))
         return false;
     g_autofree char *absolute = g_canonicalize_filename(path, NULL);
     g_autofree char *directory = g_path_get_dirname(absolute);
     g_autoptr(GHashTable) notes =
         g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
-    model_builder b = {.scene = s,
+    model_builder b = {.builder = to,
                        .path = path,
                        .directory = directory,
                        .source = &m,

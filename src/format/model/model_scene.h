@@ -4,7 +4,7 @@
 #pragma once
 
 #include "format/model/model.h"
-#include "scene/scene.h"
+#include "scene/builder.h"
 
 /** @brief A material as a scene has it. */
 typedef struct model_look {
@@ -17,7 +17,7 @@ typedef struct model_look {
 } model_look;
 
 typedef struct model_builder {
-    scene *scene;
+    scene_builder *builder;
     const char *path;
     char *directory;
     const model *source;

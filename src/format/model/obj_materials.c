@@ -13,7 +13,7 @@
 enum { MOST_NAMED = 10 }; /* missing materials that are told one by one */
 
 typedef struct obj_names {
-    scene *scene;
+    scene_builder *builder;
     const char *path;
     char *directory;
     GHashTable *files, *defined, *used; /* char* */
@@ -81,14 +81,14 @@ static void read_library(obj_names *names, const char *name)
         return;
     g_hash_table_add(names->files, g_strdup(name));
     if (names->found->len == MOST_IMPORT_FILES) {
-        log_message(&names->scene->build.log, LOG_WARNING,
+        log_message(&names->builder->build.log, LOG_WARNING,
                     "%s: it names more than %d files of materials: '%s' is left out",
                     names->path, MOST_IMPORT_FILES, name);
         return;
     }
     g_autofree char *path = g_canonicalize_filename(name, names->directory);
     g_autofree char *own = own_library(names);
-    scene_sources_add(names->scene->build.sources, path);
+    scene_sources_add(names->builder->build.sources, path);
     bool found = each_line(names, path, note_definition);
     bool has_own = !found && each_line(names, own, note_definition);
     if (found || has_own) {
@@ -99,7 +99,7 @@ static void read_library(obj_names *names, const char *name)
         return;
     g_autofree char *instead =
         has_own ? g_path_get_basename(own) : g_strdup("grey materials");
-    log_message(&names->scene->build.log, LOG_WARNING,
+    log_message(&names->builder->build.log, LOG_WARNING,
                 "%s: its file of materials '%s' (mtllib) can not be read: %s instead",
                 names->path, name, instead);
 }
@@ -120,7 +120,7 @@ static void note_line(obj_names *names, const char *line, size_t length)
 
 static void tell_missing(const obj_names *names)
 {
-    const log_sink *log = &names->scene->build.log;
+    const log_sink *log = &names->builder->build.log;
     guint n_missing = 0;
     if (g_hash_table_size(names->files) == 0 && names->in_order->len > 0)
         log_message(log, LOG_WARNING,
@@ -153,11 +153,11 @@ static void clear_file(void *data)
     g_free((char *)file->path);
 }
 
-GArray *obj_material_files(scene *s, const char *path)
+GArray *obj_material_files(scene_builder *to, const char *path)
 {
     g_autofree char *absolute = g_canonicalize_filename(path, NULL);
     g_autofree char *directory = g_path_get_dirname(absolute);
-    obj_names names = {.scene = s,
+    obj_names names = {.builder = to,
                        .path = path,
                        .directory = directory,
                        .files = names_new(),

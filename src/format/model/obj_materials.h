@@ -5,9 +5,9 @@
  */
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/builder.h"
 
 /** @brief Finds the files of materials (mtllib), and warns of those and of materials
  * (usemtl) that are named and missing.
  * @return import_file, those that are there; owned by the caller */
-GArray *obj_material_files(scene *s, const char *path);
+GArray *obj_material_files(scene_builder *to, const char *path);

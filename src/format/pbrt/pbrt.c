@@ -179,9 +179,9 @@ static void free_params(void *p)
     params_free(p);
 }
 
-static void parser_init(pbrt_parser *parser, scene *s, const char *path)
+static void parser_init(pbrt_parser *parser, scene_builder *to, const char *path)
 {
-    *parser = (pbrt_parser){.scene = s,
+    *parser = (pbrt_parser){.builder = to,
                             .default_material = NO_INDEX,
                             .object = NO_INDEX,
                             .times = {0.0, 1.0}};
@@ -257,7 +257,7 @@ static void read_main(pbrt_parser *parser, const char *path, const input *in)
     g_autofree char *canonical = g_canonicalize_filename(path, NULL);
     parser->is_v3 = pbrt_v3_recognises(in->data, in->size);
     if (parser->is_v3)
-        log_message(&parser->scene->build.log, LOG_NOTE,
+        log_message(&parser->builder->build.log, LOG_NOTE,
                     "%s: pbrt-v3: its directives are translated to pbrt-v4's", path);
     lexer words = lexer_new(path, in->data, in->size);
     g_ptr_array_add(parser->open_files, canonical);
@@ -266,7 +266,7 @@ static void read_main(pbrt_parser *parser, const char *path, const input *in)
         check_end(parser, lexer_peek(&words).place);
 }
 
-static bool read_pbrt(scene *s, const char *path, GError **error)
+static bool read_pbrt(scene_builder *to, const char *path, GError **error)
 {
     input in;
     GError *inner = NULL;
@@ -275,7 +275,7 @@ static bool read_pbrt(scene *s, const char *path, GError **error)
         return false;
     }
     pbrt_parser parser;
-    parser_init(&parser, s, path);
+    parser_init(&parser, to, path);
     read_main(&parser, path, &in);
     input_close(&in);
     bool fine = !parser.fatal && parser.errors->len == 0;

@@ -34,7 +34,7 @@ void pbrt_read_file(pbrt_parser *parser, const char *name, source_place place,
     }
     input in;
     GError *inner = NULL, *error = NULL;
-    scene_sources_add(parser->scene->build.sources, path);
+    scene_sources_add(parser->builder->build.sources, path);
     if (!input_open(&in, path, &inner)) {
         error_move_at(&error, place, inner);
         pbrt_report(parser, error);

@@ -87,7 +87,7 @@ static void note(const pbrt_parser *parser, source_place place, const char *form
     va_start(args, format);
     g_autofree char *text = g_strdup_vprintf(format, args);
     va_end(args);
-    log_at(&parser->scene->build.log, LOG_NOTE, place, "%s", text);
+    log_at(&parser->builder->build.log, LOG_NOTE, place, "%s", text);
 }
 
 /** Sets a setting; a refusal is reported at the place. */
@@ -95,7 +95,7 @@ static void set(pbrt_parser *parser, source_place place, const char *name,
                 const char *value)
 {
     g_autoptr(GError) error = NULL;
-    if (!settings_set(&parser->scene->settings, name, value, &error))
+    if (!settings_set(&parser->builder->scene->settings, name, value, &error))
         pbrt_error(parser, place, "%s", error->message);
 }
 
@@ -254,7 +254,8 @@ static void apply_own(pbrt_parser *parser, const sampling *samples)
         if (!row)
             continue;
         set_from_param(parser, params_find(p, q->name));
-        g_autofree char *unread = settings_unread_note(&parser->scene->settings, row);
+        g_autofree char *unread =
+            settings_unread_note(&parser->builder->scene->settings, row);
         if (unread)
             note(parser, q->place, "%s", unread);
     }
@@ -275,7 +276,7 @@ static int apply_depth(pbrt_parser *parser)
 static void apply_sppm(pbrt_parser *parser, const sampling *samples)
 {
     const pending *in = &parser->integrator;
-    const film_settings *film = &parser->scene->film;
+    const film_settings *film = &parser->builder->film;
     int photons = -1;
     float radius = 0.0f; /* automatic, where pbrt would start from 1 */
     GError *error = NULL;
@@ -320,7 +321,7 @@ static void apply_path(pbrt_parser *parser, const path_integrator *kind,
                        const sampling *samples)
 {
     const pending *in = &parser->integrator;
-    const settings *s = &parser->scene->settings;
+    const settings *s = &parser->builder->scene->settings;
     int depth = apply_depth(parser);
     set(parser, in->place, "integrator", kind->integrator);
     if (kind->strategies)

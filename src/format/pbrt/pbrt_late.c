@@ -36,7 +36,7 @@ GPtrArray *pbrt_late_new(void)
 
 static bool is_there(const pbrt_parser *parser, const param *q, const char *name)
 {
-    const build_context *known = &parser->scene->build;
+    const build_context *known = &parser->builder->build;
     if (q->type == PARAM_TEXTURE)
         return g_hash_table_contains(known->float_textures, name) ||
                g_hash_table_contains(known->spectrum_textures, name);
@@ -110,7 +110,7 @@ int pbrt_await_material(pbrt_parser *parser, const char *name, source_place plac
 {
     medium_name awaited = {intern(name), place};
     g_array_append_val(parser->awaited_materials, awaited);
-    return scene_await_material(parser->scene, name);
+    return builder_await_material(parser->builder, name);
 }
 
 void pbrt_check_materials(pbrt_parser *parser)
@@ -118,7 +118,7 @@ void pbrt_check_materials(pbrt_parser *parser)
     for (guint i = 0; i < parser->awaited_materials->len && !pbrt_should_stop(parser);
          i++) {
         const medium_name *m = &g_array_index(parser->awaited_materials, medium_name, i);
-        if (scene_material_is_awaited(parser->scene, m->name))
+        if (builder_material_is_awaited(parser->builder, m->name))
             pbrt_error(parser, m->place, "expected the name of a material, found \"%s\"",
                        m->name);
     }

@@ -125,7 +125,7 @@ void pbrt_flatten_lens(pbrt_parser *parser)
         params_path(c->p, "lensfile", &path, &error) && !path)
         error_at(&error, c->place, "expected \"string lensfile\", found none");
     if (path)
-        scene_sources_add(parser->scene->build.sources, path);
+        scene_sources_add(parser->builder->build.sources, path);
     g_autoptr(GArray) lens =
         error ? NULL
               : spectrum_file_read(path, params_find(c->p, "lensfile")->place, &error);

@@ -13,7 +13,7 @@
 /* Of one that was made, even if it turned out to be none. */
 static bool is_made(const pbrt_parser *parser, const char *name)
 {
-    return scene_find_medium(parser->scene, name) != NO_INDEX ||
+    return builder_find_medium(parser->builder, name) != NO_INDEX ||
            g_hash_table_contains(parser->empty_media, name);
 }
 
@@ -40,11 +40,11 @@ static bool add_medium(pbrt_parser *parser, const char *name, const char *type, 
     GError *error = NULL;
     g_autofree char *kind = g_strdup(type);
     if (parser->is_v3)
-        pbrt_v3_translate(V3_MEDIUM, &kind, p, &parser->scene->build.log, NULL);
-    bool is_empty = lenient_medium(&parser->scene->build, name, kind, p, &error);
+        pbrt_v3_translate(V3_MEDIUM, &kind, p, &parser->builder->build.log, NULL);
+    bool is_empty = lenient_medium(&parser->builder->build, name, kind, p, &error);
     int index = is_empty || error
                     ? NO_INDEX
-                    : scene_add_medium(parser->scene, name, kind, p, &error);
+                    : builder_add_medium(parser->builder, name, kind, p, &error);
     if (error)
         pbrt_report(parser, error);
     return index != NO_INDEX;
@@ -91,7 +91,7 @@ static int find_medium(pbrt_parser *parser, const medium_name *m)
         pbrt_error(parser, m->place,
                    "expected the name of a medium made before it is used, found \"%s\"",
                    m->name);
-    return scene_find_medium(parser->scene, m->name);
+    return builder_find_medium(parser->builder, m->name);
 }
 
 bool pbrt_awaits_media(const pbrt_parser *parser)
@@ -105,7 +105,7 @@ void pbrt_use_media(pbrt_parser *parser, const medium_name *inside,
                     const medium_name *outside)
 {
     int in = find_medium(parser, inside), out = find_medium(parser, outside);
-    scene_set_medium_interface(parser->scene, in, out);
+    builder_set_medium_interface(parser->builder, in, out);
 }
 
 void pbrt_check_media(pbrt_parser *parser)

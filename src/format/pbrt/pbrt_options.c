@@ -20,7 +20,7 @@ static bool keep(pbrt_parser *parser, pending *d, pbrt_v3_target target,
         return false;
     }
     if (parser->is_v3)
-        pbrt_v3_translate(target, &kind, p, &parser->scene->build.log, NULL);
+        pbrt_v3_translate(target, &kind, p, &parser->builder->build.log, NULL);
     g_free(d->kind);
     params_free(d->p);
     *d = (pending){kind, p, at, parser->state.ctm, parser->state.ctm_end};
@@ -105,7 +105,7 @@ bool pbrt_accelerator(pbrt_parser *parser, source_place place)
     else if (!params_known(p, what, kind->idle, NULL, &error))
         pbrt_report(parser, error);
     else
-        log_at(&parser->scene->build.log, LOG_NOTE, at,
+        log_at(&parser->builder->build.log, LOG_NOTE, at,
                "Accelerator '%s': rays are traced by Embree, which needs "
                "no parameters",
                name);
@@ -142,7 +142,7 @@ static void apply_seed(pbrt_parser *parser, const params *p, const param *q)
     int seed = 0;
     if (params_integer(p, "seed", &seed, &error)) {
         g_autofree char *text = g_strdup_printf("%d", seed);
-        if (settings_set(&parser->scene->settings, "seed", text, &error))
+        if (settings_set(&parser->builder->scene->settings, "seed", text, &error))
             return;
         pbrt_error(parser, q->place, "%s", error->message);
         g_error_free(error);
@@ -152,21 +152,21 @@ static void apply_seed(pbrt_parser *parser, const params *p, const param *q)
 }
 
 /* What a boolean option switches; NULL: it is none of these. */
-static bool *switch_of(scene *s, const char *name)
+static bool *switch_of(scene_builder *to, const char *name)
 {
     if (strcmp(name, "disablepixeljitter") == 0)
-        return &s->switches.fixed_pixels;
+        return &to->scene->switches.fixed_pixels;
     if (strcmp(name, "disabletexturefiltering") == 0)
-        return &s->switches.sharp_textures;
+        return &to->scene->switches.sharp_textures;
     if (strcmp(name, "disablewavelengthjitter") == 0)
-        return &s->switches.fixed_wavelengths;
+        return &to->scene->switches.fixed_wavelengths;
     return NULL;
 }
 
 static void apply_acting(pbrt_parser *parser, const params *p, const param *q)
 {
     GError *error = NULL;
-    bool *is_on = switch_of(parser->scene, q->name);
+    bool *is_on = switch_of(parser->builder, q->name);
     if (!is_on)
         apply_seed(parser, p, q);
     else if (!params_bool(p, q->name, is_on, &error))
@@ -180,7 +180,7 @@ static void apply_option(pbrt_parser *parser, const params *p, const param *q)
     if (option && *option->parameters)
         apply_acting(parser, p, q);
     else if (option && *option->idle)
-        log_at(&parser->scene->build.log, LOG_NOTE, q->place,
+        log_at(&parser->builder->build.log, LOG_NOTE, q->place,
                "option '%s' does not change the image", q->name);
     else if (!option || !option->note || !is_off)
         pbrt_error(parser, q->place, "option '%s' is not supported", q->name);
@@ -268,7 +268,7 @@ static const params *given_or_default(pbrt_parser *parser, pending *d, const cha
         d->p = params_new(place, parser->base_directory, parser->state.space);
         d->place = place;
         if (parser->is_v3 && d == &parser->film)
-            pbrt_v3_translate(V3_FILM, &d->kind, d->p, &parser->scene->build.log, NULL);
+            pbrt_v3_translate(V3_FILM, &d->kind, d->p, &parser->builder->build.log, NULL);
     }
     return d->p;
 }
@@ -277,7 +277,7 @@ static void finish_film(pbrt_parser *parser, source_place place)
 {
     GError *error = NULL;
     const params *p = given_or_default(parser, &parser->film, "rgb", place);
-    if (scene_set_film(parser->scene, parser->film.kind, p, &error))
+    if (builder_set_film(parser->builder, parser->film.kind, p, &error))
         pbrt_check_used(parser, p, "Film", parser->film.kind);
     else
         pbrt_report(parser, error);
@@ -288,7 +288,7 @@ static void finish_filter(pbrt_parser *parser, source_place place)
     GError *error = NULL;
     const params *p = given_or_default(parser, &parser->filter,
                                        parser->is_v3 ? "box" : "gaussian", place);
-    if (scene_set_filter(parser->scene, parser->filter.kind, p, &error))
+    if (builder_set_filter(parser->builder, parser->filter.kind, p, &error))
         pbrt_check_used(parser, p, "PixelFilter", parser->filter.kind);
     else
         pbrt_report(parser, error);
@@ -298,7 +298,7 @@ static void move_camera(pbrt_parser *parser, const pending *c)
 {
     motion to_world =
         motion_make(&c->ctm, &c->ctm_end, parser->times[0], parser->times[1]);
-    scene_move_camera(parser->scene, &to_world);
+    builder_move_camera(parser->builder, &to_world);
     pbrt_check_used(parser, c->p, "Camera", c->kind);
 }
 
@@ -308,12 +308,12 @@ static void finish_camera(pbrt_parser *parser, source_place place)
     pending *c = &parser->camera;
     pbrt_use_media(parser, &(medium_name){0}, &parser->around_camera);
     if (!c->kind) {
-        log_at(&parser->scene->build.log, LOG_NOTE, place,
+        log_at(&parser->builder->build.log, LOG_NOTE, place,
                "there is no Camera; pbrt's own looks from the origin along z");
         c->ctm = c->ctm_end = transform_identity();
         given_or_default(parser, c, "perspective", place);
     }
-    if (scene_set_camera(parser->scene, c->kind, c->p, &c->ctm, &error))
+    if (builder_set_camera(parser->builder, c->kind, c->p, &c->ctm, &error))
         move_camera(parser, c);
     else
         pbrt_report(parser, error);

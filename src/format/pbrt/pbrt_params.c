@@ -205,7 +205,7 @@ static bool add_spectrum(pbrt_parser *parser, params *p, const declaration *d,
         return params_add_strings(p, place, PARAM_SPECTRUM_NAME, d->name, names,
                                   strings->len, error);
     g_autofree char *path = g_canonicalize_filename(names[0], parser->base_directory);
-    scene_sources_add(parser->scene->build.sources, path);
+    scene_sources_add(parser->builder->build.sources, path);
     if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
         error_at(error, place,
                  "parameter '%s': expected a spectrum's name or file, found \"%s\"",
@@ -228,7 +228,7 @@ static bool replace_older(pbrt_parser *parser, params *p, const declaration *d)
         return true;
     bool stays =
         parser->is_v3 && older->type == PARAM_TEXTURE && d->type->type != PARAM_TEXTURE;
-    log_at(&parser->scene->build.log, LOG_NOTE, at, "parameter '%s' is given again: %s",
+    log_at(&parser->builder->build.log, LOG_NOTE, at, "parameter '%s' is given again: %s",
            d->name, stays ? "the texture counts" : "the last counts");
     if (!stays)
         params_remove(p, d->name);
@@ -295,7 +295,7 @@ params *pbrt_read_params(pbrt_parser *parser, source_place place)
 {
     g_autoptr(params) p = params_new(place, parser->base_directory, parser->state.space);
     p->to_world = parser->state.ctm;
-    p->log = &parser->scene->build.log;
+    p->log = &parser->builder->build.log;
     p->lets_unknown = parser->is_v3;
     if (!pbrt_read_param_list(parser, p))
         return NULL;

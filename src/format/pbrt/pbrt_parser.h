@@ -24,7 +24,7 @@
 
 #include "format/pbrt/lexer.h"
 #include "format/pbrt/pbrt_v3.h"
-#include "scene/scene.h"
+#include "scene/builder.h"
 
 enum { MAX_ERRORS = 20, MAX_DEPTH = 64, MAX_ATTRIBUTES = 1000 };
 
@@ -108,7 +108,7 @@ typedef struct scratch {
 } scratch;
 
 typedef struct pbrt_parser {
-    scene *scene;
+    scene_builder *builder;
     char *base_directory;  /**< of the main file: relative names start there */
     lexer *words;          /**< of the file being read */
     GPtrArray *open_files; /**< canonical names, for loops of includes */

@@ -45,7 +45,7 @@ void pbrt_warning(const pbrt_parser *parser, source_place place, const char *for
     va_start(args, format);
     g_autofree char *text = g_strdup_vprintf(format, args);
     va_end(args);
-    log_at(&parser->scene->build.log, LOG_WARNING, place, "%s", text);
+    log_at(&parser->builder->build.log, LOG_WARNING, place, "%s", text);
 }
 
 bool pbrt_expected(pbrt_parser *parser, const char *what, const token *found)

@@ -113,13 +113,13 @@ bool pbrt_color_space(pbrt_parser *parser, source_place place)
 static char *new_object_name(pbrt_parser *parser, const char *name, source_place at)
 {
     char *own = g_strdup(name);
-    guint n = parser->scene->objects->len;
-    for (guint i = n + 1; scene_find_object(parser->scene, own) != NO_INDEX; i++) {
+    guint n = parser->builder->scene->objects->len;
+    for (guint i = n + 1; builder_find_object(parser->builder, own) != NO_INDEX; i++) {
         g_free(own);
         own = g_strdup_printf("%s, %u", name, i);
     }
     if (strcmp(own, name) != 0)
-        log_at(&parser->scene->build.log, LOG_NOTE, at,
+        log_at(&parser->builder->build.log, LOG_NOTE, at,
                "pbrt-v3: \"%s\" is given again; what follows has the new one", name);
     g_hash_table_insert(parser->v3_objects, g_strdup(name), (char *)intern(own));
     return own;
@@ -139,7 +139,7 @@ bool pbrt_object_begin(pbrt_parser *parser, source_place place)
     }
     pbrt_attribute_begin(parser, place);
     g_autofree char *own = parser->is_v3 ? new_object_name(parser, name, at) : NULL;
-    parser->object = scene_object_begin(parser->scene, own ? own : name, at, &error);
+    parser->object = builder_object_begin(parser->builder, own ? own : name, at, &error);
     parser->object_place = place;
     if (parser->object == NO_INDEX) {
         pbrt_report(parser, error);
@@ -154,7 +154,7 @@ bool pbrt_object_end(pbrt_parser *parser, source_place place)
         pbrt_error(parser, place, "expected ObjectBegin before ObjectEnd, found none");
         return true;
     }
-    scene_object_end(parser->scene);
+    builder_object_end(parser->builder);
     parser->object = NO_INDEX;
     return pbrt_attribute_end(parser, place);
 }
@@ -163,7 +163,7 @@ static void make_instance(pbrt_parser *parser, const char *name,
                           const directive_arguments *a)
 {
     const char *own = g_hash_table_lookup(parser->v3_objects, name);
-    int object = scene_find_object(parser->scene, own ? own : name);
+    int object = builder_find_object(parser->builder, own ? own : name);
     GError *error = NULL;
     motion to_world = pbrt_motion(parser);
     if (object == NO_INDEX && parser->is_v3)
@@ -172,7 +172,7 @@ static void make_instance(pbrt_parser *parser, const char *name,
         pbrt_error(parser, a->at, "expected the name of an object, found \"%s\"", name);
     else if (pbrt_is_flat(parser))
         pbrt_warning(parser, a->at, "an instance that is flattened is not seen");
-    else if (!scene_add_instance(parser->scene, object, &to_world, a->at, &error))
+    else if (!builder_add_instance(parser->builder, object, &to_world, a->at, &error))
         pbrt_report(parser, error);
 }
 
@@ -184,7 +184,7 @@ bool pbrt_object_instance(pbrt_parser *parser, source_place place)
         return false;
     if (parser->object != NO_INDEX)
         pbrt_error(parser, place, "expected ObjectEnd before ObjectInstance, found none");
-    else if (scene_find_object(parser->scene, name) == NO_INDEX && !parser->is_v3)
+    else if (builder_find_object(parser->builder, name) == NO_INDEX && !parser->is_v3)
         pbrt_wait(parser, LATE_INSTANCE, make_instance, name, &a);
     else
         make_instance(parser, name, &a);

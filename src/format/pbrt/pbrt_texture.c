@@ -10,10 +10,10 @@ void pbrt_make_texture(pbrt_parser *parser, const char *name, bool is_spectrum,
 {
     GError *error = NULL;
     g_autoptr(params) replaced =
-        lenient_texture(&parser->scene->build, &kind, is_spectrum, p, &error);
+        lenient_texture(&parser->builder->build, &kind, is_spectrum, p, &error);
     const params *given = replaced ? replaced : p;
     if (!error &&
-        scene_add_texture(parser->scene, name, kind, is_spectrum, given, &error))
+        builder_add_texture(parser->builder, name, kind, is_spectrum, given, &error))
         pbrt_check_used(parser, given, "texture", kind);
     else
         pbrt_report(parser, error);

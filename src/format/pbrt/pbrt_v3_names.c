@@ -31,9 +31,9 @@ struct v3_name {
 
 static bool is_taken(const pbrt_parser *parser, name_kind kind, const char *name)
 {
-    const build_context *known = &parser->scene->build;
+    const build_context *known = &parser->builder->build;
     if (kind == MATERIAL)
-        return scene_find_material(parser->scene, name) != NO_INDEX ||
+        return builder_find_material(parser->builder, name) != NO_INDEX ||
                g_hash_table_contains(parser->interfaces, name);
     return g_hash_table_contains(
         kind == NUMBER_TEXTURE ? known->float_textures : known->spectrum_textures, name);
@@ -74,7 +74,7 @@ static v3_name *give_name(pbrt_parser *parser, name_kind kind, const char *name,
                    .actual = free_name(parser, kind, name),
                    .before = parser->state.v3_names};
     if (n->actual != n->name)
-        log_at(&parser->scene->build.log, LOG_NOTE, place,
+        log_at(&parser->builder->build.log, LOG_NOTE, place,
                "pbrt-v3: \"%s\" is given again; what follows has the new one", name);
     g_ptr_array_add(parser->v3_names, n);
     parser->state.v3_names = n;
@@ -228,7 +228,7 @@ static bool resolve_texture(pbrt_parser *parser, param *q, bool is_number)
     if (n)
         set_name(q, 0, n->actual);
     else if (twin) {
-        log_at(&parser->scene->build.log, LOG_NOTE, q->place,
+        log_at(&parser->builder->build.log, LOG_NOTE, q->place,
                "pbrt-v3: texture \"%s\" is taken for %s", q->strings[0],
                is_number ? "a number, the mean of its colour" : "a grey");
         set_name(q, 0, twin_of(parser, twin));

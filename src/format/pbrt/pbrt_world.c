@@ -29,7 +29,7 @@ static void translate(pbrt_parser *parser, pbrt_v3_target target, arguments *a)
     if (!parser->is_v3)
         return;
     GError *error = NULL;
-    if (!pbrt_v3_translate(target, &a->kind, a->p, &parser->scene->build.log, &error))
+    if (!pbrt_v3_translate(target, &a->kind, a->p, &parser->builder->build.log, &error))
         pbrt_report(parser, error);
     if (target != V3_TEXTURE) /* which asks what type it is of */
         pbrt_v3_resolve(parser, a->p, true);
@@ -47,10 +47,10 @@ static int add_material(pbrt_parser *parser, const char *name, const char *kind,
     GError *error = NULL;
     int index = NO_INDEX;
     g_autoptr(params) replaced =
-        lenient_material(&parser->scene->build, &kind, p, &error);
+        lenient_material(&parser->builder->build, &kind, p, &error);
     const params *given = replaced ? replaced : p;
     if (!error && !is_interface(kind))
-        index = scene_add_material(parser->scene, name, kind, given, &error);
+        index = builder_add_material(parser->builder, name, kind, given, &error);
     if (error)
         pbrt_report(parser, error);
     else
@@ -64,8 +64,8 @@ static void make_material(pbrt_parser *parser, const char *name, const arguments
     if (add_material(parser, name, a->kind, a->p) != NO_INDEX)
         return;
     g_hash_table_add(parser->interfaces, g_strdup(name));
-    if (scene_material_is_awaited(parser->scene, name))
-        scene_make_interface(parser->scene, name, a->p);
+    if (builder_material_is_awaited(parser->builder, name))
+        builder_make_interface(parser->builder, name, a->p);
 }
 
 /** A material that waits has a name, by which its place in the scene is kept. */
@@ -74,9 +74,9 @@ static void let_material_wait(pbrt_parser *parser, const char *name, arguments *
     g_autofree char *own =
         name ? NULL : g_strdup_printf("material %u of the file", ++parser->n_unnamed);
     const char *by = name ? name : own;
-    int index = scene_find_material(parser->scene, by);
+    int index = builder_find_material(parser->builder, by);
     if (index == NO_INDEX)
-        index = scene_await_material(parser->scene, by);
+        index = builder_await_material(parser->builder, by);
     if (!name)
         parser->state.material = index;
     pbrt_wait(parser, LATE_MATERIAL, make_material, by, a);
@@ -99,7 +99,7 @@ bool pbrt_material(pbrt_parser *parser, source_place place)
 /** True of what is made or waits to be, and of interfaces. */
 static bool is_known_material(const pbrt_parser *parser, const char *name)
 {
-    return scene_find_material(parser->scene, name) != NO_INDEX ||
+    return builder_find_material(parser->builder, name) != NO_INDEX ||
            g_hash_table_contains(parser->interfaces, name);
 }
 
@@ -173,7 +173,7 @@ bool pbrt_named_material(pbrt_parser *parser, source_place place)
         pbrt_await_material(parser, actual, at);
     bool is_none = g_hash_table_contains(parser->interfaces, actual);
     parser->state.material =
-        is_none ? NO_INDEX : scene_find_material(parser->scene, actual);
+        is_none ? NO_INDEX : builder_find_material(parser->builder, actual);
     return true;
 }
 
@@ -230,7 +230,7 @@ bool pbrt_light_source(pbrt_parser *parser, source_place place)
     GError *error = NULL;
     if (pbrt_is_moving(parser))
         pbrt_warning(parser, place, "a light that moves stands still where it starts");
-    if (scene_add_light(parser->scene, a.kind, a.p, &parser->state.ctm, &error))
+    if (builder_add_light(parser->builder, a.kind, a.p, &parser->state.ctm, &error))
         pbrt_check_used(parser, a.p, "light", a.kind);
     else
         pbrt_report(parser, error);
@@ -282,9 +282,9 @@ static bool add_ply(pbrt_parser *parser, const params *p, const shape_place *at,
     source_place named = params_find(p, "filename")->place;
     g_autoptr(GError) inner = NULL;
     mesh m = {0};
-    scene_sources_add(parser->scene->build.sources, path);
+    scene_sources_add(parser->builder->build.sources, path);
     if (ply_read(path, &m, &inner))
-        return scene_add_mesh(parser->scene, &m, at, named, error);
+        return builder_add_mesh(parser->builder, &m, at, named, error);
     error_move_at(error, named, g_steal_pointer(&inner));
     return false;
 }
@@ -294,7 +294,7 @@ static bool add_still_shape(pbrt_parser *parser, const arguments *a,
 {
     bool is_ply = strcmp(a->kind, "plymesh") == 0;
     return is_ply ? add_ply(parser, a->p, at, error)
-                  : scene_add_shape(parser->scene, a->kind, a->p, at, error);
+                  : builder_add_shape(parser->builder, a->kind, a->p, at, error);
 }
 
 /** A shape that moves is an object with one instance. */
@@ -303,14 +303,14 @@ static bool add_made_shape(pbrt_parser *parser, const arguments *a, shape_place 
 {
     if (!pbrt_is_moving(parser))
         return add_still_shape(parser, a, at, error);
-    int object = scene_object_begin(parser->scene, NULL, a->at, error);
+    int object = builder_object_begin(parser->builder, NULL, a->at, error);
     if (object == NO_INDEX)
         return false;
     motion to_world = pbrt_motion(parser);
     at->to_world = transform_identity();
     bool done = add_still_shape(parser, a, at, error);
-    scene_object_end(parser->scene);
-    return done && scene_add_instance(parser->scene, object, &to_world, a->at, error);
+    builder_object_end(parser->builder);
+    return done && builder_add_instance(parser->builder, object, &to_world, a->at, error);
 }
 
 /** True of what can not be flattened; as in pbrt it is not seen then. */
@@ -336,7 +336,7 @@ static void make_shape(pbrt_parser *parser, const char *name, const arguments *a
                       .material = current_material(parser, a->at),
                       .area_light = parser->state.area_light};
     GError *error = NULL;
-    if (lenient_shape(&parser->scene->build, a->kind, a->p, &error))
+    if (lenient_shape(&parser->builder->build, a->kind, a->p, &error))
         return;
     if (error) {
         pbrt_report(parser, error);
@@ -345,7 +345,7 @@ static void make_shape(pbrt_parser *parser, const char *name, const arguments *a
     bool seen = true;
     float_input alpha;
     if (!params_bool(a->p, "camera_visible", &seen, &error) ||
-        !float_input_init(&alpha, &parser->scene->build, a->p, "alpha", 1.0f, &error)) {
+        !float_input_init(&alpha, &parser->builder->build, a->p, "alpha", 1.0f, &error)) {
         pbrt_report(parser, error);
         return;
     }

@@ -9,17 +9,17 @@
 
 #include <string.h>
 
-static bool read_ply_scene(scene *s, const char *path, GError **error)
+static bool read_ply_scene(scene_builder *to, const char *path, GError **error)
 {
     mesh m = {0};
     source_place place = {intern(path), 0, 0};
     g_autoptr(params) p = params_new(place, "/", color_space_srgb());
     shape_place at = {.to_world = transform_identity()};
     give_triple(p, PARAM_RGB, "reflectance", 0.6, 0.6, 0.6);
-    at.material = scene_add_material(s, NULL, "diffuse", p, error);
+    at.material = builder_add_material(to, NULL, "diffuse", p, error);
     return at.material != NO_INDEX && ply_read(path, &m, error) &&
-           scene_add_mesh(s, &m, &at, place, error) &&
-           scene_complete(s, path, vec3_make(0.0f, 1.0f, 0.0f), true, error);
+           builder_add_mesh(to, &m, &at, place, error) &&
+           scene_complete(to, path, vec3_make(0.0f, 1.0f, 0.0f), true, error);
 }
 
 static bool is_ply(const char *bytes, size_t size)
