@@ -2,7 +2,7 @@
  * OBJ, STL, 3MF, Collada and FBX: what nephroid-import told of a file, as our meshes,
  * materials, lights and camera.
  *
- *   file ─► importer (a child) ─► bytes ─► model (checked) ─► scene_add_*
+ *   file ─► importer (a child) ─► bytes ─► model (checked) ─► builder_add_*
  *
  * Wavefront's files say nothing of units or of which way is up; metres and +y are taken,
  * and +z for formats of machines that cut and print.
