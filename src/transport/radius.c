@@ -76,7 +76,8 @@ static float radius_by(const void *data, vec3 p, float distance, photon_hits *hi
 }
 
 /* The median over the places where the camera looks or, for caustics and in media, where
-   photons are. */
+   photons are. Where there are too few to tell, light that is smooth is faint, and its
+   radius as wide as may be; a caustic may be sharp all the same. */
 static double typical_radius(const pilot *p, bool at_photons, const photon_map *map,
                              const radius_rule *rule)
 {
@@ -93,7 +94,9 @@ static double typical_radius(const pilot *p, bool at_photons, const photon_map *
             radii[n++] = radius_by(rule, at, d, &hits);
     }
     photon_hits_clear(&hits);
-    return n > 0 ? (double)median(radii, n) : 0.2 * rule->largest;
+    return n > 0        ? (double)median(radii, n)
+           : at_photons ? 0.2 * rule->largest
+                        : rule->largest;
 }
 
 static photon_map *map_of_pixels(const pilot *p, GError **error)
