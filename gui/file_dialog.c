@@ -56,3 +56,13 @@ void file_dialog_ask(GtkWindow *parent, const file_question *question,
     g_signal_connect_data(dialog, "response", G_CALLBACK(answered), w, free_waiting, 0);
     gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
 }
+
+char **file_patterns(const char *const *extensions)
+{
+    g_autoptr(GStrvBuilder) patterns = g_strv_builder_new();
+    for (const char *const *e = extensions; *e; e++) {
+        g_autofree char *pattern = g_strconcat("*", *e, NULL);
+        g_strv_builder_add(patterns, pattern);
+    }
+    return g_strv_builder_end(patterns);
+}

@@ -16,6 +16,9 @@ typedef struct file_question {
     const char *const *patterns; /**< theirs, NULL-terminated */
 } file_question;
 
+/** @brief "*.exr" of ".exr" and so on. Owned by the caller. */
+char **file_patterns(const char *const *extensions);
+
 /** @brief Asks, and calls chosen with a path if there is one. data must live as long as
  * the window. */
 void file_dialog_ask(GtkWindow *parent, const file_question *question,

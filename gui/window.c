@@ -22,12 +22,10 @@ static void file_changed(void *data)
 
 void window_take_file(window *w, const char *path)
 {
-    static const char *const pictures[] = {".exr",  ".png", ".jpg",
-                                           ".jpeg", ".hdr", ".pfm"};
     g_autofree char *lower = g_ascii_strdown(path, -1);
     bool is_picture = false;
-    for (size_t i = 0; i < G_N_ELEMENTS(pictures); i++)
-        is_picture |= g_str_has_suffix(lower, pictures[i]);
+    for (const char *const *e = neph_image_extensions(); *e; e++)
+        is_picture |= g_str_has_suffix(lower, *e);
     if (is_picture && w->scene)
         window_set_reference(w, path);
     else if (is_picture)

@@ -16,12 +16,7 @@ static void open_scene(GSimpleAction *action, GVariant *parameter, void *data)
 {
     (void)action, (void)parameter;
     window *w = data;
-    g_autoptr(GStrvBuilder) patterns = g_strv_builder_new();
-    for (const char *const *e = neph_scene_extensions(); *e; e++) {
-        g_autofree char *pattern = g_strconcat("*", *e, NULL);
-        g_strv_builder_add(patterns, pattern);
-    }
-    g_auto(GStrv) scenes = g_strv_builder_end(patterns);
+    g_auto(GStrv) scenes = file_patterns(neph_scene_extensions());
     g_autofree char *folder = document_folder(w->document);
     const file_question question = {
         "Open a scene", false, NULL, folder, "Scenes", (const char *const *)scenes};

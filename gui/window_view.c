@@ -227,12 +227,12 @@ static void reference_chosen(const char *path, void *data)
 
 void window_ask_reference(void *data)
 {
-    static const char *const images[] = {"*.exr", "*.png", "*.jpg",
-                                         "*.hdr", "*.pfm", NULL};
     window *w = data;
+    g_auto(GStrv) pictures = file_patterns(neph_image_extensions());
     g_autofree char *folder = document_folder(w->document);
     const file_question question = {
-        "A reference to compare with", false, NULL, folder, "Pictures", images};
+        "A reference to compare with", false, NULL, folder, "Pictures",
+        (const char *const *)pictures};
     file_dialog_ask(w->gtk, &question, reference_chosen, w);
 }
 

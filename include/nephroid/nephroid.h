@@ -141,6 +141,8 @@ NEPH_API char *neph_features_describe(void);
 /** @brief What names of scene files end in, with the dot: ".pbrt" and so on;
  * NULL-terminated, static. */
 NEPH_API const char *const *neph_scene_extensions(void);
+/** @brief The same of pictures that are read: ".exr" and so on. */
+NEPH_API const char *const *neph_image_extensions(void);
 /** @brief A loaded scene; immutable but for its size and camera. */
 typedef struct NephScene NephScene;
 /** @brief Loads a scene (pbrt, glTF, OBJ ...). log may be NULL. threads 0 = all. On

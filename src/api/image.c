@@ -7,6 +7,11 @@
 
 #include <string.h>
 
+const char *const *neph_image_extensions(void)
+{
+    return image_extensions();
+}
+
 NephImage *neph_image_wrap(image *img)
 {
     if (!img)

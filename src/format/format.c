@@ -9,8 +9,11 @@
 
 #include <string.h>
 
-static const format_reader *const readers[] = {&pbrt_reader, &gltf_reader, &ply_reader,
-                                               &model_reader};
+static const format_reader *const readers[] = {
+#define FORMAT(name) &name##_reader,
+#include "format/format.def"
+#undef FORMAT
+};
 
 /* A format that knows its files by what is in them; what may keep us waiting for bytes is
  * not asked. */

@@ -1,5 +1,5 @@
 /*
- * What a file format must do; one row each in format.c's table.
+ * What a file format must do; a line of format.def each.
  */
 #pragma once
 
@@ -14,7 +14,6 @@ typedef struct format_reader {
     bool (*read)(scene_builder *to, const char *path, GError **error);
 } format_reader;
 
-extern const format_reader pbrt_reader;
-extern const format_reader gltf_reader;
-extern const format_reader ply_reader;
-extern const format_reader model_reader;
+#define FORMAT(name) extern const format_reader name##_reader;
+#include "format/format.def"
+#undef FORMAT

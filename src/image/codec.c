@@ -11,8 +11,9 @@
 #include <string.h>
 
 static const image_codec *const codecs[] = {
-    &codec_exr, &codec_png, &codec_jpeg, &codec_hdr,
-    &codec_pfm, &codec_bmp, &codec_tga, /* has no mark of its own */
+#define CODEC(name, file) &codec_##name,
+#include "image/codec.def"
+#undef CODEC
 };
 
 const char *const rgba_names[4] = {"R", "G", "B", "A"};
@@ -101,15 +102,23 @@ static void name_file(const char *path, GError **error)
         g_prefix_error(error, "%s: ", path);
 }
 
+/* "OpenEXR, PNG, ..." */
+static char *names_of_codecs(void)
+{
+    GString *all = g_string_new(NULL);
+    for (size_t i = 0; i < G_N_ELEMENTS(codecs); i++)
+        g_string_append_printf(all, "%s%s", i ? ", " : "", codecs[i]->name);
+    return g_string_free(all, FALSE);
+}
+
 static image *read_source(const image_source *source, const image_read_options *options,
                           GError **error)
 {
     const image_codec *codec = codec_of_content(source);
     if (!codec) {
-        error_set(error, ERROR_INPUT,
-                  "%s: not an image in a format that is known (OpenEXR, PNG, JPEG, "
-                  "Radiance HDR, PFM, BMP, TGA)",
-                  source->path);
+        g_autofree char *known = names_of_codecs();
+        error_set(error, ERROR_INPUT, "%s: not an image in a format that is known (%s)",
+                  source->path, known);
         return NULL;
     }
     image *img = codec->read(source, options, error);
@@ -162,19 +171,45 @@ image *image_read_bytes(const char *name, GBytes *bytes,
     return img;
 }
 
+const char *const *image_extensions(void)
+{
+    static gsize made;
+    static const char *all[32];
+    if (g_once_init_enter(&made)) {
+        size_t n = 0;
+        for (size_t i = 0; i < G_N_ELEMENTS(codecs); i++)
+            for (const char *const *e = codecs[i]->extensions; *e; e++) {
+                g_assert(n + 1 < G_N_ELEMENTS(all));
+                all[n++] = *e;
+            }
+        g_once_init_leave(&made, 1);
+    }
+    return all;
+}
+
 /* ---- writing ---- */
 
-static const image_codec *codec_of_name(const char *path, GError **error)
+/* By the path's end. @param known gets the ends that are written */
+static const image_codec *find_writer(const char *path, GString *known)
 {
     g_autofree char *lower = g_ascii_strdown(path, -1);
     for (size_t i = 0; i < G_N_ELEMENTS(codecs); i++)
-        for (const char *const *e = codecs[i]->extensions; *e; e++)
+        for (const char *const *e = codecs[i]->extensions; *e && codecs[i]->write; e++) {
             if (g_str_has_suffix(lower, *e))
                 return codecs[i];
-    error_set(error, ERROR_INPUT,
-              "%s: an image's name must end in .exr, .png, .jpg, .jpeg, .hdr or .pfm",
-              path);
+            g_string_append_printf(known, "%s%s", known->len ? ", " : "", *e);
+        }
     return NULL;
+}
+
+static const image_codec *codec_of_name(const char *path, GError **error)
+{
+    g_autoptr(GString) known = g_string_new(NULL);
+    const image_codec *found = find_writer(path, known);
+    if (!found)
+        error_set(error, ERROR_INPUT, "%s: an image's name must end in one of %s", path,
+                  known->str);
+    return found;
 }
 
 bool image_can_write(const char *path, GError **error)

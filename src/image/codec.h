@@ -28,17 +28,19 @@ typedef struct image_sink {
 /** @brief One file format. */
 typedef struct image_codec {
     const char *name;              /**< "OpenEXR", for messages */
-    const char *const *extensions; /**< that it writes: ".exr" ..., NULL-terminated */
+    const char *const *extensions; /**< ".exr" ..., NULL-terminated */
     bool (*recognises)(const image_source *source);
     image *(*read)(const image_source *source, const image_read_options *options,
                    GError **error);
-    /** Write failures of the stream need not be noticed: the caller asks ferror. */
+    /** Write failures of the stream need not be noticed: the caller asks ferror. NULL: it
+     * is only read. */
     bool (*write)(const image *img, const image_sink *sink,
                   const image_write_options *options, GError **error);
 } image_codec;
 
-extern const image_codec codec_exr, codec_png, codec_jpeg, codec_hdr, codec_pfm,
-    codec_bmp, codec_tga;
+#define CODEC(name, file) extern const image_codec codec_##name;
+#include "image/codec.def"
+#undef CODEC
 
 /** @brief ERROR_INPUT "path: damaged NAME file: ..." for a file that breaks its format.
  */

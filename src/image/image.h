@@ -78,6 +78,10 @@ image *image_read_bytes(const char *name, GBytes *bytes,
 bool image_write(const image *img, const char *path, const image_write_options *options,
                  GError **error);
 
+/** @brief What names of files that can be read end in, with the dot; NULL-terminated,
+ * static. */
+const char *const *image_extensions(void);
+
 /** @brief About how long image_write would take for the image, s: writes it to memory. */
 double image_write_seconds(const image *img, const char *path);
 

@@ -148,6 +148,7 @@ static image *read_tga(const image_source *source, const image_read_options *opt
     return read_as(&tga, source, width * height, options, error);
 }
 
-static const char *const read_only[] = {NULL};
-const image_codec codec_bmp = {"BMP", read_only, is_bmp, read_bmp, NULL};
-const image_codec codec_tga = {"TGA", read_only, is_tga, read_tga, NULL};
+static const char *const bmp_names[] = {".bmp", NULL};
+static const char *const tga_names[] = {".tga", NULL};
+const image_codec codec_bmp = {"BMP", bmp_names, is_bmp, read_bmp, NULL};
+const image_codec codec_tga = {"TGA", tga_names, is_tga, read_tga, NULL};
