@@ -40,7 +40,7 @@ static const GOptionEntry entries[] = {
     {"every", 0, 0, G_OPTION_ARG_STRING, &given.every,
      "Write the image every N passes, or as 30s every so many seconds", "N|Ns"},
     {"integrator", 0, 0, G_OPTION_ARG_STRING, &given.settings.integrator,
-     "auto, photonmap, path, vcm or sppm", "NAME"},
+     "How light is followed; settings has them all", "NAME"},
     {"threads", 'j', 0, G_OPTION_ARG_STRING, &given.settings.threads,
      "Threads; 0: one per processor", "N"},
     {"seed", 0, 0, G_OPTION_ARG_STRING, &given.settings.seed, "Seed of random numbers",

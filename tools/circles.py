@@ -5,7 +5,7 @@ usage: circles.py BUILD_FOLDER
 
 Read off the object files: a file calls another if it needs a function that the other one
 defines. Data does not count, so the table of a registry may name kinds that call the
-registry. Exits with 1 if there is a circle.
+registry. Speaks TAP; exits with 1 if there is a circle.
 """
 import glob
 import os
@@ -85,10 +85,13 @@ def main():
         sys.exit(f'circles: only {len(graph)} object files in {sys.argv[1]}')
     found = circles(graph)
     for ring in found:
-        print('circle:', ' '.join(ring))
+        print('# circle:', ' '.join(ring))
         for at in ring:
-            print('   ', at, '->', ' '.join(sorted(graph[at] & set(ring))))
-    print(f'{len(graph)} files, {len(found)} circles')
+            print('#    ', at, '->', ' '.join(sorted(graph[at] & set(ring))))
+    print(f'# {len(graph)} files, {len(found)} circles\n1..2')
+    print('not ok' if found else 'ok', '1 /circles/none')
+    planted = circles({'a': {'b'}, 'b': {'c'}, 'c': {'a'}, 'd': {'a'}})
+    print('ok' if planted == [['a', 'b', 'c']] else 'not ok', '2 /circles/planted-fault')
     sys.exit(1 if found else 0)
 
 

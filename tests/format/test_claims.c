@@ -45,7 +45,7 @@ static void load_spectrum(unsigned n, bool from_file, GError **error)
                   WORLD "Material \"diffuse\" \"spectrum reflectance\" [%s]\n", numbers);
     scene_folder f = folder_new(text);
     folder_write(&f, "a.spd", numbers, -1);
-    g_autoptr(scene) s = format_load(f.main, 1, NULL, error);
+    scene_free(format_load(f.main, 1, NULL, error));
     folder_remove(&f);
 }
 
