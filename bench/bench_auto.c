@@ -27,13 +27,13 @@ typedef struct result {
     uint64_t n_photons;
 } result;
 
-static void run_once(const scene *s, integrator_choice integrator, result *best)
+static void run_once(const view *v, integrator_choice integrator, result *best)
 {
-    settings how = s->settings;
+    settings how = v->scene->settings;
     how.integrator = integrator;
     how.passes = PASSES;
     how.threads = 1;
-    g_autoptr(render) r = render_new(s, &how, NULL);
+    g_autoptr(render) r = render_new(v, &how, NULL);
     double start = seconds();
     if (!r || !render_run(r, NULL, NULL, NULL)) {
         fprintf(stderr, "bench_auto: the scene can not be rendered\n");
@@ -47,17 +47,18 @@ static void run_once(const scene *s, integrator_choice integrator, result *best)
 static void bench(const char *path)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(scene) s = format_load(path, 1, NULL, &error);
-    if (!s) {
+    const load_options how = {.threads = 1};
+    g_autoptr(view) v = format_load_view(path, &how, &error);
+    if (!v) {
         fprintf(stderr, "bench_auto: %s\n", error->message);
         exit(3);
     }
-    s->settings.threads = 1;
-    scene_resize(s, WIDTH, HEIGHT);
+    v->owned->settings.threads = 1;
+    view_resize(v, WIDTH, HEIGHT);
     result by_path = {0}, by_auto = {0};
     for (int round = 0; round < ROUNDS; round++) {
-        run_once(s, INTEGRATOR_PATH, &by_path);
-        run_once(s, INTEGRATOR_AUTO, &by_auto);
+        run_once(v, INTEGRATOR_PATH, &by_path);
+        run_once(v, INTEGRATOR_AUTO, &by_auto);
     }
     printf("%s: %llu photons a pass, time %.2f of path\n", path,
            (unsigned long long)by_auto.n_photons, by_auto.time / by_path.time);

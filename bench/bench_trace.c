@@ -161,9 +161,9 @@ static void bench_photons(const scene *s, uint64_t n)
 
 /* ---- Camera paths ---- */
 
-static void bench_camera(const scene *s, const char *name, integrator_choice integrator)
+static void bench_camera(const view *v, const char *name, integrator_choice integrator)
 {
-    settings how = s->settings;
+    settings how = v->scene->settings;
     how.integrator = integrator;
     how.passes = 1;
     how.spp = 1;
@@ -172,7 +172,7 @@ static void bench_camera(const scene *s, const char *name, integrator_choice int
     double best = HUGE_VAL;
     render_statistics st = {0};
     for (int round = 0; round < ROUNDS; round++) {
-        g_autoptr(render) r = render_new(s, &how, NULL);
+        g_autoptr(render) r = render_new(v, &how, NULL);
         double start = seconds();
         if (!r || !render_run(r, NULL, NULL, NULL))
             give_up("the scene can not be rendered");
@@ -188,13 +188,14 @@ static void bench_camera(const scene *s, const char *name, integrator_choice int
 int main(int argc, char **argv)
 {
     uint64_t n = argc > 1 ? strtoull(argv[1], NULL, 10) : 100000;
-    g_autoptr(scene) s = format_load(BENCH_SCENE, 1, NULL, NULL);
-    if (!s)
+    const load_options how = {.threads = 1};
+    g_autoptr(view) v = format_load_view(BENCH_SCENE, &how, NULL);
+    if (!v)
         give_up("no scene " BENCH_SCENE);
-    s->settings.threads = 1;
-    scene_resize(s, 192, 192);
-    bench_photons(s, n);
-    bench_camera(s, "path", INTEGRATOR_PATH);
-    bench_camera(s, "photonmap", INTEGRATOR_PHOTONMAP);
+    v->owned->settings.threads = 1;
+    view_resize(v, 192, 192);
+    bench_photons(v->scene, n);
+    bench_camera(v, "path", INTEGRATOR_PATH);
+    bench_camera(v, "photonmap", INTEGRATOR_PHOTONMAP);
     return 0;
 }

@@ -9,9 +9,6 @@
  */
 #include "api/objects.h"
 
-#include "scene/scene_media.h"
-#include "scene/scene_solids.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -61,7 +58,7 @@ static void right_of(const NephCamera *c, double right[3])
 
 void neph_scene_camera(const NephScene *s, NephCamera *out)
 {
-    const camera *c = &s->scene->camera;
+    const camera *c = &s->view->camera;
     const transform at = camera_at(c, 0.0f);
     double right[3], along;
     out->kind = camera_kind_name(c);
@@ -136,21 +133,19 @@ static bool place(const NephCamera *c, transform *out)
 
 bool neph_scene_set_camera(NephScene *s, const NephCamera *c, GError **error)
 {
-    camera *to = &s->scene->camera;
+    camera *to = &s->view->camera;
     transform to_world;
     if (!check(c, error))
         return false;
     if (!place(c, &to_world))
         return refuse("a direction and another one for up", error);
-    to->to_world = to_world;
-    to->path = motion_still(&to_world);
     if (strcmp(camera_kind_name(to), "spherical") != 0)
         to->half_screen = (float)tan(G_PI / 360.0 * c->fov);
     to->lens_radius = (float)c->lens_radius;
     to->focal_distance = (float)c->focal_distance;
     camera_resize(to, to->width, to->height);
-    scene_find_eye_solids(s->scene);
-    scene_find_eye_medium(s->scene);
+    const motion still = motion_still(&to_world);
+    view_place_camera(s->view, &still);
     return true;
 }
 

@@ -84,14 +84,14 @@ static void count_textures(const scene *s, summary *all)
 
 /* Embree keeps about 90 bytes a triangle; a photon takes 52 bytes and as much again while
  * the map is built; the film some 25 numbers a pixel. */
-static size_t estimate_memory(const scene *s, const summary *all)
+static size_t estimate_memory(const view *v, const summary *all)
 {
     size_t triangles = 0;
     for (guint i = 0; i < all->shapes->len; i++)
         triangles += g_array_index(all->shapes, tally, i).n_triangles;
     return all->geometry_bytes + 90 * triangles +
-           104 * (size_t)settings_photons(&s->settings) +
-           200 * (size_t)s->film.width * (size_t)s->film.height;
+           104 * (size_t)settings_photons(&v->scene->settings) +
+           200 * (size_t)v->film.width * (size_t)v->film.height;
 }
 
 static void count_materials(const scene *s, summary *all)
@@ -116,18 +116,19 @@ static void count_media(const scene *s, summary *all)
     }
 }
 
-static void measure_view(const scene *s, summary *all)
+static void measure_view(const view *v, summary *all)
 {
     for (int axis = 0; axis < 2; axis++) {
-        double low = (double)s->camera.screen[2 * axis];
-        double high = (double)s->camera.screen[2 * axis + 1];
+        double low = (double)v->camera.screen[2 * axis];
+        double high = (double)v->camera.screen[2 * axis + 1];
         all->view_angle[axis] =
             (float)((atan(fabs(high)) + atan(fabs(low))) * (180.0 / G_PI));
     }
 }
 
-static void summary_init(summary *all, const scene *s)
+static void summary_init(summary *all, const view *v)
 {
+    const scene *s = v->scene;
     *all = (summary){.shapes = g_array_new(FALSE, TRUE, sizeof(tally)),
                      .lights = g_array_new(FALSE, TRUE, sizeof(tally)),
                      .materials = g_array_new(FALSE, TRUE, sizeof(tally)),
@@ -138,11 +139,11 @@ static void summary_init(summary *all, const scene *s)
     count_lights(s, all);
     count_materials(s, all);
     count_media(s, all);
-    measure_view(s, all);
+    measure_view(v, all);
     count_textures(s, all);
-    all->warnings = describe_warnings(s);
+    all->warnings = describe_warnings(v);
     all->process_bytes = memory_peak();
-    all->render_bytes = estimate_memory(s, all);
+    all->render_bytes = estimate_memory(v, all);
 }
 
 static void summary_clear(summary *all)
@@ -159,10 +160,10 @@ static void summary_clear(summary *all)
 char *neph_scene_describe(const NephScene *s, bool as_json)
 {
     summary all;
-    summary_init(&all, s->scene);
+    summary_init(&all, s->view);
     all.sources = s->sources;
     char *text =
-        as_json ? describe_as_json(s->scene, &all) : describe_as_text(s->scene, &all);
+        as_json ? describe_as_json(s->view, &all) : describe_as_text(s->view, &all);
     summary_clear(&all);
     return text;
 }

@@ -38,8 +38,8 @@ typedef void (*setting_visitor)(const setting_row *row, const char *value, void 
 void visit_changed_settings(const settings *s, setting_visitor visit, void *data);
 
 /** @brief What is allowed, but seldom meant: char*, owned by the array. */
-GPtrArray *describe_warnings(const scene *s);
+GPtrArray *describe_warnings(const view *v);
 
 /** @brief Both own their result. */
-char *describe_as_json(const scene *s, const summary *all);
-char *describe_as_text(const scene *s, const summary *all);
+char *describe_as_json(const view *v, const summary *all);
+char *describe_as_text(const view *v, const summary *all);

@@ -101,19 +101,20 @@ static void put_files(json *j, const summary *all)
     json_array_end(j);
 }
 
-static void put_camera(json *j, const scene *s, const summary *all)
+static void put_camera(json *j, const view *v, const summary *all)
 {
-    const transform *to_world = &s->camera.to_world;
+    const transform *to_world = &v->camera.to_world;
     vec3 forward = transform_vector(to_world, vec3_make(0.0f, 0.0f, 1.0f));
     json_object_begin(j, "camera");
     put_vec3(j, "position", transform_point(to_world, vec3_make(0.0f, 0.0f, 0.0f)));
     put_vec3(j, "direction", normalize3(forward));
     json_floats(j, "view_angle", all->view_angle, 2);
-    json_float(j, "lens_radius", s->camera.lens_radius);
-    if (s->camera.lens_radius > 0.0f)
-        json_float(j, "focal_distance", s->camera.focal_distance);
-    if (s->camera.media.participating)
-        json_string(j, "medium", scene_medium(s, s->camera.media.participating)->name);
+    json_float(j, "lens_radius", v->camera.lens_radius);
+    if (v->camera.lens_radius > 0.0f)
+        json_float(j, "focal_distance", v->camera.focal_distance);
+    if (v->camera.media.participating)
+        json_string(j, "medium",
+                    scene_medium(v->scene, v->camera.media.participating)->name);
     json_object_end(j);
 }
 
@@ -134,17 +135,18 @@ static void put_setting(const setting_row *row, const char *value, void *data)
     json_string(data, row->name, value);
 }
 
-char *describe_as_json(const scene *s, const summary *all)
+char *describe_as_json(const view *v, const summary *all)
 {
+    const scene *s = v->scene;
     json j = {0};
     json_object_begin(&j, NULL);
     put_shapes(&j, s, all);
     put_lights(&j, all);
     put_materials(&j, all);
     put_media(&j, all);
-    put_camera(&j, s, all);
-    put_film(&j, &s->film);
-    json_string(&j, "filter", s->filter.name);
+    put_camera(&j, v, all);
+    put_film(&j, &v->film);
+    json_string(&j, "filter", v->filter.name);
     json_object_begin(&j, "settings");
     visit_changed_settings(&s->settings, put_setting, &j);
     json_object_end(&j);

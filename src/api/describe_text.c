@@ -90,31 +90,31 @@ static void put_media(GString *out, const scene *s, const summary *all)
     }
 }
 
-static void put_camera(GString *out, const scene *s, const summary *all)
+static void put_camera(GString *out, const view *v, const summary *all)
 {
-    const transform *to_world = &s->camera.to_world;
+    const transform *to_world = &v->camera.to_world;
     vec3 forward = transform_vector(to_world, vec3_make(0.0f, 0.0f, 1.0f));
     g_string_append(out, "camera\n");
     put_vec3(out, "at", transform_point(to_world, vec3_make(0.0f, 0.0f, 0.0f)));
     put_vec3(out, "toward", normalize3(forward));
     g_string_append_printf(out, "  %-14s %.4g x %.4g degrees\n", "sees",
                            (double)all->view_angle[0], (double)all->view_angle[1]);
-    if (s->camera.lens_radius > 0.0f)
+    if (v->camera.lens_radius > 0.0f)
         g_string_append_printf(out, "  %-14s radius %g m, in focus at %g m\n", "lens",
-                               (double)s->camera.lens_radius,
-                               (double)s->camera.focal_distance);
+                               (double)v->camera.lens_radius,
+                               (double)v->camera.focal_distance);
     else
         g_string_append_printf(out, "  %-14s pinhole\n", "lens");
-    const medium *in = scene_medium(s, s->camera.media.participating);
+    const medium *in = scene_medium(v->scene, v->camera.media.participating);
     if (in) {
         put_name(out, "  in medium      ", in->name);
         g_string_append_c(out, '\n');
     }
 }
 
-static void put_film(GString *out, const scene *s)
+static void put_film(GString *out, const view *v)
 {
-    const film_settings *film = &s->film;
+    const film_settings *film = &v->film;
     g_string_append_printf(out, "film             %d x %d pixels, %s, ISO %g\n",
                            film->width, film->height, color_space_name(film->space),
                            (double)film->iso);
@@ -125,8 +125,8 @@ static void put_film(GString *out, const scene *s)
                                (double)crop[3]);
     put_name(out, "  file           ", film->filename ? film->filename : "not named");
     g_string_append_printf(out, "\n  %-14s %s, %g x %g pixels\n", "filter",
-                           s->filter.name, 2.0 * (double)s->filter.x_radius,
-                           2.0 * (double)s->filter.y_radius);
+                           v->filter.name, 2.0 * (double)v->filter.x_radius,
+                           2.0 * (double)v->filter.y_radius);
 }
 
 static void put_setting(const setting_row *row, const char *value, void *data)
@@ -169,15 +169,16 @@ static void put_warnings(GString *out, const summary *all)
     }
 }
 
-char *describe_as_text(const scene *s, const summary *all)
+char *describe_as_text(const view *v, const summary *all)
 {
+    const scene *s = v->scene;
     GString *out = g_string_new(NULL);
     put_shapes(out, s, all);
     put_lights(out, s, all);
     put_materials(out, s, all);
     put_media(out, s, all);
-    put_camera(out, s, all);
-    put_film(out, s);
+    put_camera(out, v, all);
+    put_film(out, v);
     g_string_append(out, "settings that differ from the defaults\n");
     gsize before = out->len;
     visit_changed_settings(&s->settings, put_setting, out);

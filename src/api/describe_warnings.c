@@ -17,6 +17,7 @@
 
 typedef struct inspection {
     const scene *scene;
+    const camera *camera;
     GPtrArray *warnings; /* char* */
 } inspection;
 
@@ -184,7 +185,7 @@ static void inspect_lamp(inspection *in, guint i)
     if (around == NO_INDEX)
         return;
     const shape *on = in->scene->shapes->pdata[around];
-    vec3 eye = transform_point(&in->scene->camera.to_world, (vec3){0});
+    vec3 eye = transform_point(&in->camera->to_world, (vec3){0});
     if (!box_holds(on->kind->bounds(on->self), eye))
         warn(in, "light %u (%s) is shut into shape %d, which lets no light out", i,
              l->kind->name, around);
@@ -195,7 +196,7 @@ static void inspect_sky(inspection *in, guint i)
 {
     const wavelengths w = wavelengths_at(0.5f);
     const light *l = in->scene->lights->pdata[i];
-    const vec3 places[] = {transform_point(&in->scene->camera.to_world, (vec3){0}),
+    const vec3 places[] = {transform_point(&in->camera->to_world, (vec3){0}),
                            in->scene->center};
     light_sample seen;
     for (size_t k = 0; k < G_N_ELEMENTS(places); k++)
@@ -220,8 +221,8 @@ static void inspect_lamp_in_medium(inspection *in, guint i)
     const scene *s = in->scene;
     const wavelengths w = wavelengths_at(0.5f);
     const light *l = s->lights->pdata[i];
-    ray r = {.origin = transform_point(&s->camera.to_world, (vec3){0}),
-             .media.participating = s->camera.media.participating};
+    ray r = {.origin = transform_point(&in->camera->to_world, (vec3){0}),
+             .media.participating = in->camera->media.participating};
     light_sample seen;
     if (!scene_has_media(s) ||
         !l->kind->sample(l->self, &w, r.origin, 0.5f, (vec2){0.4f, 0.3f}, &seen) ||
@@ -252,10 +253,10 @@ static void inspect_fog(inspection *in, guint i)
     if (!comes_from_beyond || !s->outer_medium)
         return;
     for (int k = 0; k < N_WAYS; k++) {
-        ray r = {.origin = transform_point(&s->camera.to_world, (vec3){0}),
+        ray r = {.origin = transform_point(&in->camera->to_world, (vec3){0}),
                  .direction = way_out(k),
                  .t_max = INFINITY,
-                 .media.participating = s->camera.media.participating};
+                 .media.participating = in->camera->media.participating};
         if (spectrum_mean(scene_transmittance(s, &r, &w)) > LEAST_LEFT)
             return;
     }
@@ -267,9 +268,10 @@ static void inspect_fog(inspection *in, guint i)
 
 /* ---- All of it ---- */
 
-GPtrArray *describe_warnings(const scene *s)
+GPtrArray *describe_warnings(const view *v)
 {
-    inspection in = {s, g_ptr_array_new_with_free_func(g_free)};
+    const scene *s = v->scene;
+    inspection in = {s, &v->camera, g_ptr_array_new_with_free_func(g_free)};
     unsigned probes = PROBES / MAX(s->shapes->len, 1);
     for (guint i = 0; i < s->shapes->len; i++) {
         inspect_glass(&in, i);

@@ -6,7 +6,7 @@
 #include "image/image.h"
 #include "nephroid/nephroid.h"
 #include "params/sources.h"
-#include "scene/scene.h"
+#include "scene/view.h"
 #include "settings/settings.h"
 
 struct NephSettings {
@@ -14,9 +14,10 @@ struct NephSettings {
 };
 
 struct NephScene {
-    scene *scene;
+    view *view;             /**< the first, or of another's scene ... */
+    const scene *scene;     /**< ... which it sees */
+    bool shares;            /**< the files' list, too, is another's */
     scene_sources *sources; /**< the files that it was read from */
-    bool shares;            /**< what another's scene owns */
     NephLogFunc log;        /**< the caller's, may be NULL; used while a scene is read */
     void *log_data;
 };

@@ -13,7 +13,7 @@ NephPhotons *neph_photons_trace_while(const NephScene *s, const NephSettings *ho
 {
     asking a;
     const cancel_flag *cancel = asking_begin(&a, go_on, data);
-    render_photons *traced = render_trace_photons(s->scene, &how->values, cancel, error);
+    render_photons *traced = render_trace_photons(s->view, &how->values, cancel, error);
     if (!traced)
         return NULL;
     NephPhotons *photons = g_new(NephPhotons, 1);
@@ -148,5 +148,5 @@ bool neph_photons_story(const NephScene *s, const NephSettings *how, size_t n,
                         void (*write)(const char *line, void *data), void *data,
                         GError **error)
 {
-    return render_photon_story(s->scene, &how->values, n, write, data, error);
+    return render_photon_story(s->view, &how->values, n, write, data, error);
 }

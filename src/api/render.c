@@ -46,7 +46,7 @@ NephStatistics statistics_export(const render_statistics *from)
 
 NephRender *neph_render_new(const NephScene *s, const NephSettings *how, GError **error)
 {
-    render *made = render_new(s->scene, &how->values, error);
+    render *made = render_new(s->view, &how->values, error);
     if (!made)
         return NULL;
     NephRender *r = g_new0(NephRender, 1);

@@ -37,8 +37,10 @@ NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options
                               .sources = s->sources,
                               .cancel =
                                   asking_begin(&a, options->go_on, options->go_on_data)};
-    s->scene = format_load_with(path, &how, error);
-    if (!s->scene)
+    s->view = format_load_view(path, &how, error);
+    if (s->view)
+        s->scene = s->view->scene;
+    else
         g_clear_pointer(&s, neph_scene_free);
     return s;
 }
@@ -80,19 +82,17 @@ void neph_scene_free(NephScene *s)
 {
     if (!s)
         return;
-    if (s->shares) {
-        g_free(s->scene);
-    } else {
-        scene_free(s->scene);
+    if (!s->shares)
         scene_sources_free(s->sources);
-    }
+    view_free(s->view);
     g_free(s);
 }
 
 NephScene *neph_scene_share(const NephScene *s)
 {
     NephScene *other = g_new(NephScene, 1);
-    *other = (NephScene){.scene = scene_share(s->scene),
+    *other = (NephScene){.view = view_share(s->view),
+                         .scene = s->scene,
                          .sources = s->sources,
                          .shares = true,
                          .log = s->log,
@@ -109,8 +109,8 @@ NephSettings *neph_scene_settings(const NephScene *s)
 
 void neph_scene_size(const NephScene *s, int *width, int *height)
 {
-    *width = s->scene->film.width;
-    *height = s->scene->film.height;
+    *width = s->view->film.width;
+    *height = s->view->film.height;
 }
 
 bool neph_scene_resize(NephScene *s, int width, int height, GError **error)
@@ -120,7 +120,7 @@ bool neph_scene_resize(NephScene *s, int width, int height, GError **error)
                   height, LARGEST_SIDE);
         return false;
     }
-    scene_resize(s->scene, width, height);
+    view_resize(s->view, width, height);
     return true;
 }
 
@@ -131,12 +131,12 @@ const char *const *neph_scene_files(const NephScene *s)
 
 bool neph_scene_says_exposure(const NephScene *s)
 {
-    return !s->scene->film.is_unexposed;
+    return !s->view->film.is_unexposed;
 }
 
 const char *neph_scene_output(const NephScene *s)
 {
-    const char *name = s->scene->film.filename;
+    const char *name = s->view->film.filename;
     const char *slash = name ? strrchr(name, '/') : NULL;
     return slash ? slash + 1 : name;
 }

@@ -18,7 +18,7 @@ bool neph_scene_pick(const NephScene *s, const double origin[3],
         r.direction[i] = (float)direction[i];
     }
     r.direction = normalize3(r.direction);
-    if (!scene_see(s->scene, &r, &hit))
+    if (!view_see(s->view, &r, &hit))
         return false;
     const shape *on = s->scene->shapes->pdata[hit.shape];
     const vec3 n = face_forward(hit.n_geom, -r.direction);

@@ -126,6 +126,13 @@ scene *format_load_with(const char *path, const load_options *options, GError **
     return load(b, path, options->threads, error);
 }
 
+view *format_load_view(const char *path, const load_options *options, GError **error)
+{
+    g_autoptr(scene_builder) b = format_builder(options);
+    scene *s = load(b, path, options->threads, error);
+    return s ? scene_builder_view(b, s) : NULL;
+}
+
 scene *format_load(const char *path, unsigned threads, const log_sink *log,
                    GError **error)
 {

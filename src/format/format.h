@@ -27,6 +27,8 @@ typedef struct load_options {
 scene_builder *format_builder(const load_options *options);
 /** @brief format_load by options. */
 scene *format_load_with(const char *path, const load_options *options, GError **error);
+/** @brief The same with the view that the file describes, to which the scene belongs. */
+view *format_load_view(const char *path, const load_options *options, GError **error);
 /**
  * @brief Reads a scene file and commits the scene.
  * @param threads for the acceleration structure; 0 = all

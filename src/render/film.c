@@ -44,15 +44,15 @@ static bool reserve_image(film *f, GError **error)
     return f->image_size > 0;
 }
 
-bool film_open(film *f, const scene *s, GError **error)
+bool film_open(film *f, const view *v, GError **error)
 {
-    const film_settings *how = &s->film;
+    const film_settings *how = &v->film;
     int x1 = (int)ceilf(how->crop[1] * (float)how->width);
     int y1 = (int)ceilf(how->crop[3] * (float)how->height);
     *f = (film){
         .x0 = (int)ceilf(how->crop[0] * (float)how->width),
         .y0 = (int)ceilf(how->crop[2] * (float)how->height),
-        .scale = scene_imaging_ratio(s),
+        .scale = view_imaging_ratio(v),
         .space = how->space ? how->space : color_space_srgb(),
         .most = how->most,
         .balanced = how->kelvin > 0.0f,
@@ -69,7 +69,7 @@ bool film_open(film *f, const scene *s, GError **error)
     f->pass = big_alloc(n_pixels(f), sizeof *f->pass, "the film", error);
     if (f->pass)
         f->pixels = big_alloc(n_pixels(f), sizeof *f->pixels, "the film", error);
-    return f->pixels && open_groups(f, s, error) && gbuffer_open(f, how, error) &&
+    return f->pixels && open_groups(f, v->scene, error) && gbuffer_open(f, how, error) &&
            reserve_image(f, error);
 }
 

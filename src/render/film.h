@@ -66,7 +66,7 @@ typedef struct film {
     int64_t n_passes;               /**< done */
     int grid;      /**< of the first pass every so manieth pixel is done in
                       both directions; 0: none of these grids is whole */
-    float scale;   /**< the sensor's: scene_imaging_ratio */
+    float scale;   /**< the sensor's: view_imaging_ratio */
     float most;    /**< film_settings.most */
     bool balanced; /**< by this matrix of XYZ */
     double balance[9];
@@ -76,8 +76,8 @@ typedef struct film {
     size_t image_size;          /**< bytes reserved for film_image */
 } film;
 
-/** @brief An empty film for the scene's crop window. */
-bool film_open(film *f, const scene *s, GError **error);
+/** @brief An empty film for the view's crop window. */
+bool film_open(film *f, const view *v, GError **error);
 void film_clear(film *f);
 
 /** @brief What turns a pass' spectra into colours. */

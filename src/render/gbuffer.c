@@ -40,27 +40,27 @@ bool gbuffer_open(film *f, const film_settings *how, GError **error)
 
 /* ---- Samples ---- */
 
-static transform to_camera(const scene *s, float time)
+static transform to_camera(const view *v, float time)
 {
-    transform to_world = camera_at(&s->camera, time);
+    transform to_world = camera_at(&v->camera, time);
     return transform_inverse(&to_world);
 }
 
-void gbuffer_turn(const scene *s, float time, radiance_sample *sample)
+void gbuffer_turn(const view *v, float time, radiance_sample *sample)
 {
-    if (!s->film.in_camera || !(sample->depth > 0.0f))
+    if (!v->film.in_camera || !(sample->depth > 0.0f))
         return;
-    transform t = to_camera(s, time);
+    transform t = to_camera(v, time);
     sample->normal = normalize3(transform_normal(&t, sample->normal));
 }
 
 /* From the place seen to where the ray through the raster position one pixel on meets the
  * plane there; zero if it never does. */
-static vec3 to_next_pixel(const scene *s, const gbuffer_view *view,
+static vec3 to_next_pixel(const view *v, const gbuffer_sample *look,
                           const radiance_sample *sample, vec2 step)
 {
-    vec2 raster = {view->raster.x + step.x, view->raster.y + step.y};
-    ray r = camera_ray(&s->camera, raster, view->u_lens, view->seen_by.time);
+    vec2 raster = {look->raster.x + step.x, look->raster.y + step.y};
+    ray r = camera_ray(&v->camera, raster, look->u_lens, look->seen_by.time);
     vec3 n = sample->n_geom;
     float across = dot3(r.direction, n);
     if (!(fabsf(across) > 1e-6f))
@@ -92,17 +92,17 @@ static void add_colour(surface_sum *sum, const film *f, const film_pass *pass,
     sum->n_samples += 1.0;
 }
 
-void gbuffer_add(surface_sum *sum, const film *f, const scene *s, const film_pass *pass,
-                 const gbuffer_view *view, const radiance_sample *sample)
+void gbuffer_add(surface_sum *sum, const film *f, const view *v, const film_pass *pass,
+                 const gbuffer_sample *look, const radiance_sample *sample)
 {
     if (!f->surfaces || !(sample->depth > 0.0f))
         return;
-    float weight = view->weight;
+    float weight = look->weight;
     vec3 p = sample->p, n = sample->n_geom;
-    vec3 dx = to_next_pixel(s, view, sample, (vec2){1.0f, 0.0f});
-    vec3 dy = to_next_pixel(s, view, sample, (vec2){0.0f, 1.0f});
-    if (s->film.in_camera) {
-        transform t = to_camera(s, view->seen_by.time);
+    vec3 dx = to_next_pixel(v, look, sample, (vec2){1.0f, 0.0f});
+    vec3 dy = to_next_pixel(v, look, sample, (vec2){0.0f, 1.0f});
+    if (v->film.in_camera) {
+        transform t = to_camera(v, look->seen_by.time);
         p = transform_point(&t, p);
         n = normalize3(transform_normal(&t, n));
         dx = transform_vector(&t, dx);
@@ -115,7 +115,7 @@ void gbuffer_add(surface_sum *sum, const film *f, const scene *s, const film_pas
     sum->uv[1] += (double)(sample->uv.y * weight);
     sum->dz[0] += (double)(dx[2] * weight);
     sum->dz[1] += (double)(dy[2] * weight);
-    add_colour(sum, f, pass, sample, view->dimmed);
+    add_colour(sum, f, pass, sample, look->dimmed);
 }
 
 /* ---- Pixels ---- */

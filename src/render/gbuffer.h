@@ -19,23 +19,23 @@
 #include "render/film.h"
 
 /** @brief How a sample was seen. */
-typedef struct gbuffer_view {
+typedef struct gbuffer_sample {
     vec2 raster, u_lens;
     ray seen_by;
     float weight; /**< of the pixel filter */
     float dimmed; /**< what its radiance was scaled by */
-} gbuffer_view;
+} gbuffer_sample;
 
 /** @brief Room for the layers, if the film is a gbuffer. */
 bool gbuffer_open(film *f, const film_settings *how, GError **error);
 
 /** @brief Turns the shading normal into the camera's space if the film asks for it.
  *  @param time of the shutter, 0..1 */
-void gbuffer_turn(const scene *s, float time, radiance_sample *sample);
+void gbuffer_turn(const view *v, float time, radiance_sample *sample);
 
 /** @brief Adds a sample, turned already, to the sums of a pixel. */
-void gbuffer_add(surface_sum *sum, const film *f, const scene *s, const film_pass *pass,
-                 const gbuffer_view *view, const radiance_sample *sample);
+void gbuffer_add(surface_sum *sum, const film *f, const view *v, const film_pass *pass,
+                 const gbuffer_sample *look, const radiance_sample *sample);
 
 /* Called by film.c; nothing if the film is no gbuffer. */
 void gbuffer_put(film *f, int x, int y, const surface_sum *sum);

@@ -63,7 +63,7 @@ static void look_somewhere(size_t begin, size_t end, unsigned thread, void *data
         vec2 u_lens = sampler_2d(&random);
         radiance_sample out = {.groups = NULL};
         ray from_eye =
-            camera_ray(&all->plan->scene->camera, raster, u_lens, sampler_1d(&random));
+            camera_ray(&all->plan->view->camera, raster, u_lens, sampler_1d(&random));
         all->transport->radiance(all->pass, &from_eye, &random, &all->scratch[thread],
                                  &out);
     }
@@ -156,7 +156,7 @@ bool pace_measure(const transport_plan *plan, const film *f, double left,
                   const cancel_flag *cancel, pace_costs *out, GError **error)
 {
     transport_plan *trial = g_aligned_alloc0(1, sizeof *trial, 64);
-    *trial = transport_plan_of(plan->scene, &plan->how);
+    *trial = transport_plan_of(plan->view, &plan->how);
     trial_look look = {
         .transport = transport_find(plan->how.integrator), .plan = trial, .film = f};
     double budget = fmin(TRIAL_SHARE * fmax(left, LEAST_LEFT), TRIAL_SECONDS);

@@ -6,12 +6,12 @@ static const char *const class_names[N_PHOTON_CLASSES] = {"direct", "indirect",
                                                           "caustic"};
 
 /* What a render with these settings plans, and its pass 0. */
-static bool plan_photons(render_photons *p, const scene *s, const settings *how,
+static bool plan_photons(render_photons *p, const view *v, const settings *how,
                          const cancel_flag *cancel, GError **error)
 {
-    p->plan = transport_plan_of(s, how);
+    p->plan = transport_plan_of(v, how);
     p->sender = transport_find(how->integrator)->photons;
-    p->w = scene_wavelengths(s, how, 0);
+    p->w = scene_wavelengths(v->scene, how, 0);
     if (!transport_plan_prepare(&p->plan, cancel, error))
         return false;
     p->pass = p->sender ? p->sender->open(&p->plan, 0) : NULL;
@@ -51,12 +51,12 @@ static void note(render_photons *p, const transport_counts *counts)
     }
 }
 
-render_photons *render_trace_photons(const scene *s, const settings *how,
+render_photons *render_trace_photons(const view *v, const settings *how,
                                      const cancel_flag *cancel, GError **error)
 {
     g_autoptr(render_photons) p = g_aligned_alloc0(1, sizeof *p, 64);
     transport_counts counts = {0};
-    bool ok = plan_photons(p, s, how, cancel, error);
+    bool ok = plan_photons(p, v, how, cancel, error);
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++)
         ok = trace_class(p, (photon_class)c, &counts, cancel, error);
     note(p, &counts);
@@ -266,15 +266,15 @@ static void tell_event(const photon_event *event, void *data)
     st->write(line, st->data);
 }
 
-bool render_photon_story(const scene *s, const settings *how, size_t n,
+bool render_photon_story(const view *v, const settings *how, size_t n,
                          void (*write)(const char *line, void *data), void *data,
                          GError **error)
 {
     g_autoptr(render_photons) p = g_aligned_alloc0(1, sizeof *p, 64);
-    if (!plan_photons(p, s, how, NULL, error))
+    if (!plan_photons(p, v, how, NULL, error))
         return false;
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        story st = {s, &p->w, (photon_class)c, write, data};
+        story st = {v->scene, &p->w, (photon_class)c, write, data};
         for (size_t i = 0; i < MIN(n, n_emitted(p, (photon_class)c)); i++)
             render_photons_tell(p, (photon_class)c, i, tell_event, &st);
     }

@@ -31,7 +31,7 @@ typedef struct render_photons {
 
 /** @brief Traces what a render with these settings would. Owned by the caller.
  * @param cancel may be NULL */
-render_photons *render_trace_photons(const scene *s, const settings *how,
+render_photons *render_trace_photons(const view *v, const settings *how,
                                      const cancel_flag *cancel, GError **error);
 /** @brief Photons of a class, on surfaces and in media. */
 size_t render_photons_count(const render_photons *p, photon_class c);
@@ -47,6 +47,6 @@ void render_photons_free(render_photons *p);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(render_photons, render_photons_free)
 
 /** @brief The story of the first n photons of each class, a line an event. */
-bool render_photon_story(const scene *s, const settings *how, size_t n,
+bool render_photon_story(const view *v, const settings *how, size_t n,
                          void (*write)(const char *line, void *data), void *data,
                          GError **error);

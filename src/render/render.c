@@ -47,17 +47,17 @@ struct render {
     atomic_size_t tiles_done;
 };
 
-render *render_new(const scene *s, const settings *how, GError **error)
+render *render_new(const view *v, const settings *how, GError **error)
 {
     render *r = g_aligned_alloc0(1, sizeof *r, 64);
-    r->plan = transport_plan_of(s, how);
+    r->plan = transport_plan_of(v, how);
     r->transport = transport_find(how->integrator);
     r->n_threads = (unsigned)r->plan.how.threads;
     r->asked = r->plan.how;
     r->statistics.noise = (double)INFINITY;
     bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
     r->statistics.passes_wanted = open_end ? 0 : settings_most_passes(how);
-    if (film_open(&r->film, s, error))
+    if (film_open(&r->film, v, error))
         return r;
     render_free(r);
     return NULL;
@@ -189,13 +189,13 @@ typedef struct pixel_look {
     float time, weight;
 } pixel_look;
 
-static pixel_look look_at(const scene *s, sampler *random)
+static pixel_look look_at(const view *v, sampler *random)
 {
     pixel_look look;
-    look.offset = filter_sample(&s->filter, sampler_2d(random), &look.weight);
+    look.offset = filter_sample(&v->filter, sampler_2d(random), &look.weight);
     look.u_lens = sampler_2d(random);
     look.time = sampler_1d(random);
-    if (s->switches.fixed_pixels)
+    if (v->scene->switches.fixed_pixels)
         look = (pixel_look){{0.0f, 0.0f}, {0.5f, 0.5f}, 0.5f, 1.0f};
     return look;
 }
@@ -219,19 +219,19 @@ static void render_sample(camera_loop *loop, vec2 pixel, sampler *random, unsign
                           pixel_sums *sums, const group_sums *groups)
 {
     render *r = loop->render;
-    const scene *s = r->plan.scene;
-    pixel_look look = look_at(s, random);
+    const view *v = r->plan.view;
+    pixel_look look = look_at(v, random);
     float weight = look.weight;
     vec2 raster = {pixel.x + 0.5f + look.offset.x, pixel.y + 0.5f + look.offset.y};
-    ray from_eye = camera_ray(&s->camera, raster, look.u_lens, look.time);
+    ray from_eye = camera_ray(&v->camera, raster, look.u_lens, look.time);
     radiance_sample sample = {.groups = groups->sample};
     for (size_t k = 0; k < groups->n; k++)
         groups->sample[k] = (spectrum){0};
     find_radiance(loop, &from_eye, random, thread, &sample);
-    gbuffer_turn(s, from_eye.time, &sample);
+    gbuffer_turn(v, from_eye.time, &sample);
     float dimmed = film_add(&sums->film, &loop->film_pass, &sample, weight);
-    const gbuffer_view view = {raster, look.u_lens, from_eye, weight, dimmed};
-    gbuffer_add(&sums->surface, &r->film, s, &loop->film_pass, &view, &sample);
+    const gbuffer_sample seen = {raster, look.u_lens, from_eye, weight, dimmed};
+    gbuffer_add(&sums->surface, &r->film, v, &loop->film_pass, &seen, &sample);
     for (size_t k = 0; k < groups->n; k++)
         groups->sum[k] += weight * dimmed * groups->sample[k];
 }
@@ -240,7 +240,7 @@ static void render_pixel(camera_loop *loop, int x, int y, unsigned thread)
 {
     render *r = loop->render;
     const settings *how = &r->plan.how;
-    uint64_t pixel = (uint64_t)y * (uint64_t)r->plan.scene->film.width + (uint64_t)x;
+    uint64_t pixel = (uint64_t)y * (uint64_t)r->plan.view->film.width + (uint64_t)x;
     uint64_t key = hash_mix((uint64_t)how->seed, hash_mix(pixel, 0x7069786cu));
     pixel_sums sums = {0};
     group_sums groups = groups_of(loop, thread);
@@ -404,8 +404,7 @@ static void add_splats(render *r, const void *pass)
     if (!r->transport->splats)
         return;
     film_pass colors = film_pass_for(&r->film, r->transport->pass_wavelengths(pass));
-    film_add_splats(&r->film, &colors, &r->plan.scene->filter,
-                    r->transport->splats(pass));
+    film_add_splats(&r->film, &colors, &r->plan.view->filter, r->transport->splats(pass));
 }
 
 static void note_pass(render *r, double photons_done)

@@ -7,7 +7,7 @@
 #include "image/image.h"
 #include "photon/photon.h"
 #include "render/plan.h"
-#include "scene/scene.h"
+#include "scene/view.h"
 
 /** @brief Why a render is over. */
 typedef enum render_stop {
@@ -45,8 +45,8 @@ typedef bool (*render_progress)(double fraction, const render_statistics *statis
 
 typedef struct render render;
 
-/** @brief A render of a committed scene, which must outlive it. */
-render *render_new(const scene *s, const settings *how, GError **error);
+/** @brief A render of a view, which must outlive it. */
+render *render_new(const view *v, const settings *how, GError **error);
 void render_free(render *r);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(render, render_free)
 /** @brief Renders the passes that are left. ERROR_CANCELLED when asked to stop: the film

@@ -12,8 +12,8 @@ static void go_behind(ray *r, const surface_hit *hit)
 static bool meet(const scene_traveller *who, const path_segment *path, surface_hit *hit)
 {
     (*who->n_rays)++;
-    return path->from_eye ? scene_see(who->scene, &path->ray, hit)
-                          : scene_intersect(who->scene, &path->ray, hit);
+    return path->eye ? view_see(path->eye, &path->ray, hit)
+                     : scene_intersect(who->scene, &path->ray, hit);
 }
 
 static scene_event cross_medium(const scene_traveller *who, path_segment *path,

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
-#include "scene/scene.h"
+#include "scene/view.h"
 
 /** @brief What a path comes to. */
 typedef enum scene_event {
@@ -28,14 +28,14 @@ typedef struct path_segment {
     ray ray;
     spectrum throughput; /**< of a photon: its flux, W nm⁻¹ */
     int lane;            /**< the wavelength that is left of it, or ALL_LANES */
-    bool from_eye; /**< it has not scattered: shapes that the camera does not see let it
-                      pass */
+    const view *eye;     /**< it has not scattered on its way from there: shapes that the
+                            camera does not see let it pass. NULL: it has, or never was */
 } path_segment;
 
 /** @brief A path that starts at the eye. */
-static inline path_segment path_segment_from_eye(const ray *r)
+static inline path_segment path_segment_from_eye(const view *eye, const ray *r)
 {
-    return (path_segment){*r, spectrum_fill(1.0f), ALL_LANES, true};
+    return (path_segment){*r, spectrum_fill(1.0f), ALL_LANES, eye};
 }
 
 /** @brief Who travels. Functions may be NULL. */

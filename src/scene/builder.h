@@ -2,6 +2,7 @@
  * Building a scene: by calls, in any order, of one thread.
  *
  *   scene_builder_new ─► builder_add_* / builder_set_* ─► scene_builder_commit ─► scene
+ *                                                      └─► scene_builder_view ─► view
  *
  * What only building needs is kept here and dies with the builder: names, files read
  * already, the log, the media and the object that what is added stands in. Everything is
@@ -14,7 +15,7 @@
 #include "params/build_context.h"
 #include "params/sources.h"
 #include "scene/listener.h"
-#include "scene/scene.h"
+#include "scene/view.h"
 
 typedef struct scene_builder {
     scene *scene;               /**< as far as it is built; NULL once it is committed */
@@ -43,6 +44,9 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(scene_builder, scene_builder_free)
  *  @return the scene, owned by the caller; NULL with an error, and the builder is as it
  *  was before */
 scene *scene_builder_commit(scene_builder *b, unsigned threads, GError **error);
+/** @brief The view that was described of the scene that was built; once.
+ * @param s is the view's from here on */
+view *scene_builder_view(scene_builder *b, scene *s);
 
 bool builder_add_texture(scene_builder *b, const char *name, const char *kind,
                          bool is_spectrum, const params *p, GError **error);

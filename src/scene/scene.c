@@ -47,11 +47,6 @@ scene *scene_new(void)
     return s;
 }
 
-scene *scene_share(const scene *s)
-{
-    return g_memdup2(s, sizeof *s); /* size and camera are plain values in it */
-}
-
 void scene_forget_commit(scene *s)
 {
     accel_free(s->accel);
@@ -78,8 +73,6 @@ void scene_free(scene *s)
     g_array_unref(s->instances);
     g_ptr_array_unref(s->media);
     g_ptr_array_unref(s->textures);
-    filter_clear(&s->filter);
-    g_free(s->film.filename);
     g_free(s);
 }
 
@@ -95,30 +88,6 @@ wavelengths scene_wavelengths(const scene *s, const settings *how, uint32_t pass
 wavelengths scene_trial_wavelengths(const scene *s, uint32_t trial)
 {
     return wavelengths_drawn(s->lines, s->lines ? wavelength_offset(0, trial) : 0.5f);
-}
-
-bool scene_see(const scene *s, const ray *r, surface_hit *hit)
-{
-    ray left = *r;
-    while (scene_intersect(s, &left, hit)) {
-        const shape *on = s->shapes->pdata[hit->shape];
-        if (!on->camera_hidden) {
-            hit->t = length3(hit->p - r->origin);
-            hit->footprint = s->switches.sharp_textures
-                                 ? 0.0f
-                                 : s->pixel_width + hit->t * s->pixel_spread;
-            return true;
-        }
-        left = hit_ray(hit, r->direction);
-        left.media = r->media; /* what is not seen absorbs nothing */
-        left.t_max = r->t_max - length3(left.origin - r->origin);
-    }
-    return false;
-}
-
-float scene_imaging_ratio(const scene *s)
-{
-    return s->film.iso / 100.0f * (s->camera.shutter_close - s->camera.shutter_open);
 }
 
 unsigned scene_lobes_around(const scene *s, const surface_hit *hit, const bsdf *b)

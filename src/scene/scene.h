@@ -5,8 +5,6 @@
 #pragma once
 
 #include "accel/accel.h"
-#include "camera/camera.h"
-#include "camera/filter.h"
 #include "light/light.h"
 #include "material/material.h"
 #include "medium/medium.h"
@@ -16,21 +14,6 @@
 #include "texture/texture.h"
 
 #include "math/distribution.h"
-
-/** @brief What the film directive asks for. */
-typedef struct film_settings {
-    int width, height;
-    char *filename; /**< absolute or relative to the working folder, NULL if not given */
-    float iso;      /**< pbrt's sensor speed; radiance is scaled by iso / 100 */
-    bool is_unexposed; /**< the file's format has no words for how bright its picture is
-                          to be */
-    float most;        /**< the largest of X, Y, Z of a sample on the sensor; 0: any */
-    float kelvin;      /**< daylight that is to look white; 0: no white balance */
-    bool gbuffer;      /**< with the layers that pbrt's film of that name has */
-    bool in_camera;    /**< places and normals in camera space */
-    float crop[4];     /**< x0, x1, y0, y1 in 0..1; pixels ceil(crop * size) as in pbrt */
-    const color_space *space;
-} film_settings;
 
 /** @brief What an instance takes: an array that grows holds up to twice what is in it. */
 #define INSTANCE_SIZE (2 * sizeof(instance))
@@ -59,14 +42,10 @@ typedef struct scene {
     GArray *instances;    /**< instance */
     size_t instance_room; /**< as many have their memory reserved */
     float shutter[2];     /**< s, when it opens and closes */
-    camera camera;
-    film_settings film;
-    pixel_filter filter;
     scene_switches switches;
     settings settings; /**< defaults, then what the file asks for */
 
     /* From here on found by the commit. */
-    float pixel_width, pixel_spread; /**< m, and m a metre: how wide a pixel sees */
     accel *accel;
     box3 bounds;  /**< of all shapes */
     vec3 center;  /**< of the bounding sphere */
@@ -95,22 +74,12 @@ wavelengths scene_wavelengths(const scene *s, const settings *how, uint32_t pass
  * have lines that they might miss. */
 wavelengths scene_trial_wavelengths(const scene *s, uint32_t trial);
 
-/** @brief The same committed scene with a size and a camera of its own; all else stays
- * the first one's, which must outlive it. Freed by g_free. */
-scene *scene_share(const scene *s);
 /** @brief An empty one, for a builder. */
 scene *scene_new(void);
 /** @brief Frees all that a commit finds: a builder may go on. */
 void scene_forget_commit(scene *s);
 void scene_free(scene *s);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(scene, scene_free)
-
-/** @brief Another image size; not while rendering. */
-void scene_resize(scene *s, int width, int height);
-
-/** @brief What radiance is multiplied by on the film, as pbrt's sensor does it: iso / 100
- * times the seconds that the shutter is open. */
-float scene_imaging_ratio(const scene *s);
 
 /* ---- Queries ---- */
 
@@ -143,10 +112,6 @@ static inline bool scene_intersect_solid(const scene *s, const ray *r, surface_h
     scene_fill_hit(s, r, hit);
     return true;
 }
-
-/** @brief The same for a ray from the eye: it passes shapes that the camera does not see
- * (camera_visible). */
-bool scene_see(const scene *s, const ray *r, surface_hit *hit);
 
 /** @brief True if something stands on the ray. */
 static inline bool scene_occluded(const scene *s, const ray *r)

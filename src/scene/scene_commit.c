@@ -2,8 +2,7 @@
  * Committing a scene: what only the whole of it can tell is found once and kept, so that
  * queries need only look.
  *
- *   bounds ─► lights, prepared for them ─► acceleration structure ─► groups, width of a
- * pixel, solids
+ *   bounds ─► lights, prepared for them ─► acceleration structure ─► groups, solids
  */
 #include "scene/builder.h"
 
@@ -89,47 +88,13 @@ static void find_light_groups(scene *s)
     s->light_groups = (char **)g_ptr_array_steal(names, NULL);
 }
 
-/* ---- Pixels ---- */
-
-/* By two rays half a pixel apart: with several samples a pixel each has to see no more.
- */
-static void find_pixel_width(scene *s)
-{
-    vec2 middle = {0.5f * (float)s->film.width, 0.5f * (float)s->film.height};
-    ray a = camera_ray(&s->camera, middle, (vec2){0.5f, 0.5f}, 0.5f);
-    middle.x += 0.5f;
-    ray b = camera_ray(&s->camera, middle, (vec2){0.5f, 0.5f}, 0.5f);
-    s->pixel_width = length3(b.origin - a.origin);
-    s->pixel_spread = length3(b.direction - a.direction);
-}
-
-void scene_resize(scene *s, int width, int height)
-{
-    s->film.width = width;
-    s->film.height = height;
-    camera_resize(&s->camera, width, height);
-    find_pixel_width(s);
-}
-
 /* ---- All of it ---- */
 
-/* What the file says of the eye goes over to the scene. */
-static void take_view(scene *s, scene_builder *b)
-{
-    s->camera = b->camera;
-    s->film = b->film;
-    s->filter = b->filter;
-    b->film = film_default();
-    b->filter = (pixel_filter){0};
-}
-
-static void finish(scene *s)
+static void finish(scene *s, const camera *from)
 {
     find_light_groups(s);
-    find_pixel_width(s);
     scene_find_solids(s);
-    scene_find_eye_medium(s);
-    scene_find_outer_medium(s);
+    scene_find_outer_medium(s, from->medium_at, from->medium_there);
 }
 
 scene *scene_builder_commit(scene_builder *b, unsigned threads, GError **error)
@@ -148,8 +113,22 @@ scene *scene_builder_commit(scene_builder *b, unsigned threads, GError **error)
         scene_forget_commit(s);
         return NULL;
     }
-    take_view(s, b);
-    finish(s);
+    finish(s, &b->camera);
     b->scene = NULL;
     return s;
+}
+
+view *scene_builder_view(scene_builder *b, scene *s)
+{
+    view *v = g_new(view, 1);
+    *v = (view){.scene = s,
+                .owned = s,
+                .camera = b->camera,
+                .film = b->film,
+                .filter = b->filter};
+    b->film = film_default();
+    b->filter = (pixel_filter){0};
+    const motion path = v->camera.path;
+    view_place_camera(v, &path);
+    return v;
 }

@@ -12,7 +12,6 @@
  */
 #include "scene/scene_film.h"
 #include "color/balance.h"
-#include "scene/scene.h"
 
 #include <string.h>
 

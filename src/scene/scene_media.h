@@ -8,8 +8,6 @@
 /** @brief The participating medium, as in a medium_stack, at the end of a ray, as changed
  * by the interfaces on it, whatever else stands there. */
 uint32_t scene_medium_behind(const scene *s, ray r);
-/** @brief Finds the medium around all, from the camera's, and where it ends. */
-void scene_find_outer_medium(scene *s);
-/** @brief Finds the medium that the camera is in, after it was moved: the one it was in,
- * as changed by the interfaces on the straight way. */
-void scene_find_eye_medium(scene *s);
+/** @brief Finds the medium around all, from the one at a place (as in a medium_stack),
+ * and where it ends. */
+void scene_find_outer_medium(scene *s, vec3 from, uint32_t there);

@@ -2,7 +2,7 @@
  * The solids of a scene. Only where something absorbs are they followed at all: then
  * clear glass is one too, since it displaces what it stands in.
  *
- * Whether the camera or a lamp is inside a solid is found by leaving: a ray to the
+ * Whether a camera or a lamp is inside a solid is found by leaving: a ray to the
  * outside crosses its surface from behind once more often than from the front.
  */
 #include "scene/scene_solids.h"
@@ -153,23 +153,12 @@ static medium_stack solids_of_light(const scene *s, const light *l)
     return finite3(e.ray.origin) ? scene_solids_at(s, e.ray.origin) : (medium_stack){0};
 }
 
-void scene_find_eye_solids(scene *s)
-{
-    transform at = motion_at(&s->camera.path, (double)s->camera.shutter_open);
-    const transform *to_world = s->camera.path.moves ? &at : &s->camera.to_world;
-    uint32_t participating = s->camera.media.participating;
-    s->camera.media =
-        scene_solids_at(s, transform_point(to_world, vec3_make(0.0f, 0.0f, 0.0f)));
-    s->camera.media.participating = participating;
-}
-
 void scene_find_solids(scene *s)
 {
     s->solids = NULL;
     if (!anything_absorbs(s))
         return;
     rank_solids(s);
-    scene_find_eye_solids(s);
     for (guint i = 0; i < s->lights->len; i++) {
         light *l = s->lights->pdata[i];
         l->solids = solids_of_light(s, l);

@@ -41,9 +41,9 @@ void transport_scratch_clear(transport_scratch *scratch)
     scratch->gathered = NULL;
 }
 
-transport_plan transport_plan_of(const scene *s, const settings *how)
+transport_plan transport_plan_of(const view *v, const settings *how)
 {
-    transport_plan plan = {.scene = s, .how = *how};
+    transport_plan plan = {.scene = v->scene, .view = v, .how = *how};
     plan.how.threads = parallel_threads((unsigned)how->threads);
     return plan;
 }
@@ -52,7 +52,7 @@ bool transport_plan_prepare(transport_plan *plan, const cancel_flag *cancel,
                             GError **error)
 {
     transport_plan_clear(plan);
-    *plan = transport_plan_of(plan->scene, &plan->how);
+    *plan = transport_plan_of(plan->view, &plan->how);
     plan->cancel = cancel;
     return transport_find(plan->how.integrator)->prepare(plan, cancel, error);
 }

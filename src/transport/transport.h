@@ -15,7 +15,7 @@
 #include "photon/estimate.h"
 #include "photon/share.h"
 #include "photon/trace/trace.h"
-#include "scene/scene.h"
+#include "scene/view.h"
 
 /** @brief The layers of the picture. Their sum is the beauty image. */
 typedef enum radiance_layer {
@@ -113,6 +113,7 @@ enum { MOST_PLAN_TRIALS = 4 }; /* size: caustic photons, guide, bright spots, on
  * same on any machine with any number of threads. */
 typedef struct transport_plan {
     const scene *scene;
+    const view *view; /**< of it */
     settings how;
     double work;     /**< asked for, in rays: a first guess */
     double planning; /**< rays that trials cost */
@@ -122,7 +123,7 @@ typedef struct transport_plan {
     size_t n_sight;
     const cancel_flag *cancel; /**< of the render that this is for: once set, passes and
                                   samples end as they are, worth nothing; NULL: never */
-    caustic_casters *casters; /**< owned; NULL: nobody has asked for them yet */
+    caustic_casters *casters;  /**< owned; NULL: nobody has asked for them yet */
     uint64_t
         n_photons[N_PHOTON_CLASSES]; /**< emitted each pass; 0: the class is not needed */
     double radius[N_PHOTON_CLASSES]; /**< of pass 0, m: everywhere, or the median */
@@ -151,7 +152,7 @@ typedef struct transport_plan {
 } transport_plan;
 
 /** @brief A plan in which nothing is decided yet. */
-transport_plan transport_plan_of(const scene *s, const settings *how);
+transport_plan transport_plan_of(const view *v, const settings *how);
 /** @brief Decides all that a render with these settings does alike in every pass; what
  * was decided before is forgotten. Deterministic. */
 bool transport_plan_prepare(transport_plan *plan, const cancel_flag *cancel,

@@ -19,6 +19,7 @@ enum { NEAR = 20 };
 /* What all camera rays share. */
 typedef struct lookout {
     const scene *scene;
+    const view *view;
     wavelengths w;
     bsdf_options options;
 } lookout;
@@ -29,7 +30,7 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
 {
     uint64_t untold = 0;
     const scene_traveller who = {.scene = from->scene, .w = &from->w, .n_rays = &untold};
-    path_segment path = path_segment_from_eye(r);
+    path_segment path = path_segment_from_eye(from->view, r);
     float way = 0.0f;
     for (int bounces = 0; bounces < MAX_BOUNCES; bounces++) {
         surface_hit hit;
@@ -41,7 +42,7 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
         way += length3(hit.p - start);
         scene_bsdf(from->scene, &hit, &from->w, ALL_LANES, &from->options, &b);
         if (b.lobes & LOBE_DIFFUSE) {
-            float area = camera_pixel_area(&from->scene->camera, way);
+            float area = camera_pixel_area(&from->view->camera, way);
             *out = (visible_point){hit.p, sqrtf(area)};
             return true;
         }
@@ -51,15 +52,17 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
                                    TRANSPORT_RADIANCE, &next))
             return false;
         path.ray = hit_ray(&hit, next.wi);
-        path.from_eye = false;
+        path.eye = NULL;
     }
     return false;
 }
 
 size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point *out)
 {
-    const camera *c = &plan->scene->camera;
-    lookout from = {.scene = plan->scene, .w = scene_trial_wavelengths(plan->scene, 0)};
+    const camera *c = &plan->view->camera;
+    lookout from = {.scene = plan->scene,
+                    .view = plan->view,
+                    .w = scene_trial_wavelengths(plan->scene, 0)};
     from.options.deterministic = !plan->how.multiple_samples;
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x6c6f6f6bu);
     size_t found = 0;

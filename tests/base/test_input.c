@@ -137,13 +137,13 @@ static void test_others(void)
     scene_folder f = folder_with_pipe("pipe", &pipe);
     g_autoptr(GError) settings_error = NULL, image_error = NULL, camera_error = NULL;
     settings set = settings_default();
-    NephCamera view = {0};
+    NephCamera look = {0};
     alarm(PATIENCE);
     g_assert_false(settings_load(&set, pipe, &settings_error));
     g_assert_nonnull(strstr(settings_error->message, "which is none"));
     g_assert_null(image_read(pipe, NULL, &image_error));
     g_assert_nonnull(strstr(image_error->message, "which is none"));
-    g_assert_false(neph_camera_save(&view, pipe, &camera_error));
+    g_assert_false(neph_camera_save(&look, pipe, &camera_error));
     g_assert_nonnull(strstr(camera_error->message, "which is none"));
     alarm(0);
     folder_remove(&f);

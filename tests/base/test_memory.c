@@ -260,8 +260,8 @@ static void test_small_things(void)
         const char *path = f.files->pdata[f.files->len - 1];
         GError *error = NULL;
         memory_set_limit(LIMIT * MIB);
-        g_autoptr(scene) s = format_load(path, 1, NULL, &error);
-        g_assert_null(s);
+        g_autoptr(view) v = load_view(path, NULL, &error);
+        g_assert_null(v);
         g_assert_nonnull(strstr(error->message, swarms[i].name));
         assert_refused(error, " for ");
         g_assert_true(is_left(LIMIT * MIB));
@@ -283,12 +283,13 @@ static void test_picture_is_reserved(void)
     scene_folder f = folder_new(picture_scene);
     unsigned n_refused = 0, n_rendered = 0;
     for (size_t limit = 20 * MIB; n_rendered < 3; limit += 4 * MIB) {
-        g_autoptr(scene) s = format_load(f.main, 1, NULL, NULL);
-        g_assert_nonnull(s);
-        settings how = settings_with(s, "integrator=path passes=1 spp=1 threads=1");
+        g_autoptr(view) v = load_view(f.main, NULL, NULL);
+        g_assert_nonnull(v);
+        settings how =
+            settings_with(v->scene, "integrator=path passes=1 spp=1 threads=1");
         GError *error = NULL;
         memory_set_limit(limit);
-        g_autoptr(render) r = render_new(s, &how, &error);
+        g_autoptr(render) r = render_new(v, &how, &error);
         if (r && render_run(r, NULL, NULL, &error)) {
             g_autoptr(image) img = render_image(r, &error);
             g_assert_no_error(error);
@@ -324,13 +325,13 @@ static void test_search_structure(void)
     for (size_t limit = 2 * MIB; !loaded; limit += MIB) {
         GError *error = NULL;
         memory_set_limit(limit);
-        g_autoptr(scene) s = format_load(f.main, 1, NULL, &error);
-        loaded = s != NULL;
+        g_autoptr(view) v = load_view(f.main, NULL, &error);
+        loaded = v != NULL;
         if (!loaded) {
             n_refused += strstr(error->message, "the search structure") != NULL;
             assert_refused(error, f.main);
         }
-        g_clear_pointer(&s, scene_free);
+        g_clear_pointer(&v, view_free);
         g_assert_true(is_left(limit));
     }
     g_assert_cmpuint(n_refused, >, 0);

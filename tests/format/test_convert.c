@@ -22,10 +22,10 @@ static void remove_tree(const char *path)
 static image *picture_of(const char *path)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(scene) s = format_load(path, 1, NULL, &error);
+    g_autoptr(view) v = load_view(path, NULL, &error);
     g_assert_no_error(error);
-    scene_resize(s, 16, 12);
-    return render_with(s, HOW);
+    view_resize(v, 16, 12);
+    return render_with(v, HOW);
 }
 
 static void check_same(const char *in)
@@ -172,19 +172,19 @@ static void append_medium(GString *out, const medium *m)
 static char *media_of(const char *path)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(scene) s = format_load(path, 1, NULL, &error);
+    g_autoptr(view) v = load_view(path, NULL, &error);
     g_assert_no_error(error);
     GString *out = g_string_new(NULL);
-    append_names(out, "camera", s, 0, s->camera.media.participating);
-    for (guint i = 0; i < s->media->len; i++)
-        append_medium(out, s->media->pdata[i]);
-    for (guint i = 0; i < s->shapes->len; i++) {
-        const shape *one = s->shapes->pdata[i];
-        append_names(out, "shape", s, one->media.inside, one->media.outside);
+    append_names(out, "camera", v->scene, 0, v->camera.media.participating);
+    for (guint i = 0; i < v->scene->media->len; i++)
+        append_medium(out, v->scene->media->pdata[i]);
+    for (guint i = 0; i < v->scene->shapes->len; i++) {
+        const shape *one = v->scene->shapes->pdata[i];
+        append_names(out, "shape", v->scene, one->media.inside, one->media.outside);
     }
-    for (guint i = 0; i < s->lights->len; i++)
-        append_names(out, "light", s, scene_light(s, (int)i)->media.inside,
-                     scene_light(s, (int)i)->media.outside);
+    for (guint i = 0; i < v->scene->lights->len; i++)
+        append_names(out, "light", v->scene, scene_light(v->scene, (int)i)->media.inside,
+                     scene_light(v->scene, (int)i)->media.outside);
     return g_string_free(out, FALSE);
 }
 

@@ -185,13 +185,13 @@ static void clear_outcome(outcome *o)
     image_free(o->img);
 }
 
-static char *asked_of(const scene *s)
+static char *asked_of(const view *v)
 {
     size_t n;
     const setting_row *table = settings_table(&n);
-    GString *out = g_string_new(s->film.filename);
+    GString *out = g_string_new(v->film.filename);
     for (size_t i = 0; i < n; i++) {
-        g_autofree char *value = settings_get(&s->settings, &table[i]);
+        g_autofree char *value = settings_get(&v->scene->settings, &table[i]);
         g_string_append_printf(out, " %s=%s", table[i].name, value);
     }
     return g_string_free(out, FALSE);
@@ -202,11 +202,11 @@ static outcome outcome_of(const char *directive, const char *kind, const char *g
     g_autofree char *text = text_of(directive, kind, given);
     g_autoptr(GError) error = NULL;
     g_assert_true(g_file_set_contents(folder.main, text, -1, NULL));
-    g_autoptr(scene) s = format_load(folder.main, 1, NULL, &error);
-    if (!s)
+    g_autoptr(view) v = load_view(folder.main, NULL, &error);
+    if (!v)
         g_error("%s\nof\n%s", error->message, text);
-    outcome out = {.asked = asked_of(s)};
-    out.img = render_with(s, "integrator=path passes=1 spp=4 maxdepth=4");
+    outcome out = {.asked = asked_of(v)};
+    out.img = render_with(v, "integrator=path passes=1 spp=4 maxdepth=4");
     return out;
 }
 
@@ -306,8 +306,8 @@ static void assert_refused(const char *text, const char *word)
     g_autofree char *quoted = g_strdelimit(g_strdup(text), "'", '"');
     g_autoptr(GError) error = NULL;
     g_assert_true(g_file_set_contents(folder.main, quoted, -1, NULL));
-    scene *s = format_load(folder.main, 1, NULL, &error);
-    if (s)
+    view *v = load_view(folder.main, NULL, &error);
+    if (v)
         g_error("accepted, with '%s':\n%s", word, quoted);
     if (!strstr(error->message, word) || !strstr(error->message, "scene.pbrt:"))
         g_error("no '%s' in '%s'", word, error->message);

@@ -78,7 +78,7 @@ static void test_containers(void)
 /* Lamps of 683 cd and 1366 lx; a camera that looks along its -z with y up. */
 static void test_lights_and_camera(void)
 {
-    g_autoptr(scene) s = load(
+    g_autoptr(view) v = load_shown(
         "\"materials\":[{}]," MESH(
             "0") "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":"
                  "\"point\","
@@ -98,7 +98,7 @@ static void test_lights_and_camera(void)
     wavelengths w = wavelengths_at(0.5f);
     light_sample to[3];
     for (int i = 0; i < 3; i++) {
-        const light *l = scene_light(s, i);
+        const light *l = scene_light(v->scene, i);
         g_assert_true(l->kind->sample(l->self, &w, vec3_make(0, 0, 0), 0.5f,
                                       (vec2){0.5f, 0.5f}, &to[i]));
         assert_at(to[i].wi, 0, 0, 1);
@@ -109,11 +109,11 @@ static void test_lights_and_camera(void)
     g_assert_cmpfloat(fabsf(spot / point - 1.0f), <, 1e-3f);
 
     vec2 raster;
-    g_assert_cmpint(s->film.width, ==, 2 * s->film.height);
-    g_assert_true(camera_project(&s->camera, vec3_make(3, 0, 0), &raster));
-    g_assert_cmpfloat(fabsf(raster.x - 0.5f * (float)s->film.width), <, 0.01f);
-    g_assert_true(camera_project(&s->camera, vec3_make(4, 9 * tanf(0.3f), 0), &raster));
-    g_assert_cmpfloat(raster.x, >, 0.5f * (float)s->film.width);
+    g_assert_cmpint(v->film.width, ==, 2 * v->film.height);
+    g_assert_true(camera_project(&v->camera, vec3_make(3, 0, 0), &raster));
+    g_assert_cmpfloat(fabsf(raster.x - 0.5f * (float)v->film.width), <, 0.01f);
+    g_assert_true(camera_project(&v->camera, vec3_make(4, 9 * tanf(0.3f), 0), &raster));
+    g_assert_cmpfloat(raster.x, >, 0.5f * (float)v->film.width);
     g_assert_cmpfloat(fabsf(raster.y), <, 0.1f);
 }
 
@@ -220,22 +220,22 @@ static void test_spot_edges(void)
 static void test_defaults(void)
 {
     notes kept = {g_string_new(NULL)};
-    g_autoptr(scene) s = load("\"materials\":[{}]," MESH("0") NODES, &kept);
+    g_autoptr(view) v = load_shown("\"materials\":[{}]," MESH("0") NODES, &kept);
     g_assert_nonnull(strstr(kept.text->str, "no light in it; a soft sky is added"));
     g_assert_nonnull(strstr(kept.text->str, "no camera in it; one that frames it"));
     for (int k = 0; k < 4; k++) {
         vec2 raster;
         const float *p = tetrahedron.positions + 3 * k;
-        g_assert_true(camera_project(&s->camera, vec3_make(p[0], p[1], p[2]), &raster));
+        g_assert_true(camera_project(&v->camera, vec3_make(p[0], p[1], p[2]), &raster));
         g_assert_cmpfloat(raster.x, >, 0.0f);
-        g_assert_cmpfloat(raster.x, <, (float)s->film.width);
+        g_assert_cmpfloat(raster.x, <, (float)v->film.width);
         g_assert_cmpfloat(raster.y, >, 0.0f);
-        g_assert_cmpfloat(raster.y, <, (float)s->film.height);
+        g_assert_cmpfloat(raster.y, <, (float)v->film.height);
     }
     /* The sky is brighter above than below. */
     wavelengths w = wavelengths_at(0.5f);
-    spectrum up = sky_at(s, vec3_make(0, 1, 0), &w);
-    spectrum down = sky_at(s, vec3_make(0, -1, 0), &w);
+    spectrum up = sky_at(v->scene, vec3_make(0, 1, 0), &w);
+    spectrum down = sky_at(v->scene, vec3_make(0, -1, 0), &w);
     g_assert_cmpfloat(spectrum_mean(up), >, 1.5f * spectrum_mean(down));
     g_string_free(kept.text, TRUE);
 }

@@ -72,7 +72,7 @@ static void write_picture(scene_folder *f, const float texels[12])
     folder_write(f, "t.pfm", pfm, head + 48);
 }
 
-static scene *load(const char *middle, const float texels[12])
+static view *load_shown(const char *middle, const float texels[12])
 {
     g_autofree char *code = g_base64_encode((const guchar *)&data, sizeof data);
     g_autofree char *text =
@@ -86,9 +86,17 @@ static scene *load(const char *middle, const float texels[12])
     folder_write(&f, "a.gltf", text, -1);
     g_autofree char *path = g_build_filename(f.path, "a.gltf", NULL);
     g_autoptr(GError) error = NULL;
-    scene *s = format_load(path, 1, NULL, &error);
+    view *v = load_view(path, NULL, &error);
     g_assert_no_error(error);
     folder_remove(&f);
+    return v;
+}
+
+static scene *load(const char *middle, const float texels[12])
+{
+    view *v = load_shown(middle, texels);
+    scene *s = g_steal_pointer(&v->owned);
+    view_free(v);
     return s;
 }
 
@@ -267,22 +275,23 @@ static void test_glossiness(void)
 /* One mesh shown three times against three meshes shown once each. */
 static void test_instances(void)
 {
-    g_autoptr(scene) shared =
-        load(MATTE("\"roughnessFactor\":1") "\"meshes\":[" PRIMITIVE("") "]," PLACES(
-                 "0", "0", "0"),
-             NULL);
-    g_autoptr(scene) copied =
-        load(MATTE("\"roughnessFactor\":1") "\"meshes\":[" PRIMITIVE("") "," PRIMITIVE(
-                 "") "," PRIMITIVE("") "]," PLACES("0", "1", "2"),
-             NULL);
+    g_autoptr(view) shared_view =
+        load_shown(MATTE("\"roughnessFactor\":1") "\"meshes\":[" PRIMITIVE(
+                       "") "]," PLACES("0", "0", "0"),
+                   NULL);
+    g_autoptr(view) copied_view =
+        load_shown(MATTE("\"roughnessFactor\":1") "\"meshes\":[" PRIMITIVE(
+                       "") "," PRIMITIVE("") "," PRIMITIVE("") "]," PLACES("0", "1", "2"),
+                   NULL);
+    const scene *shared = shared_view->scene, *copied = copied_view->scene;
     g_assert_cmpuint(shared->shapes->len, ==, 1);
     g_assert_cmpuint(shared->instances->len, ==, 3);
     g_assert_cmpuint(copied->shapes->len, ==, 3);
     g_assert_cmpuint(copied->instances->len, ==, 0);
     /* The view that is added frames the same. */
     for (int i = 0; i < 16; i++)
-        g_assert_cmpfloat(fabs(shared->camera.to_world.m[i / 4][i % 4] -
-                               copied->camera.to_world.m[i / 4][i % 4]),
+        g_assert_cmpfloat(fabs(shared_view->camera.to_world.m[i / 4][i % 4] -
+                               copied_view->camera.to_world.m[i / 4][i % 4]),
                           <, 1e-4);
     int met = 0;
     for (int i = 0; i < 400; i++) {

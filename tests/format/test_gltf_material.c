@@ -290,7 +290,7 @@ static void test_single_sided(void)
                          .t_max = INFINITY};
                 surface_hit hit;
                 bsdf b;
-                g_assert_true(scene_see(s, &r, &hit));
+                g_assert_true(scene_intersect(s, &r, &hit));
                 g_assert_cmpfloat(fabsf(hit.t - 0.1f), <, 0.02f);
                 material_bsdf(s->materials->pdata[hit.material], &hit, &w, ALL_LANES,
                               &plain, &b);

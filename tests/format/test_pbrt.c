@@ -95,16 +95,16 @@ static void test_transforms_compose(void)
 
 static void test_camera_stands_at_its_directive(void)
 {
-    g_autoptr(scene) s = scene_of("Scale -1 1 1\nLookAt 1 2 3  1 2 10  0 1 0\n" CAMERA
-                                  "Film \"rgb\" \"integer xresolution\" 30 "
-                                  "\"integer yresolution\" 20\n"
-                                  "Translate 9 9 9\nWorldBegin\n" LIGHT);
-    vec3 eye = transform_point(&s->camera.to_world, vec3_make(0, 0, 0));
-    vec3 right = transform_vector(&s->camera.to_world, vec3_make(1, 0, 0));
+    g_autoptr(view) v = view_of("Scale -1 1 1\nLookAt 1 2 3  1 2 10  0 1 0\n" CAMERA
+                                "Film \"rgb\" \"integer xresolution\" 30 "
+                                "\"integer yresolution\" 20\n"
+                                "Translate 9 9 9\nWorldBegin\n" LIGHT);
+    vec3 eye = transform_point(&v->camera.to_world, vec3_make(0, 0, 0));
+    vec3 right = transform_vector(&v->camera.to_world, vec3_make(1, 0, 0));
     g_assert_true(length3(eye - vec3_make(1, 2, 3)) < 1e-5f);
     g_assert_true(length3(right - vec3_make(-1, 0, 0)) < 1e-5f);
-    g_assert_cmpint(s->camera.width, ==, 30);
-    g_assert_cmpint(s->film.height, ==, 20);
+    g_assert_cmpint(v->camera.width, ==, 30);
+    g_assert_cmpint(v->film.height, ==, 20);
 }
 
 static const char *material_kind_of(const scene *s, guint i)

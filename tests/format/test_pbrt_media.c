@@ -88,10 +88,10 @@ static void check_camera(const char *options, const char *world, const char *see
 {
     g_autofree char *text =
         g_strconcat(MAKE("a") MAKE("b"), options, "WorldBegin\n" LIGHT, world, NULL);
-    g_autoptr(scene) s = scene_of(text);
-    const shape *first = s->shapes->pdata[0];
-    g_autofree char *found = around_of(s, &first->media);
-    const medium *in = scene_medium(s, s->camera.media.participating);
+    g_autoptr(view) v = view_of(text);
+    const shape *first = v->scene->shapes->pdata[0];
+    g_autofree char *found = around_of(v->scene, &first->media);
+    const medium *in = scene_medium(v->scene, v->camera.media.participating);
     g_assert_cmpstr(in ? in->name : "", ==, seen);
     g_assert_cmpstr(found, ==, around);
 }

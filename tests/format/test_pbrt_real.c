@@ -20,19 +20,19 @@ static void keep_line(log_level level, const char *text, void *data)
 
 /* The scene of a text that must be right, and what must be said of it: all lines, each
  * "note:line:column: text" or "warning:..". */
-static scene *read_saying(const char *text, const char *said)
+static view *read_saying(const char *text, const char *said)
 {
     scene_folder f = folder_new(text);
     g_autoptr(GString) lines = g_string_new(NULL);
     g_autoptr(GError) error = NULL;
     const log_sink sink = {keep_line, lines};
-    scene *s = format_load(f.main, 1, &sink, &error);
-    if (!s)
+    view *v = load_view(f.main, &sink, &error);
+    if (!v)
         g_error("%s\nof\n%s", error->message, text);
     if (strcmp(lines->str, said) != 0)
         g_error("of\n%s\nexpected\n%s\nfound\n%s", text, said, lines->str);
     folder_remove(&f);
-    return s;
+    return v;
 }
 
 static const mesh *mesh_at(const scene *s, guint i)
@@ -50,7 +50,7 @@ static void test_flattened_meshes(void)
 #define PRISM                                                                            \
     "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 2 0 0 3 1] \"normal N\" [1 2 4 1 2 4 " \
     "1 2 4]\n"
-    g_autoptr(scene) s = read_saying(
+    g_autoptr(view) v = read_saying(
         WORLD "AttributeBegin Scale 1 0 1\n" PRISM "AttributeEnd\n"
               "AttributeBegin Translate 0 0 5 Rotate 30 1 0 0 Transform [1 0 0 0 0 1 0 "
               "0 1 1 0 0 7 0 0 1]\n" PRISM "AttributeEnd\n"
@@ -58,9 +58,9 @@ static void test_flattened_meshes(void)
               "0 0 1] Scale 3 3 3\n" PRISM "AttributeEnd\n",
         "");
     static const vec3 axes[] = {{0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
-    g_assert_cmpuint(s->shapes->len, ==, 3);
+    g_assert_cmpuint(v->scene->shapes->len, ==, 3);
     for (guint i = 0; i < 3; i++) {
-        const mesh *m = mesh_at(s, i);
+        const mesh *m = mesh_at(v->scene, i);
         for (int k = 0; k < 3; k++) {
             const float *p = m->positions + 3 * k, *n = m->normals + 3 * k;
             vec3 from_first = {p[0] - m->positions[0], p[1] - m->positions[1],
@@ -75,7 +75,7 @@ static void test_flattened_meshes(void)
 /* What is no mesh is not seen then, in pbrt too. */
 static void test_flattened_rest(void)
 {
-    g_autoptr(scene) s =
+    g_autoptr(view) v =
         read_saying(WORLD "ObjectBegin \"o\" Shape \"disk\" ObjectEnd\n"
                           "Scale 0 1 1 Shape \"sphere\"\n"
                           "ObjectInstance \"o\"\n"
@@ -83,13 +83,13 @@ static void test_flattened_rest(void)
                     "warning:6:19: a shape \"sphere\" that is flattened is not seen\n"
                     "warning:7:16: an instance that is flattened is not seen\n"
                     "warning:8:33: a shape \"disk\" that is flattened is not seen\n");
-    g_assert_cmpuint(s->shapes->len, ==, 1);
-    g_assert_cmpuint(s->instances->len, ==, 0);
+    g_assert_cmpuint(v->scene->shapes->len, ==, 1);
+    g_assert_cmpuint(v->scene->instances->len, ==, 0);
 }
 
 static void test_transforms_that_do_nothing(void)
 {
-    g_autoptr(scene) s = read_saying(
+    g_autoptr(view) v = read_saying(
         WORLD "Rotate 30 0 0 0\n"
               "CoordSysTransform \"moon\"\nAttributeEnd\nColorSpace \"cmyk\"\n"
               "Shape \"trianglemesh\" \"point3 P\" [1 2 3 0 1 0 0 0 1]\n",
@@ -98,7 +98,7 @@ static void test_transforms_that_do_nothing(void)
         "warning:7:1: AttributeEnd without an AttributeBegin before it ends nothing\n"
         "warning:8:12: there is no colour space \"cmyk\", but \"srgb\", \"rec2020\", "
         "\"dci-p3\" and \"aces2065-1\"; the one before stays\n");
-    const float *p = mesh_at(s, 0)->positions;
+    const float *p = mesh_at(v->scene, 0)->positions;
     for (int i = 0; i < 3; i++)
         g_assert_cmpfloat(fabsf(p[i] - (float)(i + 1)), <, 1e-6f);
 }
@@ -107,13 +107,13 @@ static void test_transforms_that_do_nothing(void)
 
 static void test_lights_that_can_not_be(void)
 {
-    g_autoptr(scene) s = read_saying(
+    g_autoptr(view) v = read_saying(
         WORLD "ObjectBegin \"lamp\" AreaLightSource \"diffuse\" Shape \"sphere\" "
               "ObjectEnd\nObjectInstance \"lamp\"\n"
               "ActiveTransform EndTime Translate 1 0 0\nLightSource \"point\"\n",
         "warning:5:20: a shape that moves or is part of an object does not shine\n"
         "warning:8:1: a light that moves stands still where it starts\n");
-    g_assert_cmpuint(s->lights->len, ==, 2);
+    g_assert_cmpuint(v->scene->lights->len, ==, 2);
 }
 
 /* ---- Film ---- */
@@ -121,14 +121,14 @@ static void test_lights_that_can_not_be(void)
 /* As pbrt: to a camera's sensor the daylight of 6500 K is white, if nothing is said. */
 static void test_sensors(void)
 {
-    g_autoptr(scene) s = read_saying(
+    g_autoptr(view) v = read_saying(
         "Film \"rgb\" \"string sensor\" \"canon_eos_100d\"\nCamera \"perspective\"\n"
         "WorldBegin\nLightSource \"point\"\n",
         "note:1:12: sensor \"canon_eos_100d\" sees as \"cie1931\" does, in the colours "
         "of "
         "the film\n");
-    g_assert_cmpfloat(fabsf(s->film.kelvin - 6500.0f), <, 1.0f);
-    g_autoptr(scene) told = read_saying(
+    g_assert_cmpfloat(fabsf(v->film.kelvin - 6500.0f), <, 1.0f);
+    g_autoptr(view) told = read_saying(
         "Film \"rgb\" \"string sensor\" \"sony_ilce_9\" \"float whitebalance\" 3200\n"
         "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\n",
         "note:1:12: sensor \"sony_ilce_9\" sees as \"cie1931\" does, in the colours of "
@@ -154,13 +154,13 @@ static void test_warm_white(void)
 
 static void test_spectral_film(void)
 {
-    g_autoptr(scene) s = read_saying(
+    g_autoptr(view) v = read_saying(
         "Film \"spectral\" \"integer xresolution\" 4 \"integer yresolution\" 5 \"integer "
         "nbuckets\" 16 \"float lambdamin\" 400 \"float lambdamax\" 700\n"
         "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\n",
         "note:1:1: film \"spectral\" becomes \"rgb\": the picture has colours and no "
         "spectra\n");
-    g_assert_cmpint(s->film.height, ==, 5);
+    g_assert_cmpint(v->film.height, ==, 5);
 }
 
 /* Beyond the film it is cut off, turned round it is turned back, and of both the window
@@ -182,9 +182,9 @@ static void test_crops(void)
             "Film \"rgb\" \"integer xresolution\" 10 \"integer yresolution\" 10 ",
             films[i].text,
             "\nCamera \"perspective\"\nWorldBegin\nLightSource \"point\"\n", NULL);
-        g_autoptr(scene) s = read_saying(text, films[i].said);
+        g_autoptr(view) v = read_saying(text, films[i].said);
         for (int k = 0; k < 4; k++) /* the pixel that it begins at or ends before */
-            g_assert_cmpfloat(fabsf(ceilf(10 * s->film.crop[k]) / 10 - films[i].crop[k]),
+            g_assert_cmpfloat(fabsf(ceilf(10 * v->film.crop[k]) / 10 - films[i].crop[k]),
                               <, 1e-6f);
     }
 }
@@ -193,11 +193,11 @@ static void test_crops(void)
 
 static void test_no_camera(void)
 {
-    g_autoptr(scene) s = read_saying(
+    g_autoptr(view) v = read_saying(
         "Translate 1 2 3\nWorldBegin\nLightSource \"point\"\n",
         "note:2:1: there is no Camera; pbrt's own looks from the origin along z\n");
-    vec3 eye = transform_point(&s->camera.to_world, vec3_make(0, 0, 0));
-    vec3 ahead = transform_vector(&s->camera.to_world, vec3_make(0, 0, 1));
+    vec3 eye = transform_point(&v->camera.to_world, vec3_make(0, 0, 0));
+    vec3 ahead = transform_vector(&v->camera.to_world, vec3_make(0, 0, 1));
     g_assert_cmpfloat(length3(eye), <, 1e-6f);
     g_assert_cmpfloat(length3(ahead - vec3_make(0, 0, 1)), <, 1e-6f);
 }
@@ -217,16 +217,16 @@ static void test_realistic_camera(void)
     g_autoptr(GString) lines = g_string_new(NULL);
     g_autoptr(GError) error = NULL;
     const log_sink sink = {keep_line, lines};
-    g_autoptr(scene) s = format_load(f.main, 1, &sink, &error);
+    g_autoptr(view) v = load_view(f.main, &sink, &error);
     g_assert_no_error(error);
     const double focal = 1.0 / (0.5 * (1.0 / 50 + 1.0 / 50 - 0.5 * 10 / (1.5 * 2500)));
     g_assert_cmpfloat(fabs(focal - 51.724), <, 1e-3);
-    ray middle = camera_ray(&s->camera, (vec2){4, 3}, (vec2){0.5f, 0.5f}, 0.5f);
-    ray edge = camera_ray(&s->camera, (vec2){4, 0}, (vec2){0.5f, 0.5f}, 0.5f);
+    ray middle = camera_ray(&v->camera, (vec2){4, 3}, (vec2){0.5f, 0.5f}, 0.5f);
+    ray edge = camera_ray(&v->camera, (vec2){4, 0}, (vec2){0.5f, 0.5f}, 0.5f);
     double angle =
         acos((double)dot3(normalize3(middle.direction), normalize3(edge.direction)));
     g_assert_cmpfloat(fabs(tan(angle) - 9 / focal), <, 1e-3);
-    g_assert_cmpfloat(fabs((double)s->film.iso - 100 * G_PI / 4 * 100 / (focal * focal)),
+    g_assert_cmpfloat(fabs((double)v->film.iso - 100 * G_PI / 4 * 100 / (focal * focal)),
                       <, 1e-3);
     g_assert_nonnull(strstr(lines->str, "warning:2:8: camera \"realistic\" becomes"));
     folder_remove(&f);
@@ -245,7 +245,7 @@ static const char *material_of(const scene *s, guint i)
 /* pbrt asks what names mean when all has been read. Places in lists stay. */
 static void test_names_given_later(void)
 {
-    g_autoptr(scene) s = read_saying(
+    g_autoptr(view) v = read_saying(
         WORLD
         "AttributeBegin NamedMaterial \"gold\" Shape \"sphere\" AttributeEnd\n"
         "NamedMaterial \"air\" Shape \"disk\"\n"
@@ -266,13 +266,13 @@ static void test_names_given_later(void)
         "");
     static const char *const want[] = {"conductor", "none",      "diffuse",   "mix",
                                        "none",      "conductor", "conductor", "mix"};
-    g_assert_cmpuint(s->shapes->len, ==, G_N_ELEMENTS(want));
+    g_assert_cmpuint(v->scene->shapes->len, ==, G_N_ELEMENTS(want));
     for (guint i = 0; i < G_N_ELEMENTS(want); i++)
-        g_assert_cmpstr(material_of(s, i), ==, want[i]);
-    g_assert_true(((const shape *)s->shapes->pdata[7])->has_alpha);
-    g_assert_cmpuint(s->instances->len, ==, 1);
-    for (guint i = 0; i < s->materials->len; i++)
-        g_assert_nonnull(s->materials->pdata[i]);
+        g_assert_cmpstr(material_of(v->scene, i), ==, want[i]);
+    g_assert_true(((const shape *)v->scene->shapes->pdata[7])->has_alpha);
+    g_assert_cmpuint(v->scene->instances->len, ==, 1);
+    for (guint i = 0; i < v->scene->materials->len; i++)
+        g_assert_nonnull(v->scene->materials->pdata[i]);
 }
 
 /* The picture is that of the same scene in order. */
@@ -287,8 +287,8 @@ static void test_later_is_the_same(void)
 #define PAINT                                                                            \
     "MakeNamedMaterial \"m\" \"string type\" \"diffuse\" \"texture reflectance\" "       \
     "\"t\"\n"
-    g_autoptr(scene) a = read_saying(SEEN "NamedMaterial \"m\"\n" BALL PAINT CHECKS, "");
-    g_autoptr(scene) b = read_saying(SEEN CHECKS PAINT "NamedMaterial \"m\"\n" BALL, "");
+    g_autoptr(view) a = read_saying(SEEN "NamedMaterial \"m\"\n" BALL PAINT CHECKS, "");
+    g_autoptr(view) b = read_saying(SEEN CHECKS PAINT "NamedMaterial \"m\"\n" BALL, "");
     g_autoptr(image) x = render_with(a, "integrator=path passes=1 spp=1");
     g_autoptr(image) y = render_with(b, "integrator=path passes=1 spp=1");
     assert_same_bits(x, y);
@@ -313,7 +313,7 @@ static void test_bad_normals(void)
     g_autoptr(GString) lines = g_string_new(NULL);
     g_autoptr(GError) error = NULL;
     const log_sink sink = {keep_line, lines};
-    g_autoptr(scene) s = format_load(f.main, 1, &sink, &error);
+    g_autoptr(view) s = load_view(f.main, &sink, &error);
     g_assert_no_error(error);
     g_assert_cmpstr(
         lines->str, ==,
@@ -324,18 +324,18 @@ static void test_bad_normals(void)
              .direction = vec3_make(0, 0, -1),
              .t_max = INFINITY};
     surface_hit hit;
-    g_assert_true(scene_intersect(s, &r, &hit));
+    g_assert_true(scene_intersect(s->scene, &r, &hit));
     g_assert_cmpfloat(fabsf(hit.n[2] - 1), <, 1e-5f);
     folder_remove(&f);
 }
 
 static void test_curve_normals(void)
 {
-    g_autoptr(scene) s = read_saying(
+    g_autoptr(view) v = read_saying(
         WORLD "Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 1 1 0 2 1 0]\n"
               "\"normal N\" [0 0 1 0 0 1] \"float width\" .1 \"integer splitdepth\" 12\n",
         "note:6:1: \"N\" is for curves of type \"ribbon\" only\n");
-    g_assert_cmpuint(s->shapes->len, ==, 1);
+    g_assert_cmpuint(v->scene->shapes->len, ==, 1);
 }
 
 int main(int argc, char **argv)

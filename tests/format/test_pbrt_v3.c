@@ -25,7 +25,7 @@ typedef struct pair {
 
 static void check_alike(const pair *p)
 {
-    g_autoptr(scene) a = scene_of(p->v3), b = scene_of(p->v4);
+    g_autoptr(view) a = view_of(p->v3), b = view_of(p->v4);
     g_autoptr(image) x = render_with(a, HOW), y = render_with(b, HOW);
     g_assert_cmpint(x->width, ==, y->width);
     g_assert_cmpint(x->height, ==, y->height);
@@ -310,9 +310,9 @@ static void test_include_among_parameters(void)
     folder_write(&f, "mesh.pbrt", "\"integer indices\" [0 1 2]\n", -1);
     folder_write(&f, "more.pbrt", "Shape \"sphere\" Shape \"disk\"\n", -1);
     g_autoptr(GError) error = NULL;
-    g_autoptr(scene) s = format_load(f.main, 1, NULL, &error);
+    g_autoptr(view) v = load_view(f.main, NULL, &error);
     g_assert_no_error(error);
-    g_assert_cmpuint(s->shapes->len, ==, 4);
+    g_assert_cmpuint(v->scene->shapes->len, ==, 4);
     folder_remove(&f);
 }
 
@@ -389,9 +389,9 @@ static void test_tinted_pictures(void)
         scene_folder f = folder_new(text);
         folder_write(&f, "a.pfm", pfm->str, (gssize)pfm->len);
         g_autoptr(GError) error = NULL;
-        g_autoptr(scene) s = format_load(f.main, 1, NULL, &error);
+        g_autoptr(view) v = load_view(f.main, NULL, &error);
         g_assert_no_error(error);
-        g_autoptr(image) img = render_with(s, HOW);
+        g_autoptr(image) img = render_with(v, HOW);
         means[i] = mean_of(img, "");
         folder_remove(&f);
     }
@@ -458,15 +458,15 @@ static void test_texture_before_value(void)
 /* Film and integrator where nothing is said, or in v3's words. */
 static void test_settings(void)
 {
-    g_autoptr(scene) s = scene_of(
+    g_autoptr(view) v = view_of(
         LOOK
         "Integrator \"sppm\" \"integer numiterations\" 12 \"integer "
         "photonsperiteration\" 3000 \"float radius\" 0.3 \"integer maxdepth\" 7\n"
         "Sampler \"lowdiscrepancy\" \"integer pixelsamples\" 64 WorldBegin " LAMP FLOOR
         "WorldEnd\n");
-    g_assert_cmpint(s->film.width, ==, 640);
-    g_assert_cmpint((int)s->settings.passes, ==, 12);
-    g_assert_cmpint((int)s->settings.photons, ==, 3000);
+    g_assert_cmpint(v->film.width, ==, 640);
+    g_assert_cmpint((int)v->scene->settings.passes, ==, 12);
+    g_assert_cmpint((int)v->scene->settings.photons, ==, 3000);
 }
 
 static void test_recognised(void)

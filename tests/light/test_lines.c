@@ -77,7 +77,7 @@ static void test_drawn_wavelengths_ascend(void)
 
 /* Two floors far apart, half grey, each a metre below a lamp of its own; two pixels look
    at one each. */
-static scene *two_floors(const char *left, const char *right)
+static view *two_floors(const char *left, const char *right)
 {
     g_autofree char *text = g_strdup_printf(
         "Film \"rgb\" \"integer xresolution\" 2 \"integer yresolution\" 1\n"
@@ -93,15 +93,15 @@ static scene *two_floors(const char *left, const char *right)
         "LightSource \"point\" \"point3 from\" [-10 0 1] %s\n"
         "LightSource \"point\" \"point3 from\" [10 0 1] %s\n",
         left, right);
-    return scene_of(text);
+    return view_of(text);
 }
 
 /* Both lamps have the intensity 1, so both floors look alike: ρ I / π d². */
 static void check_floors(const char *left, const char *right, const char *how,
                          double allowed)
 {
-    g_autoptr(scene) s = two_floors(left, right);
-    g_autoptr(image) img = render_with(s, how);
+    g_autoptr(view) v = two_floors(left, right);
+    g_autoptr(image) img = render_with(v, how);
     for (size_t i = 0; i < 2; i++) {
         double found = luminance_at(img, i) / (0.5 / G_PI) - 1.0;
         g_test_message("%s, pixel %d: %+.4f", how, (int)i, found);
@@ -131,12 +131,12 @@ static void test_smooth_lamps_have_no_lines(void)
                                          "\"rgb I\" [1 0 1]",
                                          "\"spectrum I\" \"stdillum-F1\""};
     for (size_t i = 0; i < G_N_ELEMENTS(smooth); i++) {
-        g_autoptr(scene) s = two_floors(smooth[i], "");
+        g_autoptr(view) v = two_floors(smooth[i], "");
         g_test_message("%s", smooth[i]);
-        g_assert_null(s->lines);
+        g_assert_null(v->scene->lines);
     }
-    g_autoptr(scene) laser = two_floors(LASER, "");
-    g_assert_nonnull(laser->lines);
+    g_autoptr(view) laser = two_floors(LASER, "");
+    g_assert_nonnull(laser->scene->lines);
 }
 
 /* The caustic of a glass ball: photons are sent, though trials see few wavelengths. */
@@ -156,8 +156,8 @@ static void test_lines_cast_caustics(void)
     double found[2];
     for (int i = 0; i < 2; i++) {
         g_autofree char *full = g_strdup_printf(text, i == 0 ? SODIUM : "");
-        g_autoptr(scene) s = scene_of(full);
-        g_autoptr(image) img = render_with(s, "integrator=auto passes=32 spp=16");
+        g_autoptr(view) v = view_of(full);
+        g_autoptr(image) img = render_with(v, "integrator=auto passes=32 spp=16");
         found[i] = 0.0;
         for (size_t k = 0; k < pixels_of(img); k++)
             found[i] += 0.2126 * at(img, k, channel_of(img, "caustic.R")) +

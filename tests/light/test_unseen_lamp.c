@@ -35,11 +35,11 @@ static void test_floor(void)
         {"integrator=vcm vcm_strategies=ppm passes=8 spp=4 photons=160000", 0.08},
     };
     const double expected = 0.5 * 5.0 * 0.25 / (0.25 + 4.0);
-    g_autoptr(scene) s = scene_of(PATCH_CAMERA "WorldBegin\n" LAMP(
+    g_autoptr(view) v = view_of(PATCH_CAMERA "WorldBegin\n" LAMP(
         "\"float alpha\" 0") "Material "
                              "\"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n" FLOOR);
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
-        g_autoptr(image) img = render_with(s, ways[i].way);
+        g_autoptr(image) img = render_with(v, ways[i].way);
         double found = mean_of(img, "");
         g_test_message("%s: %g, expected %g", ways[i].way, found, expected);
         g_assert_cmpfloat(fabs(found / expected - 1.0), <, ways[i].tolerance);
@@ -55,8 +55,8 @@ static void test_mirrors(void)
         g_strconcat(PATCH_CAMERA "WorldBegin\n" LAMP(""), brushed, FLOOR, NULL);
     g_autofree char *unseen_text = g_strconcat(
         PATCH_CAMERA "WorldBegin\n" LAMP("\"float alpha\" 0"), brushed, FLOOR, NULL);
-    g_autoptr(scene) shown = scene_of(shown_text), unseen = scene_of(unseen_text);
-    g_autoptr(scene) mirror = scene_of(PATCH_CAMERA "WorldBegin\n" LAMP(
+    g_autoptr(view) shown = view_of(shown_text), unseen = view_of(unseen_text);
+    g_autoptr(view) mirror = view_of(PATCH_CAMERA "WorldBegin\n" LAMP(
         "\"float alpha\" 0") "Material \"conductor\"\n" FLOOR);
     static const char *const ways[] = {"integrator=path passes=4 spp=64",
                                        "integrator=auto passes=4 spp=64 photons=9999",
@@ -81,8 +81,8 @@ static void test_camera(void)
                                                          "reflectance\" [0.5 0.5 "
                                                          "0.5]\n" FLOOR;
     const double expected = 0.5 * 5.0 * 0.25 / (0.25 + 4.0);
-    g_autoptr(scene) s = scene_of(above);
-    g_autoptr(image) img = render_with(s, "integrator=path passes=4 spp=64");
+    g_autoptr(view) v = view_of(above);
+    g_autoptr(image) img = render_with(v, "integrator=path passes=4 spp=64");
     g_assert_cmpfloat(fabs(mean_of(img, "") / expected - 1.0), <, 0.04);
     g_assert_cmpfloat(mean_of(img, "emission"), <=, 0.0);
 }
@@ -99,7 +99,7 @@ static void test_caustic(void)
     g_autofree char *a = g_strconcat(eye, "WorldBegin\n" LAMP(""), ball, NULL);
     g_autofree char *b =
         g_strconcat(eye, "WorldBegin\n" LAMP("\"float alpha\" 0"), ball, NULL);
-    g_autoptr(scene) shown = scene_of(a), unseen = scene_of(b);
+    g_autoptr(view) shown = view_of(a), unseen = view_of(b);
     static const char *const ways[] = {
         "integrator=auto passes=8 spp=16 photons=20000",
         "integrator=vcm passes=8 spp=16 photons=20000 radius=0.01",

@@ -337,12 +337,12 @@ static void check_stands(const char *text)
         neph_scene_camera(s, &c);
         memcpy(c.position, stands[i].at, sizeof c.position);
         g_assert_true(neph_scene_set_camera(s, &c, &error));
-        uint32_t seen = s->scene->camera.media.participating;
+        uint32_t seen = s->view->camera.media.participating;
         const medium *in = scene_medium(s->scene, seen);
         if (g_strcmp0(in ? in->name : NULL, stands[i].in) != 0)
             g_error("stand %zu: in \"%s\", expected \"%s\"", i, in ? in->name : "",
                     stands[i].in ? stands[i].in : "");
-        const ray r = camera_ray(&s->scene->camera, (vec2){1, 1}, (vec2){.5f, .5f}, 0);
+        const ray r = camera_ray(&s->view->camera, (vec2){1, 1}, (vec2){.5f, .5f}, 0);
         g_assert_true(r.media.participating == seen);
     }
     neph_scene_free(s);
@@ -363,17 +363,17 @@ static void test_eye(void)
 /* In fog without end it stays wherever it goes, but for a bubble. */
 static void test_eye_in_endless_fog(void)
 {
-    g_autoptr(scene) s =
-        scene_of(MEDIA BETWEEN("", "b") "Camera \"perspective\" " BEGIN BETWEEN(
+    g_autoptr(view) v =
+        view_of(MEDIA BETWEEN("", "b") "Camera \"perspective\" " BEGIN BETWEEN(
             "", "b") "Translate 0 0 5 " BALL("1"));
-    uint32_t b = medium_named(s, "b");
+    uint32_t b = medium_named(v->scene, "b");
     static const double z[] = {0, 5, 5.9, 20, 4.1, 3.9, -100};
-    g_assert_true(s->camera.media.participating == b);
+    g_assert_true(v->camera.media.participating == b);
     for (size_t i = 0; i < G_N_ELEMENTS(z); i++) {
-        s->camera.to_world = transform_translate(0, 0, z[i]);
-        s->camera.path = motion_still(&s->camera.to_world);
-        scene_find_eye_medium(s);
-        g_assert_true(s->camera.media.participating == (fabs(z[i] - 5) < 1 ? 0 : b));
+        const transform to_world = transform_translate(0, 0, z[i]);
+        const motion still = motion_still(&to_world);
+        view_place_camera(v, &still);
+        g_assert_true(v->camera.media.participating == (fabs(z[i] - 5) < 1 ? 0 : b));
     }
 }
 

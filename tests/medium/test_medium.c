@@ -31,8 +31,8 @@ static double slab_transmittance(double eta, double tau)
 
 static double seen_through(const char *text, const char *how)
 {
-    g_autoptr(scene) s = scene_of(text);
-    g_autoptr(image) img = render_with(s, how);
+    g_autoptr(view) v = view_of(text);
+    g_autoptr(image) img = render_with(v, how);
     return mean_of(img, "");
 }
 

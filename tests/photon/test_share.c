@@ -79,14 +79,14 @@ static const shared_scene scenes[] = {
 };
 
 /* Mean over the picture of what the floor reflects. */
-static double known_mean(const scene *s, known_irradiance known)
+static double known_mean(const view *v, known_irradiance known)
 {
     enum { STEPS = 16 };
     double sum = 0.0;
     for (int i = 0; i < STEPS * STEPS; i++) {
-        vec2 raster = {((float)(i % STEPS) + 0.5f) / STEPS * (float)s->film.width,
-                       ((float)(i / STEPS) + 0.5f) / STEPS * (float)s->film.height};
-        ray r = camera_ray(&s->camera, raster, (vec2){0.5f, 0.5f}, 0.5f);
+        vec2 raster = {((float)(i % STEPS) + 0.5f) / STEPS * (float)v->film.width,
+                       ((float)(i / STEPS) + 0.5f) / STEPS * (float)v->film.height};
+        ray r = camera_ray(&v->camera, raster, (vec2){0.5f, 0.5f}, 0.5f);
         vec3 p = r.origin - r.direction * (r.origin[2] / r.direction[2]);
         sum += known((double)p[0], (double)p[1]);
     }
@@ -95,9 +95,9 @@ static double known_mean(const scene *s, known_irradiance known)
 
 /* What photons bring to the patch by way of a diffuse surface counts as caustic light,
    what paths do as indirect. */
-static double shared_light(const scene *s, const char *words)
+static double shared_light(const view *v, const char *words)
 {
-    g_autoptr(image) img = render_with(s, words);
+    g_autoptr(image) img = render_with(v, words);
     return mean_of(img, "caustic") + mean_of(img, "indirect");
 }
 
@@ -117,13 +117,13 @@ static const char *const ways[] = {
 static void test_nothing_is_lost_or_counted_twice(gconstpointer data)
 {
     const shared_scene *of = data;
-    g_autoptr(scene) s = scene_of(of->text);
+    g_autoptr(view) v = view_of(of->text);
     double expected = of->known
-                          ? known_mean(s, of->known)
-                          : shared_light(s, "integrator=path passes=8 spp=768 seed=1");
+                          ? known_mean(v, of->known)
+                          : shared_light(v, "integrator=path passes=8 spp=768 seed=1");
     unsigned n_wrong = 0;
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
-        double error = shared_light(s, ways[i]) / expected - 1.0;
+        double error = shared_light(v, ways[i]) / expected - 1.0;
         g_test_message("%s: %s: %+.2f %%", of->name, ways[i], 100 * error);
         n_wrong += !(fabs(error) < TOLERANCE);
     }
@@ -147,10 +147,10 @@ static void test_nothing_is_lost_or_counted_twice(gconstpointer data)
 
 static void test_few_photons_do_not_shine_afar(void)
 {
-    g_autoptr(scene) s = scene_of(PASSING);
-    g_autoptr(image) few = render_with(s, "integrator=auto passes=24 spp=4 seed=1");
+    g_autoptr(view) v = view_of(PASSING);
+    g_autoptr(image) few = render_with(v, "integrator=auto passes=24 spp=4 seed=1");
     g_autoptr(image) many =
-        render_with(s, "integrator=photonmap passes=4 spp=8 caustic_photons=100000 "
+        render_with(v, "integrator=photonmap passes=4 spp=8 caustic_photons=100000 "
                        "photons=1000 radius=0.03 alpha=1 seed=2");
     double a = mean_of(few, "caustic"), b = mean_of(many, "caustic");
     g_test_message("few photons %g, many %g (%+.2f %%)", a, b, 100 * (a / b - 1));

@@ -130,10 +130,10 @@ static const spot_scene scenes[] = {
      "integrator=auto passes=2 spp=64 radius=0.05"},
 };
 
-static image *look(const scene *s, const spot_scene *of, const char *more)
+static image *look(const view *v, const spot_scene *of, const char *more)
 {
     g_autofree char *words = g_strconcat(of->how, " ", more, NULL);
-    return render_with(s, words);
+    return render_with(v, words);
 }
 
 /* Relative variance of a pixel, from two pictures. */
@@ -154,12 +154,12 @@ static double variance_of(const image *a, const image *b)
 static void test_noise_goes_and_no_light(gconstpointer data)
 {
     const spot_scene *of = data;
-    g_autoptr(scene) s = scene_of(of->text);
-    g_autoptr(image) on = look(s, of, "seed=1");
-    g_autoptr(image) on_too = look(s, of, "seed=2");
-    g_autoptr(image) off = look(s, of, "seed=1 bright_spots=off");
-    g_autoptr(image) off_too = look(s, of, "seed=2 bright_spots=off");
-    g_autoptr(image) peer = render_with(s, PEER);
+    g_autoptr(view) v = view_of(of->text);
+    g_autoptr(image) on = look(v, of, "seed=1");
+    g_autoptr(image) on_too = look(v, of, "seed=2");
+    g_autoptr(image) off = look(v, of, "seed=1 bright_spots=off");
+    g_autoptr(image) off_too = look(v, of, "seed=2 bright_spots=off");
+    g_autoptr(image) peer = render_with(v, PEER);
     double a = 0.5 * (mean_of(on, "") + mean_of(on_too, "")), b = mean_of(peer, "");
     double noise = variance_of(on, on_too), before = variance_of(off, off_too);
     g_test_message("%s: mean %g, by bpt %g (%+.2f %%); variance %g, without %g", of->name,
@@ -183,14 +183,14 @@ static void test_layers(void)
 {
     static const char *const channels[] = {"specular.R", "specular.B", "indirect.R",
                                            "indirect.B"};
-    g_autoptr(scene) s = scene_of(
+    g_autoptr(view) v = view_of(
         SPOT_ROOM
         "Material \"coateddiffuse\" \"rgb reflectance\" [0.02 0.1 0.8] \"float "
         "roughness\" 0.28 \"bool remaproughness\" false Translate 0.3 -1 0.9 Shape "
         "\"sphere\" \"float radius\" 0.9\n");
-    g_autoptr(image) on = render_with(s, "integrator=auto passes=4 spp=256");
+    g_autoptr(image) on = render_with(v, "integrator=auto passes=4 spp=256");
     g_autoptr(image) peer =
-        render_with(s, "integrator=vcm vcm_strategies=bpt passes=8 spp=64 photons=16000");
+        render_with(v, "integrator=vcm vcm_strategies=bpt passes=8 spp=64 photons=16000");
     for (size_t i = 0; i < G_N_ELEMENTS(channels); i++) {
         double a = mean_of_channel(on, channels[i]),
                b = mean_of_channel(peer, channels[i]);

@@ -188,15 +188,15 @@ static void test_aimed_emission_has_the_same_flux(void)
             i < 5 ? BOX : "Shape \"disk\" \"float height\" -2 \"float radius\" 5\n";
         g_autofree char *text =
             g_strconcat(CAMERA "WorldBegin\n", walls, CASTERS, lights[i], NULL);
-        g_autoptr(scene) s = scene_of(text);
+        g_autoptr(view) v = view_of(text);
         how.caustic_emission = EMISSION_UNIFORM;
-        flux_mean plain = stored_flux(s, &how, PHOTON_CAUSTIC, 1 << 18);
+        flux_mean plain = stored_flux(v->scene, &how, PHOTON_CAUSTIC, 1 << 18);
         how.caustic_emission = EMISSION_SPECULAR_AREA;
-        flux_mean aimed = stored_flux(s, &how, PHOTON_CAUSTIC, 1 << 16);
+        flux_mean aimed = stored_flux(v->scene, &how, PHOTON_CAUSTIC, 1 << 16);
         double error = sqrt(plain.error * plain.error + aimed.error * aimed.error);
         g_test_message("light %zu: uniform %g +- %g, aimed %g +- %g", i, plain.mean,
                        plain.error, aimed.mean, aimed.error);
-        transport_plan plan = {.scene = s, .how = how};
+        transport_plan plan = {.scene = v->scene, .view = v, .how = how};
         plan.how.caustic_emission = EMISSION_GUIDED;
         plan.n_photons[PHOTON_CAUSTIC] = 1;
         plan.work = (double)INFINITY;

@@ -189,10 +189,11 @@ static void test_ways_to_send(void)
         "Shape \"sphere\" \"float radius\" .2 AttributeEnd\n"};
     for (size_t i = 0; i < G_N_ELEMENTS(lamps); i++) {
         g_autofree char *text = g_strconcat(BALL_IN_FOG, lamps[i], NULL);
-        g_autoptr(scene) s = scene_of(text);
+        g_autoptr(view) v = view_of(text);
         flux_mean found[3];
         for (int mode = 0; mode < 3; mode++) {
-            transport_plan plan = {.scene = s, .how = settings_default()};
+            transport_plan plan = {
+                .scene = v->scene, .view = v, .how = settings_default()};
             plan.how.caustic_emission = mode;
             plan.n_photons[PHOTON_CAUSTIC] = 20000;
             plan.work = (double)INFINITY;
@@ -222,11 +223,11 @@ static void test_same_bits_on_any_threads(void)
     static const char *const hows[] = {"integrator=auto spp=4 passes=2",
                                        "integrator=photonmap spp=2 passes=2 "
                                        "photons=40000 gather_rays=4"};
-    g_autoptr(scene) s = scene_of(BALL_IN_FOG TWO_LAMPS);
+    g_autoptr(view) v = view_of(BALL_IN_FOG TWO_LAMPS);
     for (size_t i = 0; i < G_N_ELEMENTS(hows); i++) {
         g_autofree char *one = g_strconcat(hows[i], " threads=1", NULL);
         g_autofree char *three = g_strconcat(hows[i], " threads=3", NULL);
-        g_autoptr(image) a = render_with(s, one), b = render_with(s, three);
+        g_autoptr(image) a = render_with(v, one), b = render_with(v, three);
         assert_same_bits(a, b);
         g_assert_cmpfloat(mean_of(a, "caustic"), >, 0);
     }
@@ -240,9 +241,9 @@ static void test_groups_are_the_whole(void)
         "integrator=photonmap spp=2 passes=2 photons=40000 gather_rays=4",
         "integrator=photonmap spp=2 passes=1 photons=40000 final_gather=false "
         "direct_illumination=false"};
-    g_autoptr(scene) s = scene_of(BALL_IN_FOG TWO_LAMPS);
+    g_autoptr(view) v = view_of(BALL_IN_FOG TWO_LAMPS);
     for (size_t i = 0; i < G_N_ELEMENTS(hows); i++) {
-        g_autoptr(image) img = render_with(s, hows[i]);
+        g_autoptr(image) img = render_with(v, hows[i]);
         double whole = mean_of(img, ""), a = mean_of(img, "light.a"),
                b = mean_of(img, "light.b");
         g_test_message("%s: %g + %g of %g", hows[i], a, b, whole);
@@ -254,11 +255,11 @@ static void test_groups_are_the_whole(void)
 /* What the maps say alone, and with light sampled, is the same light. */
 static void test_direct_by_either(void)
 {
-    g_autoptr(scene) s = scene_of(BALL_IN_FOG POINT("0 .2 2.4"));
+    g_autoptr(view) v = view_of(BALL_IN_FOG POINT("0 .2 2.4"));
     g_autoptr(image) sampled = render_with(
-        s, "integrator=photonmap spp=8 passes=4 photons=200000 final_gather=false");
+        v, "integrator=photonmap spp=8 passes=4 photons=200000 final_gather=false");
     g_autoptr(image) mapped =
-        render_with(s, "integrator=photonmap spp=8 passes=4 photons=200000 "
+        render_with(v, "integrator=photonmap spp=8 passes=4 photons=200000 "
                        "final_gather=false direct_illumination=false");
     double a = mean_of(sampled, "direct"), b = mean_of(mapped, "direct");
     g_test_message("sampled %g, mapped %g", a, b);

@@ -7,7 +7,7 @@
 
 #include "color/balance.h"
 
-static scene *wall(const char *film_text, const char *camera_text)
+static view *wall(const char *film_text, const char *camera_text)
 {
     g_autofree char *text = g_strdup_printf(
         "Film %s \"integer xresolution\" 12 \"integer yresolution\" 12\n"
@@ -17,7 +17,7 @@ static scene *wall(const char *film_text, const char *camera_text)
         "AttributeBegin\nRotate 40 0 1 0\nShape \"disk\" \"float radius\" 9\n"
         "AttributeEnd\n",
         film_text, camera_text);
-    return scene_of(text);
+    return view_of(text);
 }
 
 static float value(const image *img, const char *channel, int x, int y)
@@ -32,8 +32,8 @@ static void test_largest_component(void)
 {
     static const char *const ways[] = {"integrator=path passes=2 spp=4",
                                        "integrator=vcm passes=2 spp=4 photons=2000"};
-    g_autoptr(scene) free = wall("\"rgb\"", "\"perspective\"");
-    g_autoptr(scene) cut =
+    g_autoptr(view) free = wall("\"rgb\"", "\"perspective\"");
+    g_autoptr(view) cut =
         wall("\"rgb\" \"float maxcomponentvalue\" 0.3", "\"perspective\"");
     g_autoptr(image) a = render_with(free, ways[0]);
     g_autoptr(image) b = render_with(cut, ways[0]);
@@ -66,9 +66,8 @@ static void test_white_balance(void)
         for (int k = 0; k < 3; k++)
             g_assert_cmpfloat(fabs(daylight65[3 * i + k] - (i == k)), <, 3e-3);
     }
-    g_autoptr(scene) plain = wall("\"rgb\"", "\"perspective\"");
-    g_autoptr(scene) cold =
-        wall("\"rgb\" \"float whitebalance\" 4000", "\"perspective\"");
+    g_autoptr(view) plain = wall("\"rgb\"", "\"perspective\"");
+    g_autoptr(view) cold = wall("\"rgb\" \"float whitebalance\" 4000", "\"perspective\"");
     g_autoptr(image) a = render_with(plain, "integrator=path passes=1 spp=1");
     g_autoptr(image) b = render_with(cold, "integrator=path passes=1 spp=1");
     float before = value(a, "B", 6, 6) / value(a, "R", 6, 6);
@@ -78,9 +77,9 @@ static void test_white_balance(void)
 
 static void test_gbuffer(void)
 {
-    g_autoptr(scene) world =
+    g_autoptr(view) world =
         wall("\"gbuffer\" \"string coordinatesystem\" \"world\"", "\"perspective\"");
-    g_autoptr(scene) own = wall("\"gbuffer\"", "\"perspective\"");
+    g_autoptr(view) own = wall("\"gbuffer\"", "\"perspective\"");
     g_autoptr(image) a = render_with(world, "integrator=path passes=1 spp=1");
     g_autoptr(image) b = render_with(own, "integrator=path passes=1 spp=1");
     const float n[3] = {sinf(40 * PI_F / 180), 0, cosf(40 * PI_F / 180)};
@@ -130,13 +129,13 @@ static void test_gbuffer_places(void)
                                        "integrator=vcm passes=1 spp=1 photons=100",
                                        "integrator=photonmap passes=1 spp=1 photons=100"};
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
-        g_autoptr(scene) s = i ? wall("\"gbuffer\"", "\"perspective\"")
-                               : wall("\"gbuffer\" \"string coordinatesystem\" \"world\"",
-                                      "\"perspective\"");
-        g_autoptr(image) img = render_with(s, ways[i]);
+        g_autoptr(view) v = i ? wall("\"gbuffer\"", "\"perspective\"")
+                              : wall("\"gbuffer\" \"string coordinatesystem\" \"world\"",
+                                     "\"perspective\"");
+        g_autoptr(image) img = render_with(v, ways[i]);
         check_places(img, i > 0);
     }
-    g_autoptr(scene) plain = wall("\"rgb\"", "\"perspective\"");
+    g_autoptr(view) plain = wall("\"rgb\"", "\"perspective\"");
     g_autoptr(image) img = render_with(plain, ways[0]);
     g_assert_cmpint(image_channel(img, "P.X"), ==, -1);
 }
@@ -145,17 +144,17 @@ static void test_gbuffer_places(void)
  * their mean times their number; N and Ns differ where normals are bent. */
 static void test_gbuffer_noise(void)
 {
-    g_autoptr(scene) s = scene_of(
-        "Film \"gbuffer\" \"integer xresolution\" 12 \"integer yresolution\" 12\n"
-        "PixelFilter \"box\"\nLookAt 0 0 4 0 0 0 0 1 0\n"
-        "Camera \"perspective\" \"float fov\" 40\nWorldBegin\n"
-        "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [3 3 3]\n"
-        "Translate 0 3 4\nShape \"sphere\"\nAttributeEnd\n"
-        "Rotate 30 1 0 0\nRotate 30 0 1 0\nShape \"trianglemesh\"\n"
-        "\"point3 P\" [-5 -5 0  5 -5 0  -5 5 0  5 5 0]\n"
-        "\"normal N\" [0 0.6 0.8  0 0.6 0.8  0 0.6 0.8  0 0.6 0.8]\n"
-        "\"integer indices\" [0 1 2 2 1 3]\n");
-    g_autoptr(image) img = render_with(s, "integrator=path passes=64 spp=2");
+    g_autoptr(view) v =
+        view_of("Film \"gbuffer\" \"integer xresolution\" 12 \"integer yresolution\" 12\n"
+                "PixelFilter \"box\"\nLookAt 0 0 4 0 0 0 0 1 0\n"
+                "Camera \"perspective\" \"float fov\" 40\nWorldBegin\n"
+                "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [3 3 3]\n"
+                "Translate 0 3 4\nShape \"sphere\"\nAttributeEnd\n"
+                "Rotate 30 1 0 0\nRotate 30 0 1 0\nShape \"trianglemesh\"\n"
+                "\"point3 P\" [-5 -5 0  5 -5 0  -5 5 0  5 5 0]\n"
+                "\"normal N\" [0 0.6 0.8  0 0.6 0.8  0 0.6 0.8  0 0.6 0.8]\n"
+                "\"integer indices\" [0 1 2 2 1 3]\n");
+    g_autoptr(image) img = render_with(v, "integrator=path passes=64 spp=2");
     double of_mean = 0, of_samples = 0;
     for (int i = 0; i < 100; i++) {
         int x = i % 10, y = i / 10;
@@ -201,19 +200,19 @@ static void test_cameras_agree(void)
         "integrator=photonmap passes=2 spp=16 photons=20000",
         "integrator=vcm vcm_strategies=light passes=8 spp=16 photons=60000"};
     for (size_t c = 0; c < G_N_ELEMENTS(cameras); c++) {
-        g_autoptr(scene) s = wall("\"rgb\"", cameras[c]);
-        g_autoptr(image) path = render_with(s, "integrator=path passes=2 spp=32");
+        g_autoptr(view) v = wall("\"rgb\"", cameras[c]);
+        g_autoptr(image) path = render_with(v, "integrator=path passes=2 spp=32");
         for (size_t i = 0; i < (c == 0 ? 3 : 4); i++) {
-            g_autoptr(image) other = render_with(s, ways[i]);
+            g_autoptr(image) other = render_with(v, ways[i]);
             double a = mean_of(path, ""), b = mean_of(other, "");
             g_assert_cmpfloat(a, >, 0.0);
             g_assert_cmpfloat(fabs(b - a), <, 0.03 * a);
         }
     }
-    g_autoptr(scene) s = wall("\"rgb\"", cameras[0]);
-    settings how = settings_with(s, "integrator=vcm vcm_strategies=light");
+    g_autoptr(view) v = wall("\"rgb\"", cameras[0]);
+    settings how = settings_with(v->scene, "integrator=vcm vcm_strategies=light");
     g_autoptr(GError) error = NULL;
-    g_autoptr(render) r = render_new(s, &how, &error);
+    g_autoptr(render) r = render_new(v, &how, &error);
     g_assert_false(render_run(r, NULL, NULL, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_INPUT);
     g_assert_nonnull(strstr(error->message, "orthographic"));

@@ -12,7 +12,7 @@
 /* The furnace cut after d scatterings: sums of powers of a half. */
 static void test_bounces(void)
 {
-    g_autoptr(scene) s = scene_of(FURNACE);
+    g_autoptr(view) v = view_of(FURNACE);
     for (int d = 0; d < 4; d++) {
         g_autofree char *backward =
             g_strdup_printf("integrator=path passes=4 spp=32 max_backward_bounces=%d", d);
@@ -20,8 +20,8 @@ static void test_bounces(void)
             g_strdup_printf("integrator=photonmap passes=4 spp=4 photons=20000 radius=.3 "
                             "max_forward_bounces=%d",
                             d);
-        g_autoptr(image) cut = render_with(s, backward);
-        g_autoptr(image) by_photons = render_with(s, forward);
+        g_autoptr(image) cut = render_with(v, backward);
+        g_autoptr(image) by_photons = render_with(v, forward);
         double a = mean_of(cut, ""), b = mean_of(by_photons, "");
         double expected = 2.0 - exp2(-d), of_photons = 2.0 - exp2(-d - 1);
         g_test_message("%d: %g of %g, %g of %g", d, a, expected, b, of_photons);
@@ -32,9 +32,9 @@ static void test_bounces(void)
 
 /* ---- What is counted ---- */
 
-static render_statistics counted(const scene *s, const char *words)
+static render_statistics counted(const view *v, const char *words)
 {
-    g_autoptr(render) r = render_of(s, words);
+    g_autoptr(render) r = render_of(v, words);
     g_assert_true(render_run(r, NULL, NULL, NULL));
     return render_get_statistics(r);
 }
@@ -42,9 +42,9 @@ static render_statistics counted(const scene *s, const char *words)
 /* Where there is nothing but sky, a sample is one ray. */
 static void test_samples(void)
 {
-    g_autoptr(scene) s =
-        scene_of(ROOM_CAMERA SIZE(8) "WorldBegin LightSource \"infinite\"\n");
-    render_statistics a = counted(s, "integrator=path passes=3 spp=5");
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(8) "WorldBegin LightSource \"infinite\"\n");
+    render_statistics a = counted(v, "integrator=path passes=3 spp=5");
     g_assert_cmpint(a.passes, ==, 3);
     g_assert_cmpuint(a.camera_rays, ==, 8 * 8 * 3 * 5);
 }
@@ -52,14 +52,14 @@ static void test_samples(void)
 /* Rays of a gather: so many more with the number. */
 static void test_gather_rays(void)
 {
-    g_autoptr(scene) s = scene_of(FURNACE);
+    g_autoptr(view) v = view_of(FURNACE);
     double rays[3];
     for (int i = 0; i < 3; i++) {
         g_autofree char *words = g_strdup_printf("integrator=photonmap passes=1 spp=1 "
                                                  "photons=2000 radius=.3 final_gather=on "
                                                  "precompute_radiance=on gather_rays=%d",
                                                  16 << i);
-        rays[i] = (double)counted(s, words).camera_rays;
+        rays[i] = (double)counted(v, words).camera_rays;
     }
     double each = (rays[1] - rays[0]) / (8 * 8 * 16.0);
     g_test_message("%g rays each", each);
@@ -69,21 +69,21 @@ static void test_gather_rays(void)
 
 static void test_photons(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM GLASS_BALL);
+    g_autoptr(view) v = view_of(ROOM GLASS_BALL);
     const uint64_t *n;
     render_statistics shared =
-        counted(s, "passes=1 spp=1 photons=3000 radius=.1 direct_illumination=off");
+        counted(v, "passes=1 spp=1 photons=3000 radius=.1 direct_illumination=off");
     n = shared.emitted;
     g_assert_cmpuint(n[0] + n[1] + n[2], ==, 3000);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         g_assert_cmpuint(n[c], >, 500);
-    render_statistics own = counted(s, "passes=2 spp=1 radius=.1 direct_photons=100 "
+    render_statistics own = counted(v, "passes=2 spp=1 radius=.1 direct_photons=100 "
                                        "indirect_photons=200 caustic_photons=300 "
                                        "direct_illumination=off");
     for (uint64_t c = 0; c < N_PHOTON_CLASSES; c++)
         g_assert_cmpuint(own.emitted[c], ==, 2 * 100 * (c + 1));
     render_statistics sampled =
-        counted(s, "passes=1 spp=1 photons=100 radius=.1 direct_photons=100");
+        counted(v, "passes=1 spp=1 photons=100 radius=.1 direct_photons=100");
     g_assert_cmpuint(sampled.emitted[PHOTON_DIRECT], ==, 0);
     g_assert_cmpuint(sampled.shadow_rays, >, 16 * 16 / 2);
     g_assert_cmpuint(own.shadow_rays, ==, 0);
@@ -92,14 +92,14 @@ static void test_photons(void)
 /* r²(i+1) = r²(i) (i + α)/(i + 1), from pass 1 on (Knaus & Zwicker 2011). */
 static void test_radius_shrinks(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM);
+    g_autoptr(view) v = view_of(ROOM);
     for (double alpha = .25; alpha <= 1.0; alpha *= 2.0) {
         g_autofree char *words = g_strdup_printf(
             "passes=5 spp=1 photons=100 radius=.5 indirect_photons=50 alpha=%g", alpha);
         double r2 = .25;
         for (int i = 1; i < 5; i++)
             r2 *= (i - 1.0 + alpha) / i;
-        double found = counted(s, words).radius[PHOTON_INDIRECT];
+        double found = counted(v, words).radius[PHOTON_INDIRECT];
         g_assert_cmpfloat(fabs(found / sqrt(r2) - 1.0), <, 1e-6);
     }
 }
@@ -117,14 +117,14 @@ static void test_radius_shrinks(void)
 static void test_roulette(void)
 {
     enum { N = 20000 };
-    g_autoptr(scene) s = scene_of(PAINTED_BOX);
+    g_autoptr(view) v = view_of(PAINTED_BOX);
     for (int most = 0; most < 2; most++) {
         g_autofree char *words = g_strdup_printf("passes=1 spp=1 indirect_photons=%d "
                                                  "max_forward_bounces=1 radius=.1 "
                                                  "roulette=%s",
                                                  N, most ? "max" : "mean");
-        settings how = settings_with(s, words);
-        wavelengths w = scene_wavelengths(s, &how, 0);
+        settings how = settings_with(v->scene, words);
+        wavelengths w = scene_wavelengths(v->scene, &how, 0);
         double sum = 0.0, largest = 0.0;
         for (int i = 0; i < N_LANES; i++) {
             double rho = w.lambda[i] < 550.5f ? .9 : .1;
@@ -132,7 +132,7 @@ static void test_roulette(void)
             largest = MAX(largest, rho);
         }
         double p = most ? largest : sum, sigma = sqrt(p * (1.0 - p) / N);
-        double found = (double)counted(s, words).stored[PHOTON_INDIRECT] / N;
+        double found = (double)counted(v, words).stored[PHOTON_INDIRECT] / N;
         g_test_message("%s: %g bounce, expected %g", words, found, p);
         g_assert_cmpfloat(fabs(found - p), <, 5.0 * sigma + 0.005);
     }
@@ -151,13 +151,13 @@ static void test_caustic_emission(void)
     const double sine = .2 / 1.3, met = .5 * (1.0 - sqrt(1.0 - sine * sine));
     static const char *const ways[] = {"uniform", "specular-area", "guided"};
     const double least[] = {met * .9, .999, .5}, most[] = {met * 1.1, 1.0, 1.0};
-    g_autoptr(scene) s = scene_of(CLEAR_BALL);
+    g_autoptr(view) v = view_of(CLEAR_BALL);
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
         g_autofree char *words = g_strdup_printf(
             "passes=1 spp=1 caustic_photons=40000 indirect_photons=10 radius=.1 "
             "max_forward_bounces=2 caustic_emission=%s",
             ways[i]);
-        render_statistics n = counted(s, words);
+        render_statistics n = counted(v, words);
         double found =
             (double)n.stored[PHOTON_CAUSTIC] / (double)n.emitted[PHOTON_CAUSTIC];
         g_test_message("%s: %g of photons land, %g meet the ball", ways[i], found, met);
@@ -170,7 +170,7 @@ static void test_caustic_emission(void)
 static void test_multiple_samples(void)
 {
     const double r = .04, through = (1.0 - r) / (1.0 + r);
-    g_autoptr(scene) s = scene_of("Camera \"orthographic\" " SIZE(
+    g_autoptr(view) v = view_of("Camera \"orthographic\" " SIZE(
         4) "WorldBegin Material \"diffuse\" \"rgb "
            "reflectance\" [0 0 0] AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" "
            "[1 1 "
@@ -182,9 +182,9 @@ static void test_multiple_samples(void)
            "-3 3 1] \"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 "
            "2 "
            "3 7 2 7 6 3 0 4 3 4 7]\n");
-    g_autoptr(image) split = render_with(s, "integrator=path passes=4 spp=256");
+    g_autoptr(image) split = render_with(v, "integrator=path passes=4 spp=256");
     g_autoptr(image) whole =
-        render_with(s, "integrator=path passes=16 spp=1 multiple_samples=off");
+        render_with(v, "integrator=path passes=16 spp=1 multiple_samples=off");
     g_test_message("%g of %g; %g", mean_of(split, ""), through, mean_of(whole, ""));
     g_assert_cmpfloat(fabs(mean_of(split, "") - through), <, 0.01);
     g_assert_cmpfloat(fabs(mean_of(whole, "") - 1.0), <, 2e-3);
@@ -194,10 +194,10 @@ static void test_multiple_samples(void)
 
 static void test_seed(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM);
-    g_autoptr(image) a = render_with(s, "integrator=path passes=1 spp=16 seed=7");
-    g_autoptr(image) b = render_with(s, "integrator=path passes=1 spp=16 seed=7");
-    g_autoptr(image) c = render_with(s, "integrator=path passes=1 spp=16 seed=8");
+    g_autoptr(view) v = view_of(ROOM);
+    g_autoptr(image) a = render_with(v, "integrator=path passes=1 spp=16 seed=7");
+    g_autoptr(image) b = render_with(v, "integrator=path passes=1 spp=16 seed=7");
+    g_autoptr(image) c = render_with(v, "integrator=path passes=1 spp=16 seed=8");
     assert_same_bits(a, b);
     size_t n_same = 0;
     for (size_t i = 0; i < pixels_of(a); i++)
@@ -210,16 +210,16 @@ static void test_seed(void)
 /* Paths do not find what a point throws through glass. */
 static void test_integrator(void)
 {
-    g_autoptr(scene) s = scene_of(
-        ROOM_CAMERA SIZE(16) "WorldBegin LightSource \"point\" "
-                             "\"point3 from\" [1 0 1.7]\n" ROOM_WALLS GLASS_BALL);
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(16) "WorldBegin LightSource \"point\" "
+                                     "\"point3 from\" [1 0 1.7]\n" ROOM_WALLS GLASS_BALL);
     static const char *const names[] = {"auto", "photonmap", "path", "vcm"};
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
         g_autofree char *words =
             g_strdup_printf("integrator=%s passes=1 spp=4 photons=2000", names[i]);
-        settings how = settings_with(s, words);
+        settings how = settings_with(v->scene, words);
         g_assert_cmpstr(transport_find(how.integrator)->name, ==, names[i]);
-        render_statistics n = counted(s, words);
+        render_statistics n = counted(v, words);
         g_assert_true((n.photon_rays > 0) == (strcmp(names[i], "path") != 0));
         g_assert_true((n.stored[PHOTON_INDIRECT] > 0) == (i % 2 == 1));
         g_assert_true((n.stored[PHOTON_CAUSTIC] > 0) == (i < 2));

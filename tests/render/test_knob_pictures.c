@@ -39,9 +39,9 @@ static const struct {
 };
 
 /* The place under a point of the film. */
-static vec3 floor_at(const scene *s, float x, float y)
+static vec3 floor_at(const view *v, float x, float y)
 {
-    ray r = camera_ray(&s->camera, (vec2){x, y}, (vec2){.5f, .5f}, 0.0f);
+    ray r = camera_ray(&v->camera, (vec2){x, y}, (vec2){.5f, .5f}, 0.0f);
     return r.origin - r.direction * (r.origin[2] / r.direction[2]);
 }
 
@@ -86,7 +86,7 @@ static double expected_at(const profile *f, double integral, double d)
 #define HIDDEN .1
 
 /* The root of the mean square difference over that of the picture. */
-static double difference(const scene *s, const image *img, const char *layer,
+static double difference(const view *v, const image *img, const char *layer,
                          const profile *f)
 {
     g_autofree char *name = g_strconcat(layer, ".G", NULL);
@@ -98,7 +98,7 @@ static double difference(const scene *s, const image *img, const char *layer,
         for (int k = 0; k < SUB * SUB; k++) {
             float x = (float)(i % (size_t)img->width) + ((float)(k % SUB) + .5f) / SUB;
             float y = (float)(i / (size_t)img->width) + ((float)(k / SUB) + .5f) / SUB;
-            double d = (double)length3(floor_at(s, x, y));
+            double d = (double)length3(floor_at(v, x, y));
             least = MIN(least, d);
             expected += expected_at(f, integral, d) / (SUB * SUB);
         }
@@ -115,15 +115,15 @@ static double difference(const scene *s, const image *img, const char *layer,
 static void check_profile(photon_class c, const profile *f)
 {
     const char *name = classes[c].name;
-    g_autoptr(scene) s = scene_of(classes[c].text);
+    g_autoptr(view) v = view_of(classes[c].text);
     g_autofree char *words = g_strdup_printf(
         "integrator=photonmap passes=1 spp=16 photons=100 edges=off alpha=1 "
         "caustic_emission=uniform "
         "%s%s_photons=%d radius=%g %s_kernel=%s %s_cone_k=%g %s_nearest=%g",
         classes[c].also, name, SPIKE_PHOTONS, f->radius, name, f->kernel, name, f->cone_k,
         name, f->nearest);
-    g_autoptr(image) img = render_with(s, words);
-    double found = difference(s, img, name, f);
+    g_autoptr(image) img = render_with(v, words);
+    double found = difference(v, img, name, f);
     g_test_message("%s: %.4f", words, found);
     g_assert_cmpfloat(found, <, 0.05);
 }
@@ -148,9 +148,9 @@ static void test_profile(gconstpointer data)
 static void test_time_slices(void)
 {
     const double way = .3, radius = .1, column = 1.0 / 16;
-    g_autoptr(scene) s =
-        scene_of(FROM_ABOVE SPIKE "ActiveTransform EndTime Translate .3 0 0 "
-                                  "ActiveTransform All " FLOOR);
+    g_autoptr(view) v =
+        view_of(FROM_ABOVE SPIKE "ActiveTransform EndTime Translate .3 0 0 "
+                                 "ActiveTransform All " FLOOR);
     for (int n = 1; n <= 4; n *= 2) {
         g_autofree char *words = g_strdup_printf(
             "integrator=photonmap passes=2 spp=64 photons=100 edges=off alpha=1 "
@@ -158,10 +158,10 @@ static void test_time_slices(void)
             "direct_illumination=off direct_photons=4000 direct_kernel=constant "
             "time_slices=%d",
             radius, n);
-        g_autoptr(image) img = render_with(s, words);
+        g_autoptr(image) img = render_with(v, words);
         double sum = 0.0, moment = 0.0;
         for (size_t i = 0; i < pixels_of(img); i++) {
-            double x = (double)floor_at(s, (float)(i % 16) + .5f, 8.0f)[0];
+            double x = (double)floor_at(v, (float)(i % 16) + .5f, 8.0f)[0];
             double value = at(img, i, channel_of(img, "direct.G"));
             sum += value;
             moment += value * x * x;
@@ -203,15 +203,15 @@ static void test_edges(void)
         lit += (1.0 - (acos(h) - h * sqrt(1.0 - h * h)) / G_PI) / STEPS;
     }
     /* A square picture has 20 columns of 5 cm: the floor begins with the fifth. */
-    g_autoptr(scene) s = scene_of(FROM_ABOVE ENDING_FLOOR);
-    scene_resize(s, 20, 20);
+    g_autoptr(view) v = view_of(FROM_ABOVE ENDING_FLOOR);
+    view_resize(v, 20, 20);
     for (int on = 0; on < 2; on++) {
         g_autofree char *words = g_strdup_printf(
             "integrator=photonmap passes=4 spp=16 photons=100 direct_illumination=off "
             "alpha=1 "
             "direct_photons=40000 direct_kernel=constant radius=%g edges=%s",
             radius, on ? "on" : "off");
-        g_autoptr(image) img = render_with(s, words);
+        g_autoptr(image) img = render_with(v, words);
         double left = columns(img, 4, 6), right = columns(img, 14, 16);
         bool mirrored = columns(img, 0, 4) > 0.0; /* x to the left */
         double inner = columns(img, 8, 12);

@@ -64,11 +64,11 @@ static const char *const others[] = {"integrator",     "passes",       "time",
                                      "noise",          "threads",      "photon_map",
                                      "planned_passes", "bright_spots", NULL};
 
-static image *picture(const scene *s, const char *integrator, const char *with)
+static image *picture(const view *v, const char *integrator, const char *with)
 {
     g_autofree char *words =
         g_strdup_printf("integrator=%s " COMMON "%s", integrator, with);
-    return render_with(s, g_strchomp(words));
+    return render_with(v, g_strchomp(words));
 }
 
 static bool is_read_by(const char *name, const char *integrator)
@@ -82,12 +82,12 @@ static void test_acts(const void *data)
 {
     const char *integrator = data;
     unsigned n_wrong = 0;
-    g_autoptr(scene) s = scene_of(subject);
+    g_autoptr(view) v = view_of(subject);
     for (size_t i = 0; i < G_N_ELEMENTS(trials); i++) {
-        g_autoptr(image) before = picture(s, integrator, trials[i].while_);
+        g_autoptr(image) before = picture(v, integrator, trials[i].while_);
         g_autofree char *with =
             g_strdup_printf("%s%s=%s", trials[i].while_, trials[i].name, trials[i].value);
-        g_autoptr(image) after = picture(s, integrator, with);
+        g_autoptr(image) after = picture(v, integrator, with);
         bool acts =
             memcmp(before->pixels, after->pixels,
                    pixels_of(before) * (size_t)before->n_channels * sizeof(float)) != 0;

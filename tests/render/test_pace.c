@@ -82,10 +82,10 @@ static void test_too_late(void)
 
 /* ---- Rendering ---- */
 
-static scene *subject(void)
+static view *subject(void)
 {
-    return scene_of(ROOM_CAMERA SIZE(24) "WorldBegin\n" ROOM_LAMP("")
-                        ROOM_WALLS GLASS_BALL);
+    return view_of(ROOM_CAMERA SIZE(24) "WorldBegin\n" ROOM_LAMP("")
+                       ROOM_WALLS GLASS_BALL);
 }
 
 /* Holds the third pass up until the time is over; sees that nothing is done too soon. */
@@ -108,12 +108,12 @@ static bool hold_up(double fraction, const render_statistics *st, void *data)
 }
 
 /* On a busy machine even the first pass may be too long: then there is more time. */
-static render *render_in_time(const scene *s, const char *integrator)
+static render *render_in_time(const view *v, const char *integrator)
 {
     for (double time = 0.3; time < 10.0; time *= 3.0) {
         g_autofree char *words = g_strdup_printf(
             "integrator=%s spp=3 photons=5000 threads=1 time=%g", integrator, time);
-        render *r = render_of(s, words);
+        render *r = render_of(v, words);
         hold h = {.start = seconds(), .time = time};
         g_assert_true(render_run(r, hold_up, &h, NULL));
         const render_statistics st = render_get_statistics(r);
@@ -133,8 +133,8 @@ static render *render_in_time(const scene *s, const char *integrator)
 static void test_repeats(const void *data)
 {
     const char *integrator = data;
-    g_autoptr(scene) s = subject();
-    g_autoptr(render) r = render_in_time(s, integrator);
+    g_autoptr(view) v = subject();
+    g_autoptr(render) r = render_in_time(v, integrator);
     g_assert_nonnull(r);
     g_auto(GStrv) repeat = render_repeat(r);
     g_autofree char *same = g_strjoinv(" ", repeat);
@@ -142,16 +142,16 @@ static void test_repeats(const void *data)
         "integrator=%s spp=3 photons=5000 threads=3 %s", integrator, same);
     g_test_message("%s", words);
     g_assert_true(g_strv_contains((const char *const *)repeat, "passes=2"));
-    g_autoptr(image) first = image_of(r), again = render_with(s, words);
+    g_autoptr(image) first = image_of(r), again = render_with(v, words);
     assert_same_bits(first, again);
 }
 
 /* Too large for the time: a picture there is, on a grid. */
 static void test_too_large(void)
 {
-    g_autoptr(scene) s = subject();
-    scene_resize(s, 1200, 900);
-    g_autoptr(render) r = render_of(s, "integrator=photonmap time=0.01");
+    g_autoptr(view) v = subject();
+    view_resize(v, 1200, 900);
+    g_autoptr(render) r = render_of(v, "integrator=photonmap time=0.01");
     g_assert_true(render_run(r, NULL, NULL, NULL));
     const render_statistics st = render_get_statistics(r);
     g_autoptr(image) picture = image_of(r);
@@ -173,14 +173,14 @@ static bool stop_at_grid(double fraction, const render_statistics *st, void *dat
    far each thread was. */
 static void test_grids(void)
 {
-    g_autoptr(scene) s = subject();
-    scene_resize(s, 61, 47);
+    g_autoptr(view) v = subject();
+    view_resize(v, 61, 47);
     for (int grid = FILM_COARSE; grid > 1; grid /= 2) {
         g_autoptr(image) first = NULL;
         for (int threads = 1; threads <= 3; threads++) {
             g_autofree char *words =
                 g_strdup_printf("integrator=path spp=1 threads=%d", threads);
-            g_autoptr(render) r = render_of(s, words);
+            g_autoptr(render) r = render_of(v, words);
             g_assert_false(render_run(r, stop_at_grid, &grid, NULL));
             g_assert_cmpint(render_get_statistics(r).grid, ==, grid);
             g_autoptr(image) picture = image_of(r);
@@ -201,13 +201,13 @@ static bool stop_in_grid(double fraction, const render_statistics *st, void *dat
 /* The same where a finer grid was begun. */
 static void test_begun_grid(void)
 {
-    g_autoptr(scene) s = subject();
+    g_autoptr(view) v = subject();
     int grid = 0;
-    g_autoptr(render) r = render_of(s, "integrator=path spp=400 passes=1 threads=1");
+    g_autoptr(render) r = render_of(v, "integrator=path spp=400 passes=1 threads=1");
     g_assert_false(render_run(r, stop_in_grid, NULL, NULL));
     grid = render_get_statistics(r).grid;
     g_assert_cmpint(grid, >, 1);
-    g_autoptr(render) whole = render_of(s, "integrator=path spp=400 passes=1 threads=2");
+    g_autoptr(render) whole = render_of(v, "integrator=path spp=400 passes=1 threads=2");
     g_assert_false(render_run(whole, stop_at_grid, &grid, NULL));
     g_autoptr(image) begun = image_of(r), done = image_of(whole);
     assert_same_bits(begun, done);
@@ -216,12 +216,12 @@ static void test_begun_grid(void)
 /* Radii and photons are planned for so many passes. */
 static void test_plans(void)
 {
-    g_autoptr(scene) s = subject();
-    scene_resize(s, 200, 200);
+    g_autoptr(view) v = subject();
+    view_resize(v, 200, 200);
     double radius[2];
     for (int i = 0; i < 2; i++) {
         g_autoptr(render) r =
-            render_of(s, i ? "passes=1 spp=1 photons=20000 planned_passes=1000"
+            render_of(v, i ? "passes=1 spp=1 photons=20000 planned_passes=1000"
                            : "passes=1 spp=1 photons=20000 planned_passes=1");
         g_assert_true(render_run(r, NULL, NULL, NULL));
         radius[i] = render_get_statistics(r).radius[PHOTON_INDIRECT];

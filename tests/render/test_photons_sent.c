@@ -154,11 +154,11 @@ static void test_as_stored(gconstpointer data)
 {
     const sent_case *of = data;
     g_autoptr(GError) error = NULL;
-    g_autoptr(scene) s = scene_of(of->text);
-    settings how = settings_with(s, of->words);
-    g_autoptr(render_photons) photons = render_trace_photons(s, &how, NULL, &error);
+    g_autoptr(view) v = view_of(of->text);
+    settings how = settings_with(v->scene, of->words);
+    g_autoptr(render_photons) photons = render_trace_photons(v, &how, NULL, &error);
     g_assert_no_error(error);
-    transport_plan plan = transport_plan_of(s, &how);
+    transport_plan plan = transport_plan_of(v, &how);
     transport_counts counts = {0};
     void *pass = render_pass(&plan, &counts);
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
@@ -178,12 +178,12 @@ static void test_as_stored(gconstpointer data)
 static void test_as_counted(gconstpointer data)
 {
     const sent_case *of = data;
-    g_autoptr(scene) s = scene_of(of->text);
+    g_autoptr(view) v = view_of(of->text);
     g_autofree char *words = g_strconcat(of->words, " passes=1" UNAIMED, NULL);
-    settings how = settings_with(s, words);
-    g_autoptr(render) r = render_of(s, words);
+    settings how = settings_with(v->scene, words);
+    g_autoptr(render) r = render_of(v, words);
     g_assert_true(render_run(r, NULL, NULL, NULL));
-    g_autoptr(render_photons) photons = render_trace_photons(s, &how, NULL, NULL);
+    g_autoptr(render_photons) photons = render_trace_photons(v, &how, NULL, NULL);
     const render_statistics rendered = render_get_statistics(r);
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         g_assert_cmpuint(photons->statistics.emitted[c], ==, rendered.emitted[c]);
@@ -215,9 +215,9 @@ static void hear(const photon_event *event, void *data)
 static void test_origins(gconstpointer data)
 {
     const sent_case *of = data;
-    g_autoptr(scene) s = scene_of(of->text);
-    settings how = settings_with(s, of->words);
-    g_autoptr(render_photons) photons = render_trace_photons(s, &how, NULL, NULL);
+    g_autoptr(view) v = view_of(of->text);
+    settings how = settings_with(v->scene, of->words);
+    g_autoptr(render_photons) photons = render_trace_photons(v, &how, NULL, NULL);
     g_assert_true(render_photons_follow(photons, NULL, NULL));
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         for (size_t i = 0; i < render_photons_count(photons, c); i += 7) {
@@ -248,10 +248,10 @@ static void stop_at(void *data)
 
 static void test_follow_again(void)
 {
-    g_autoptr(scene) s = scene_of(STILL);
-    settings how = settings_with(s, "integrator=photonmap threads=1" UNAIMED FEW);
-    g_autoptr(render_photons) a = render_trace_photons(s, &how, NULL, NULL);
-    g_autoptr(render_photons) b = render_trace_photons(s, &how, NULL, NULL);
+    g_autoptr(view) v = view_of(STILL);
+    settings how = settings_with(v->scene, "integrator=photonmap threads=1" UNAIMED FEW);
+    g_autoptr(render_photons) a = render_trace_photons(v, &how, NULL, NULL);
+    g_autoptr(render_photons) b = render_trace_photons(v, &how, NULL, NULL);
     for (int i = 0; i < 3; i++) {
         cancel_flag flag = {.beat = stop_at};
         flag.beat_data = &flag;

@@ -28,10 +28,10 @@ static const plan_case cases[] = {
     {"tiny", STUDIO(8) POINT GLASS_BALL, "integrator=auto passes=1 spp=4 seed=3"},
 };
 
-static render_plan plan_with(const scene *s, const char *words, const char *more)
+static render_plan plan_with(const view *v, const char *words, const char *more)
 {
     g_autofree char *all = g_strconcat(words, more, NULL);
-    g_autoptr(render) r = render_of(s, all);
+    g_autoptr(render) r = render_of(v, all);
     render_plan plan;
     g_assert_true(render_get_plan(r, &plan, NULL));
     return plan;
@@ -66,9 +66,9 @@ static void same_plan(const render_plan *a, const render_plan *b)
 static void test_threads(gconstpointer data)
 {
     const plan_case *of = data;
-    g_autoptr(scene) s = scene_of(of->text);
-    const render_plan one = plan_with(s, of->words, " threads=1");
-    const render_plan three = plan_with(s, of->words, " threads=3");
+    g_autoptr(view) v = view_of(of->text);
+    const render_plan one = plan_with(v, of->words, " threads=1");
+    const render_plan three = plan_with(v, of->words, " threads=3");
     same_plan(&one, &three);
 }
 
@@ -76,14 +76,14 @@ static void test_threads(gconstpointer data)
 static void test_photons_are_planned(gconstpointer data)
 {
     const plan_case *of = data;
-    g_autoptr(scene) s = scene_of(of->text);
+    g_autoptr(view) v = view_of(of->text);
     g_autofree char *words = g_strconcat(of->words, " planned_passes=4 passes=1", NULL);
-    settings how = settings_with(s, words);
-    const render_plan plan = plan_with(s, words, "");
-    g_autoptr(render_photons) photons = render_trace_photons(s, &how, NULL, NULL);
+    settings how = settings_with(v->scene, words);
+    const render_plan plan = plan_with(v, words, "");
+    g_autoptr(render_photons) photons = render_trace_photons(v, &how, NULL, NULL);
     const render_plan shown = render_plan_of(&photons->plan);
     same_plan(&plan, &shown);
-    g_autoptr(render) r = render_of(s, words);
+    g_autoptr(render) r = render_of(v, words);
     g_assert_true(render_run(r, NULL, NULL, NULL));
     const render_statistics did = render_get_statistics(r);
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
@@ -98,8 +98,8 @@ static void test_photons_are_planned(gconstpointer data)
 /* Asked for before, the plan changes nothing in the picture, nor is it made twice. */
 static void test_asked_before(void)
 {
-    g_autoptr(scene) s = scene_of(cases[0].text);
-    g_autoptr(render) asked = render_of(s, cases[0].words);
+    g_autoptr(view) v = view_of(cases[0].text);
+    g_autoptr(render) asked = render_of(v, cases[0].words);
     render_plan plan, again;
     g_assert_true(render_get_plan(asked, &plan, NULL));
     uint64_t before = rays_asked;
@@ -108,7 +108,7 @@ static void test_asked_before(void)
     same_plan(&plan, &again);
     g_assert_true(render_run(asked, NULL, NULL, NULL));
     g_autoptr(image) a = image_of(asked);
-    g_autoptr(image) b = render_with(s, cases[0].words);
+    g_autoptr(image) b = render_with(v, cases[0].words);
     g_assert_cmpmem(a->pixels, pixels_of(a) * (size_t)a->n_channels * sizeof(float),
                     b->pixels, pixels_of(b) * (size_t)b->n_channels * sizeof(float));
 }
@@ -117,8 +117,8 @@ static void test_asked_before(void)
 static void test_costs_little(gconstpointer data)
 {
     const plan_case *of = data;
-    g_autoptr(scene) s = scene_of(of->text);
-    g_autoptr(render) r = render_of(s, of->words);
+    g_autoptr(view) v = view_of(of->text);
+    g_autoptr(render) r = render_of(v, of->words);
     render_plan plan;
     uint64_t begun = rays_asked;
     g_assert_true(render_get_plan(r, &plan, NULL));

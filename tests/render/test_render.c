@@ -64,8 +64,8 @@ static void test_fraction(void)
 /* Ends between the pass that was too early and the one that was too late. */
 static void test_time_is_kept(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM);
-    g_autoptr(render) r = render_of(s, "integrator=path spp=1 time=0.4");
+    g_autoptr(view) v = view_of(ROOM);
+    g_autoptr(render) r = render_of(v, "integrator=path spp=1 time=0.4");
     double start = (double)g_get_monotonic_time() * 1e-6;
     g_assert_true(render_run(r, NULL, NULL, NULL));
     double took = (double)g_get_monotonic_time() * 1e-6 - start;
@@ -81,8 +81,8 @@ static void test_time_is_kept(void)
 
 static void test_noise_is_reached(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM);
-    g_autoptr(render) r = render_of(s, "integrator=path spp=4 noise=0.05");
+    g_autoptr(view) v = view_of(ROOM);
+    g_autoptr(render) r = render_of(v, "integrator=path spp=4 noise=0.05");
     g_assert_true(render_run(r, NULL, NULL, NULL));
     const render_statistics st = render_get_statistics(r);
     g_test_message("%" G_GINT64_FORMAT " passes to %g", st.passes, st.noise);
@@ -94,10 +94,10 @@ static void test_noise_is_reached(void)
 /* Short renders, so that little evens out, that are nearly all gathering. */
 static void test_no_part_takes_longer_than_the_whole(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM);
+    g_autoptr(view) v = view_of(ROOM);
     for (int i = 0; i < 30; i++) {
         g_autoptr(render) r = render_of(
-            s, "photons=3000 radius=1 spp=1 passes=1 direct_illumination=off threads=1");
+            v, "photons=3000 radius=1 spp=1 passes=1 direct_illumination=off threads=1");
         g_assert_true(render_run(r, NULL, NULL, NULL));
         const render_statistics st = render_get_statistics(r);
         double parts = st.time_prepare + st.time_trace + st.time_build + st.time_camera;
@@ -137,14 +137,14 @@ static void test_stopping_changes_nothing(void)
     const char *ways[] = {"integrator=path spp=2",
                           "photons=3000 spp=1 final_gather=on gather_rays=4",
                           "integrator=auto photons=2000 spp=1"};
-    g_autoptr(scene) s =
-        scene_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS GLASS_BALL);
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS GLASS_BALL);
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
         g_autofree char *plain = g_strconcat(ways[i], " passes=6", NULL);
         g_autofree char *noisy =
             g_strconcat(ways[i], " passes=6 noise=1 threads=3", NULL);
-        g_autoptr(render) straight = render_of(s, plain), broken = render_of(s, plain),
-                          by_noise = render_of(s, noisy);
+        g_autoptr(render) straight = render_of(v, plain), broken = render_of(v, plain),
+                          by_noise = render_of(v, noisy);
         g_assert_true(render_run(straight, NULL, NULL, NULL));
         g_assert_true(render_run(by_noise, NULL, NULL, NULL));
         run_until(broken, (interruption){4, 0.0});
@@ -161,10 +161,10 @@ static void test_stopping_changes_nothing(void)
 /* A pass given up halfway leaves no trace in the picture. */
 static void test_half_a_pass_is_no_pass(void)
 {
-    g_autoptr(scene) s =
-        scene_of(ROOM_CAMERA SIZE(96) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(96) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
     const char *how = "integrator=path passes=2 spp=64 threads=2";
-    g_autoptr(render) straight = render_of(s, how), broken = render_of(s, how);
+    g_autoptr(render) straight = render_of(v, how), broken = render_of(v, how);
     run_until(straight, (interruption){1, 0.0});
     run_until(broken, (interruption){1, 0.0});
     run_until(broken, (interruption){1, 0.51});
@@ -203,9 +203,9 @@ static bool listen(double fraction, const render_statistics *st, void *data)
 
 static void test_progress_while_photons_fly(void)
 {
-    g_autoptr(scene) s =
-        scene_of(ROOM_CAMERA SIZE(4) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
-    g_autoptr(render) r = render_of(s, "passes=2 spp=1 photons=1000000 radius=0.1");
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(4) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    g_autoptr(render) r = render_of(v, "passes=2 spp=1 photons=1000000 radius=0.1");
     listener l = {.render = r};
     g_assert_true(render_run(r, listen, &l, NULL));
     g_assert_cmpint(l.images, ==, 2);
@@ -221,9 +221,9 @@ static gpointer cancel_soon(gpointer data)
 }
 
 /* Seconds from a cancel out of the blue to the end of the render. */
-static double time_to_cancel(const scene *s, const char *words)
+static double time_to_cancel(const view *v, const char *words)
 {
-    g_autoptr(render) r = render_of(s, words);
+    g_autoptr(render) r = render_of(v, words);
     g_autoptr(GError) error = NULL;
     GThread *thread = g_thread_new("cancel", cancel_soon, r);
     double start = (double)g_get_monotonic_time() * 1e-6;
@@ -238,15 +238,15 @@ static double time_to_cancel(const scene *s, const char *words)
 /* 0.2 s on a machine that has nothing else to do. */
 static void test_cancel_is_quick(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM_CAMERA SIZE(256) "WorldBegin\n" ROOM_LAMP("")
-                                      ROOM_WALLS GLASS_BALL);
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(256) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS GLASS_BALL);
     const char *const ways[] = {
         "integrator=path spp=65536",
         "photons=1000000000",
         "photons=20000 final_gather=on gather_rays=1000 precompute_radiance=off spp=64",
     };
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++)
-        g_assert_cmpfloat(time_to_cancel(s, ways[i]), <, 2.0);
+        g_assert_cmpfloat(time_to_cancel(v, ways[i]), <, 2.0);
 }
 
 /* ---- The error it claims ---- */
@@ -296,13 +296,13 @@ static void test_noise_is_honest(gconstpointer data)
     const noise_case *c = data;
     g_autofree char *text =
         g_strconcat(ROOM_CAMERA SIZE(12) "WorldBegin\n", c->world, NULL);
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     g_autofree char *long_run = g_strconcat(c->reference, " seed=99", NULL);
-    g_autoptr(image) reference = render_with(s, long_run);
+    g_autoptr(image) reference = render_with(v, long_run);
     double claimed2 = 0, made2 = 0;
     for (int seed = 0; seed < SEEDS; seed++) {
         g_autofree char *words = g_strdup_printf("%s seed=%d", c->how, seed);
-        g_autoptr(render) r = render_of(s, words);
+        g_autoptr(render) r = render_of(v, words);
         g_assert_true(render_run(r, NULL, NULL, NULL));
         g_autoptr(image) img = image_of(r);
         double claimed = render_get_statistics(r).noise;
@@ -324,12 +324,12 @@ static void test_variance_layer(void)
 {
     enum { SEEDS = 40, PIXELS = 64 };
     double sum[PIXELS] = {0}, sum2[PIXELS] = {0}, layer[PIXELS] = {0};
-    g_autoptr(scene) s =
-        scene_of(ROOM_CAMERA SIZE(8) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(8) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
     for (int seed = 0; seed < SEEDS; seed++) {
         g_autofree char *words =
             g_strdup_printf("passes=8 spp=1 photons=2000 radius=0.2 seed=%d", seed);
-        g_autoptr(image) img = render_with(s, words);
+        g_autoptr(image) img = render_with(v, words);
         size_t variance = channel_of(img, "variance.Y");
         for (size_t i = 0; i < PIXELS; i++) {
             double y = luminance_at(img, i);
@@ -351,8 +351,8 @@ static void test_variance_layer(void)
 
 static void test_one_pass_claims_nothing(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM);
-    g_autoptr(render) r = render_of(s, "integrator=path passes=1 spp=1");
+    g_autoptr(view) v = view_of(ROOM);
+    g_autoptr(render) r = render_of(v, "integrator=path passes=1 spp=1");
     g_assert_true(render_run(r, NULL, NULL, NULL));
     g_autoptr(image) img = image_of(r);
     g_assert_cmpint(image_channel(img, "variance.Y"), ==, -1);
@@ -379,10 +379,10 @@ static double largest_ratio(const image *a, const image *b, const char *channel)
    away beneath it. */
 static void test_hidden_casts_shadow(void)
 {
-    g_autoptr(scene) with = scene_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP(
+    g_autoptr(view) with = view_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP(
         "") HIDDEN_BALL("Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n") ROOM_WALLS);
-    g_autoptr(scene) without =
-        scene_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    g_autoptr(view) without =
+        view_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
     const char *const ways[] = {"integrator=path passes=4 spp=16",
                                 "passes=4 spp=4 photons=20000 radius=0.2"};
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
@@ -402,12 +402,12 @@ static void test_hidden_casts_shadow(void)
 /* A hidden lens: no depth, no highlight, but its caustic. */
 static void test_hidden_casts_caustic(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP(
-        "") HIDDEN_BALL("Material \"dielectric\"\n") ROOM_WALLS);
+    g_autoptr(view) v = view_of(ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP("")
+                                    HIDDEN_BALL("Material \"dielectric\"\n") ROOM_WALLS);
     const char *const ways[] = {"integrator=auto passes=4 spp=4 photons=20000",
                                 "passes=4 spp=4 photons=20000"};
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
-        g_autoptr(image) img = render_with(s, ways[i]);
+        g_autoptr(image) img = render_with(v, ways[i]);
         g_test_message("%s: caustic %g", ways[i], mean_of(img, "caustic"));
         g_assert_cmpfloat(mean_of(img, "specular"), <=, 0.0);
         g_assert_cmpfloat(mean_of(img, "caustic"), >, 0.01);
@@ -427,7 +427,7 @@ static void test_hidden_is_seen_in_mirrors(void)
         ROOM_CAMERA SIZE(16) "WorldBegin\n",
         "Attribute \"shape\" \"bool camera_visible\" false\n", ROOM_LAMP(""),
         "Attribute \"shape\" \"bool camera_visible\" true\n", mirror, ROOM_WALLS, NULL);
-    g_autoptr(scene) shown = scene_of(shown_text), hidden = scene_of(hidden_text);
+    g_autoptr(view) shown = view_of(shown_text), hidden = view_of(hidden_text);
     g_autoptr(image) a = render_with(shown, "integrator=path passes=2 spp=16");
     g_autoptr(image) b = render_with(hidden, "integrator=path passes=2 spp=16");
     g_assert_cmpfloat(mean_of(a, "emission"), >, 0.05);
@@ -472,11 +472,11 @@ static const char *const grouped_ways[] = {
 /* Pixel by pixel and channel by channel the groups sum to the picture. */
 static void test_groups_sum_to_the_beauty(void)
 {
-    g_autoptr(scene) s =
-        scene_of(ROOM_CAMERA SIZE(12) "PixelFilter \"gaussian\"\n"
-                                      "WorldBegin\n" GROUPED_LIGHTS OPEN_ROOM GLASS_BALL);
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(12) "PixelFilter \"gaussian\"\n"
+                                     "WorldBegin\n" GROUPED_LIGHTS OPEN_ROOM GLASS_BALL);
     for (size_t i = 0; i < G_N_ELEMENTS(grouped_ways); i++) {
-        g_autoptr(image) img = render_with(s, grouped_ways[i]);
+        g_autoptr(image) img = render_with(v, grouped_ways[i]);
         double worst = 0;
         for (int c = 0; c < 3; c++) {
             size_t channel[4];
@@ -502,9 +502,9 @@ static void test_groups_sum_to_the_beauty(void)
 /* A group is what its lamps give alone. */
 static void test_group_is_its_light_alone(void)
 {
-    g_autoptr(scene) all =
-        scene_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" GROUPED_LIGHTS OPEN_ROOM GLASS_BALL);
-    g_autoptr(scene) key = scene_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" ROOM_LAMP(
+    g_autoptr(view) all =
+        view_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" GROUPED_LIGHTS OPEN_ROOM GLASS_BALL);
+    g_autoptr(view) key = view_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" ROOM_LAMP(
         "\"string group\" \"key\"") OPEN_ROOM GLASS_BALL);
     const char *const ways[] = {
         "integrator=path passes=4 spp=64", "passes=8 spp=4 photons=40000",
@@ -522,16 +522,16 @@ static void test_group_is_its_light_alone(void)
 /* Groups change nothing in the picture but rounding, and threads change not even that. */
 static void test_groups_change_nothing(void)
 {
-    g_autoptr(scene) s =
-        scene_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" GROUPED_LIGHTS OPEN_ROOM GLASS_BALL);
-    g_autoptr(scene) plain =
-        scene_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" ROOM_LAMP("") OPEN_ROOM GLASS_BALL);
-    g_autoptr(scene) named = scene_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" ROOM_LAMP(
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" GROUPED_LIGHTS OPEN_ROOM GLASS_BALL);
+    g_autoptr(view) plain =
+        view_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" ROOM_LAMP("") OPEN_ROOM GLASS_BALL);
+    g_autoptr(view) named = view_of(ROOM_CAMERA SIZE(12) "WorldBegin\n" ROOM_LAMP(
         "\"string group\" \"a\"") OPEN_ROOM GLASS_BALL);
     for (size_t i = 0; i < G_N_ELEMENTS(grouped_ways); i++) {
         g_autofree char *one = g_strconcat(grouped_ways[i], " threads=1", NULL);
         g_autofree char *three = g_strconcat(grouped_ways[i], " threads=3", NULL);
-        g_autoptr(image) a = render_with(s, one), b = render_with(s, three);
+        g_autoptr(image) a = render_with(v, one), b = render_with(v, three);
         assert_same_bits(a, b);
         g_autoptr(image) without = render_with(plain, one),
                          with = render_with(named, one);
@@ -567,9 +567,9 @@ static bool look_for_whole(double fraction, const render_statistics *st, void *d
 
 static void test_picture_is_seen_soon(void)
 {
-    g_autoptr(scene) s =
-        scene_of(ROOM_CAMERA SIZE(64) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
-    g_autoptr(render) r = render_of(s, "integrator=path passes=1 spp=1024");
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(64) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    g_autoptr(render) r = render_of(v, "integrator=path passes=1 spp=1024");
     glance g = {.render = r};
     g_assert_false(render_run(r, look_for_whole, &g, NULL));
     g_assert_cmpuint(g.size, ==, 2);

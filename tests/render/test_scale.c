@@ -61,7 +61,7 @@ static const char foggy[] =
                      "\"sphere\" \"float radius\" 1.5\n";
 
 /* The scene with its lengths multiplied. */
-static scene *scaled(const char *text, double by)
+static view *scaled(const char *text, double by)
 {
     const struct {
         char letter;
@@ -76,7 +76,7 @@ static scene *scaled(const char *text, double by)
         text += *text == '$';
         g_string_append(all, number);
     }
-    return scene_of(all->str);
+    return view_of(all->str);
 }
 
 /* The mean difference of pixels, over the mean of all. */
@@ -112,11 +112,11 @@ static void test_scales(gconstpointer data)
 {
     static const double scales[] = {0x1p-36, 0x1p-30, 0x1p30, 0x1p36};
     const way *by = data;
-    g_autoptr(scene) plain = scaled(by->scene, 1);
+    g_autoptr(view) plain = scaled(by->scene, 1);
     g_autoptr(image) want = render_with(plain, by->words);
     for (size_t i = 0; i < G_N_ELEMENTS(scales); i++) {
-        g_autoptr(scene) s = scaled(by->scene, scales[i]);
-        g_autoptr(image) img = render_with(s, by->words);
+        g_autoptr(view) v = scaled(by->scene, scales[i]);
+        g_autoptr(image) img = render_with(v, by->words);
         double off = pixel_difference(img, want);
         g_test_message("%g: %.6f %%", scales[i], 100 * off);
         g_assert_cmpfloat(off, <=, by->off);
@@ -157,20 +157,20 @@ static void test_too_small(void)
 static void test_strange_rays(void)
 {
     static const float strange[] = {NAN, INFINITY, 1e30f, -1e19f, FLT_MAX};
-    g_autoptr(scene) s = scaled(everything, 1);
+    g_autoptr(view) v = scaled(everything, 1);
     ray good = {.direction = {0, 0, 1, 0}, .t_max = INFINITY};
     surface_hit hit;
     good.origin = vec3_make(0, 0, 1);
-    g_assert_true(accel_intersect(s->accel, &good, &hit));
-    g_assert_true(accel_occluded(s->accel, &good));
+    g_assert_true(accel_intersect(v->scene->accel, &good, &hit));
+    g_assert_true(accel_occluded(v->scene->accel, &good));
     for (size_t i = 0; i < G_N_ELEMENTS(strange); i++) {
         ray from = good, to = good;
         from.origin[1] = strange[i];
         to.direction[1] = strange[i];
-        g_assert_false(accel_intersect(s->accel, &from, &hit));
-        g_assert_false(accel_occluded(s->accel, &from));
-        g_assert_false(accel_intersect(s->accel, &to, &hit));
-        g_assert_false(accel_occluded(s->accel, &to));
+        g_assert_false(accel_intersect(v->scene->accel, &from, &hit));
+        g_assert_false(accel_occluded(v->scene->accel, &from));
+        g_assert_false(accel_intersect(v->scene->accel, &to, &hit));
+        g_assert_false(accel_occluded(v->scene->accel, &to));
     }
 }
 

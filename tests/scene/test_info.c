@@ -22,8 +22,8 @@
 static void check(const char *world, const char *expected)
 {
     g_autofree char *text = g_strconcat(HEAD, world, NULL);
-    g_autoptr(scene) s = scene_of(text);
-    g_autoptr(GPtrArray) warnings = describe_warnings(s);
+    g_autoptr(view) v = view_of(text);
+    g_autoptr(GPtrArray) warnings = describe_warnings(v);
     const char *found = warnings->len ? warnings->pdata[0] : NULL;
     g_test_message("%s: %s", world, found ? found : "nothing");
     g_assert_cmpuint(warnings->len, ==, expected != NULL);
@@ -102,9 +102,9 @@ static void test_portal(void)
         scene_folder f = folder_new(text);
         folder_write(&f, "sky.pfm", (const char *)sky->data, (gssize)sky->len);
         g_autoptr(GError) error = NULL;
-        g_autoptr(scene) s = format_load(f.main, 1, NULL, &error);
+        g_autoptr(view) v = load_view(f.main, NULL, &error);
         g_assert_no_error(error);
-        g_autoptr(GPtrArray) warnings = describe_warnings(s);
+        g_autoptr(GPtrArray) warnings = describe_warnings(v);
         g_assert_cmpuint(warnings->len, ==, i);
         if (i > 0)
             g_assert_nonnull(strstr(warnings->pdata[0], "light 1 (infinite) reaches"));
@@ -251,8 +251,8 @@ static void test_media(void)
 static void check_fog(const char *lamp, const char *world, bool warned)
 {
     g_autofree char *text = g_strconcat(IN_FOG, lamp, world, NULL);
-    g_autoptr(scene) s = scene_of(text);
-    g_autoptr(GPtrArray) warnings = describe_warnings(s);
+    g_autoptr(view) v = view_of(text);
+    g_autoptr(GPtrArray) warnings = describe_warnings(v);
     g_assert_cmpuint(warnings->len, ==, warned);
     if (warned)
         g_assert_nonnull(strstr(warnings->pdata[0], "through medium 'fog'"));
@@ -275,8 +275,8 @@ static void check_lamp(const char *before, const char *between, const char *text
     g_autofree char *all = g_strconcat(
         FOG, before, "LookAt 0 -9 2  0 0 0  0 0 1 Camera \"perspective\" WorldBegin\n",
         between, "LightSource \"point\"\n", NULL);
-    g_autoptr(scene) s = scene_of(all);
-    g_autoptr(GPtrArray) warnings = describe_warnings(s);
+    g_autoptr(view) v = view_of(all);
+    g_autoptr(GPtrArray) warnings = describe_warnings(v);
     g_assert_cmpuint(warnings->len, ==, text ? 1 : 0);
     if (text)
         g_assert_nonnull(strstr(warnings->pdata[0], text));

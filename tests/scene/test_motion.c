@@ -17,7 +17,7 @@
 
 /* The scene with `thing` moved all of the way in the shutter's time, or standing at a
  * share of it. */
-static scene *scene_with(const char *thing, double at)
+static view *scene_with(const char *thing, double at)
 {
     const double way[3] = {1.6, 0.3, 0.4};
     g_autofree char *moved =
@@ -31,7 +31,7 @@ static scene *scene_with(const char *thing, double at)
         "AttributeBegin\nTranslate -0.8 0 0.8\n%sShape \"disk\" \"float radius\" 0.01\n"
         "%sAttributeEnd\n",
         moved, thing);
-    return scene_of(text);
+    return view_of(text);
 }
 
 /* Mean over blocks of 4 x 4 pixels of what is not seen by way of glass, where small
@@ -47,9 +47,9 @@ static void add_layer(const image *img, const char *name, double *sums, double w
                 16;
 }
 
-static void render_blocks(const scene *s, const char *words, double *sums, double weight)
+static void render_blocks(const view *v, const char *words, double *sums, double weight)
 {
-    g_autoptr(image) img = render_with(s, words);
+    g_autoptr(image) img = render_with(v, words);
     add_layer(img, "direct.G", sums, weight);
     add_layer(img, "indirect.G", sums, weight);
     add_layer(img, "caustic.G", sums, weight);
@@ -60,9 +60,9 @@ static void still_blocks(const char *thing, const char *words, double *sums)
 {
     enum { TIMES = 16 };
     for (int i = 0; i < TIMES; i++) {
-        g_autoptr(scene) s = scene_with(thing, (i + 0.5) / TIMES);
+        g_autoptr(view) v = scene_with(thing, (i + 0.5) / TIMES);
         g_autofree char *seeded = g_strdup_printf("%s seed=%d", words, i);
-        render_blocks(s, seeded, sums, 1.0 / TIMES);
+        render_blocks(v, seeded, sums, 1.0 / TIMES);
     }
 }
 
@@ -93,7 +93,7 @@ static void test_board(void)
         "integrator=vcm passes=12 spp=24 photons=10000",
         "integrator=vcm vcm_strategies=bpt passes=12 spp=24 photons=10000",
     };
-    g_autoptr(scene) moving = scene_with(wall, -1);
+    g_autoptr(view) moving = scene_with(wall, -1);
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
         double found[25] = {0};
         render_blocks(moving, ways[i], found, 1);
@@ -109,11 +109,11 @@ static void test_final_gather(void)
 #define GATHER "integrator=photonmap passes=4 spp=8 final_gather=on gather_rays=8 "
     double still[25] = {0}, found[25] = {0}, sum = 0, sum_still = 0;
     for (int i = 0; i < TIMES; i++) {
-        g_autoptr(scene) s = scene_with(wall, (i + 0.5) / TIMES);
-        g_autoptr(image) img = render_with(s, GATHER "photons=10000");
+        g_autoptr(view) v = scene_with(wall, (i + 0.5) / TIMES);
+        g_autoptr(image) img = render_with(v, GATHER "photons=10000");
         add_layer(img, "indirect.G", still, 1.0 / TIMES);
     }
-    g_autoptr(scene) moving = scene_with(wall, -1);
+    g_autoptr(view) moving = scene_with(wall, -1);
     g_autoptr(image) img = render_with(moving, GATHER "photons=80000");
     add_layer(img, "indirect.G", found, 1);
     for (int i = 0; i < 25; i++) {
@@ -135,7 +135,7 @@ static void test_glass_ball(void)
         "integrator=auto passes=12 spp=24 photons=30000",
         "integrator=vcm passes=12 spp=24 photons=10000",
     };
-    g_autoptr(scene) moving = scene_with(glass, -1);
+    g_autoptr(view) moving = scene_with(glass, -1);
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
         double found[25] = {0};
         render_blocks(moving, ways[i], found, 1);
@@ -152,7 +152,7 @@ static void test_camera_moves(void)
                  "Rotate 20 0 1 0\nActiveTransform All\n" VIEW LAMP FLOOR
                  "Translate 0 0 0.6\n";
     g_autofree char *text = g_strconcat(head, wall, NULL);
-    g_autoptr(scene) moving = scene_of(text);
+    g_autoptr(view) moving = view_of(text);
     render_blocks(moving, "integrator=vcm passes=12 spp=32 photons=5000", found, 1);
     for (int i = 0; i < 16; i++) {
         double at = (i + 0.5) / 16;
@@ -168,13 +168,13 @@ static void test_camera_moves(void)
         transform here = motion_at(&path, at);
         g_autofree char *plain =
             g_strconcat(SIZE(20) VIEW LAMP FLOOR "Translate 0 0 0.6\n", wall, NULL);
-        g_autoptr(scene) s = scene_of(plain);
+        g_autoptr(view) v = view_of(plain);
         motion stand = motion_still(&here);
-        s->camera.path = stand;
-        s->camera.to_world = here;
+        v->camera.path = stand;
+        v->camera.to_world = here;
         g_autofree char *words =
             g_strdup_printf("integrator=path passes=1 spp=32 seed=%d", i);
-        render_blocks(s, words, still, 1.0 / 16);
+        render_blocks(v, words, still, 1.0 / 16);
     }
     assert_close(found, still, 0.12);
 }
@@ -182,14 +182,14 @@ static void test_camera_moves(void)
 /* Bit for bit the same on any number of threads. */
 static void test_threads(void)
 {
-    g_autoptr(scene) s = scene_with(glass, -1);
+    g_autoptr(view) v = scene_with(glass, -1);
     static const char *const ways[] = {"integrator=auto passes=2 spp=2 photons=5000 ",
                                        "integrator=vcm passes=2 spp=2 photons=5000 "};
     for (size_t i = 0; i < 2; i++) {
         g_autofree char *one = g_strconcat(ways[i], "threads=1", NULL);
         g_autofree char *three = g_strconcat(ways[i], "threads=3", NULL);
-        g_autoptr(image) a = render_with(s, one);
-        g_autoptr(image) b = render_with(s, three);
+        g_autoptr(image) a = render_with(v, one);
+        g_autoptr(image) b = render_with(v, three);
         size_t size =
             (size_t)a->width * (size_t)a->height * (size_t)a->n_channels * sizeof(float);
         g_assert_cmpmem(a->pixels, size, b->pixels, size);

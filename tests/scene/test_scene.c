@@ -351,11 +351,14 @@ static void test_film(void)
     g_assert_cmpstr(b->film.filename, ==, "a.exr");
     for (int i = 0; i < 4; i++)
         g_assert_cmpint((int)ceilf(b->film.crop[i] * (float)size[i / 2]), ==, bounds[i]);
-    g_autoptr(scene) s = commit(b);
-    g_assert_cmpfloat(fabsf(scene_imaging_ratio(s) - 2), <, 1e-6);
-    scene_resize(s, 40, 30);
-    g_assert_cmpint(s->film.height, ==, 30);
-    g_assert_cmpint(s->camera.height, ==, 30);
+    g_autoptr(view) v = scene_builder_view(b, commit(b));
+    g_assert_cmpfloat(fabsf(view_imaging_ratio(v) - 2), <, 1e-6);
+    g_autoptr(view) other = view_share(v);
+    view_resize(other, 40, 30);
+    g_assert_cmpint(other->film.height, ==, 30);
+    g_assert_cmpint(other->camera.height, ==, 30);
+    g_assert_cmpint(v->film.height, ==, 300);
+    g_assert_cmpstr(other->film.filename, ==, "a.exr");
 }
 
 static void expect_film_error(params *p, const char *kind, const char *text)
@@ -423,19 +426,27 @@ static void test_memory_refused(void)
 /* Half a pixel's width at the hit; none for rays that do not come from the eye. */
 static void test_footprint(void)
 {
-    g_autoptr(scene) s = scene_of(
+    g_autoptr(view) v = view_of(
         "Camera \"perspective\" \"float fov\" 90 Film \"rgb\" \"integer xresolution\" 64 "
         "\"integer yresolution\" 64 WorldBegin LightSource \"point\" Translate 0 0 4 "
         "Shape \"disk\" \"float radius\" 9");
     surface_hit hit;
     for (int size = 64; size <= 128; size *= 2) {
-        scene_resize(s, size, size);
-        ray r = camera_ray(&s->camera, (vec2){32, 32}, (vec2){0.5f, 0.5f}, 0.5f);
-        g_assert_true(scene_see(s, &r, &hit));
+        view_resize(v, size, size);
+        ray r = camera_ray(&v->camera, (vec2){32, 32}, (vec2){0.5f, 0.5f}, 0.5f);
+        g_assert_true(view_see(v, &r, &hit));
         g_assert_cmpfloat(fabsf(hit.footprint / (hit.t / (float)size) - 1), <, 0.01f);
-        g_assert_true(scene_intersect(s, &r, &hit));
+        g_assert_true(scene_intersect(v->scene, &r, &hit));
         g_assert_cmpfloat(hit.footprint, <=, 0);
     }
+    /* By a lens of half the angle half as wide. */
+    const motion path = v->camera.path;
+    v->camera.half_screen *= 0.5f;
+    camera_resize(&v->camera, 128, 128);
+    view_place_camera(v, &path);
+    ray r = camera_ray(&v->camera, (vec2){64, 64}, (vec2){0.5f, 0.5f}, 0.5f);
+    g_assert_true(view_see(v, &r, &hit));
+    g_assert_cmpfloat(fabsf(hit.footprint / (hit.t / 256) - 1), <, 0.01f);
 }
 
 int main(int argc, char **argv)

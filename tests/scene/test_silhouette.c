@@ -57,9 +57,9 @@ static void test_no_black_rim(gconstpointer data)
         "LookAt 0.3 -5 1  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 26\n",
         SIZE(32) "WorldBegin LightSource \"infinite\"\nMaterial ", f->text, "\n", ball,
         NULL);
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     g_autoptr(image) img =
-        render_with(s, "integrator=path max_backward_bounces=40 passes=4 spp=64 seed=3");
+        render_with(v, "integrator=path max_backward_bounces=40 passes=4 spp=64 seed=3");
     int g = image_channel(img, "G"), depth = image_channel(img, "depth.Z");
     double least = INFINITY, most = 0;
     for (int i = 0; i < img->width * img->height; i++) {

@@ -11,37 +11,37 @@
 /* ---- What is expected ---- */
 
 /* A view of one radiance. */
-typedef struct view {
+typedef struct fog_view {
     const char *name, *text;
     const char *more; /* settings */
-    double (*expected)(const struct view *v);
+    double (*expected)(const struct fog_view *v);
     twin twin;
     double eye[3], way[3]; /* for the twin; the way need not be unit */
     double value, depth;   /* for closed: what is seen, and the optical depth before it */
     double tolerance;      /* relative */
     const char *only;      /* the ways that can render it; NULL: all */
-} view;
+} fog_view;
 
-static double closed(const view *v)
+static double closed(const fog_view *v)
 {
     return v->value * exp(-v->depth);
 }
 
-static void unit_way(const view *v, double out[3])
+static void unit_way(const fog_view *v, double out[3])
 {
     double length = sqrt(twin_dot(v->way, v->way));
     for (int i = 0; i < 3; i++)
         out[i] = v->way[i] / length;
 }
 
-static double single(const view *v)
+static double single(const fog_view *v)
 {
     double way[3];
     unit_way(v, way);
     return twin_single(&v->twin, v->eye, way);
 }
 
-static double all_orders(const view *v)
+static double all_orders(const fog_view *v)
 {
     double way[3];
     unit_way(v, way);
@@ -66,7 +66,7 @@ static double under_slab(double mu)
     return 0.5 * 2 * mu * exp(-0.4 / mu);
 }
 
-static double sky_under_slab(const view *v)
+static double sky_under_slab(const fog_view *v)
 {
     (void)v;
     return mean_over_unit(under_slab);
@@ -79,7 +79,7 @@ static double under_disc(double r)
     return 0.5 * 2 * r / (d2 * d2) * exp(-0.5 * sqrt(d2));
 }
 
-static double disc_over_floor(const view *v)
+static double disc_over_floor(const fog_view *v)
 {
     (void)v;
     return mean_over_unit(under_disc) * exp(-0.5 * 0.5 * G_SQRT2);
@@ -101,7 +101,7 @@ static double disc_over_floor(const view *v)
 /* Transmittance of a plate of index 1.5, straight through: 2n / (n² + 1). */
 #define PLATE_PASSES (3 / 3.25)
 
-static const view absorbing[] = {
+static const fog_view absorbing[] = {
     {.name = "lamp",
      .text = ABSORBING EYE("f", "0 -3 0  0 0 0") BETWEEN("f", "f")
          LAMP("Translate 0 2 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" 1"),
@@ -221,7 +221,7 @@ static const view absorbing[] = {
 
 #define ONCE .expected = single, .more = " max_backward_bounces=1", .only = "path auto"
 
-static const view scattering[] = {
+static const fog_view scattering[] = {
     {.name = "once-0", .text = BALL_OF("0", "2 -1.5 0"), BALL_TWIN(0, 2, -1.5), ONCE},
     {.name = "once-forward",
      .text = BALL_OF(".8", "1 2.5 0"),
@@ -274,7 +274,7 @@ static const view scattering[] = {
     "AreaLightSource \"diffuse\" \"rgb L\" [.5 .5 .5] \"bool twosided\" true " BOX(      \
         "1", "-1", "1") "AttributeEnd\n"
 
-static const view furnaces[] = {
+static const fog_view furnaces[] = {
     {.name = "thin-0", .text = WHITE_BALL(".25", "0", BEFORE)},
     {.name = "thick-0", .text = WHITE_BALL("2.5", "0", BEFORE)},
     {.name = "thick-forward", .text = WHITE_BALL("2.5", ".8", BEFORE)},
@@ -320,13 +320,13 @@ typedef struct method {
 } method;
 
 typedef struct check {
-    const view *view;
+    const fog_view *view;
     const method *way;
     double tolerance;
 } check;
 
 /* The twin takes its time: once for all ways. */
-static double expected_of(const view *v)
+static double expected_of(const fog_view *v)
 {
     static GHashTable *known;
     if (!known)
@@ -346,8 +346,8 @@ static void test_view(gconstpointer data)
     g_autofree char *how =
         g_strconcat(c->way->words, c->view->more ? c->view->more : "", NULL);
     double expected = expected_of(c->view);
-    g_autoptr(scene) s = scene_of(c->view->text);
-    g_autoptr(image) img = render_with(s, how);
+    g_autoptr(view) v = view_of(c->view->text);
+    g_autoptr(image) img = render_with(v, how);
     double seen = mean_of(img, ""), most = c->tolerance + c->way->more;
     g_test_message("%.5f, expected %.5f: off by %.2f %%, allowed %.2f %%", seen, expected,
                    100 * (seen / expected - 1), 100 * most);
@@ -361,7 +361,7 @@ static bool is_among(const char *words, const char *word)
 }
 
 /* Makes tests of a group of views, each in some ways. */
-static void add_views(const char *group, const view *list, size_t n, double tolerance,
+static void add_views(const char *group, const fog_view *list, size_t n, double tolerance,
                       const method *ways, size_t n_ways)
 {
     for (size_t w = 0; w < n_ways; w++)

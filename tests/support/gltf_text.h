@@ -99,6 +99,22 @@ static inline scene *load(const char *middle, notes *kept)
     return s;
 }
 
+/** The same with the view that it describes. */
+static inline view *load_shown(const char *middle, notes *kept)
+{
+    scene_folder f = folder_new("");
+    g_autofree char *text = document(middle);
+    folder_write(&f, "a.gltf", text, -1);
+    folder_write(&f, "body.bin", (const char *)&tetrahedron, sizeof tetrahedron);
+    g_autofree char *path = g_build_filename(f.path, "a.gltf", NULL);
+    const log_sink sink = {keep_note, kept};
+    g_autoptr(GError) error = NULL;
+    view *v = load_view(path, kept ? &sink : NULL, &error);
+    g_assert_no_error(error);
+    folder_remove(&f);
+    return v;
+}
+
 static inline void assert_at(vec3 p, float x, float y, float z)
 {
     vec3 off = abs3(p - vec3_make(x, y, z));

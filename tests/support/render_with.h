@@ -22,11 +22,11 @@ static inline settings settings_with(const scene *s, const char *words)
     return how;
 }
 
-static inline render *render_of(const scene *s, const char *words)
+static inline render *render_of(const view *v, const char *words)
 {
     g_autoptr(GError) error = NULL;
-    settings how = settings_with(s, words);
-    render *r = render_new(s, &how, &error);
+    settings how = settings_with(v->scene, words);
+    render *r = render_new(v, &how, &error);
     g_assert_no_error(error);
     return r;
 }
@@ -39,10 +39,10 @@ static inline image *image_of(const render *r)
     return img;
 }
 
-static inline image *render_with(const scene *s, const char *words)
+static inline image *render_with(const view *v, const char *words)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(render) r = render_of(s, words);
+    g_autoptr(render) r = render_of(v, words);
     render_run(r, NULL, NULL, &error);
     g_assert_no_error(error);
     g_assert_cmpuint(render_get_statistics(r).n_not_finite, ==, 0);

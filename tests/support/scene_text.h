@@ -53,6 +53,25 @@ static inline spectrum sky_at(const scene *s, vec3 d, const wavelengths *w)
     return sum;
 }
 
+/** The view that a file describes; NULL with its error. */
+static inline view *load_view(const char *path, const log_sink *log, GError **error)
+{
+    const load_options options = {.threads = 1, .log = log};
+    return format_load_view(path, &options, error);
+}
+
+/** The view that a text, which must be right, describes of its scene. */
+static inline view *view_of(const char *text)
+{
+    scene_folder f = folder_new(text);
+    g_autoptr(GError) error = NULL;
+    view *v = load_view(f.main, NULL, &error);
+    if (!v)
+        g_error("%s\nof\n%s", error->message, text);
+    folder_remove(&f);
+    return v;
+}
+
 /** The scene of a text that must be right. */
 static inline scene *scene_of(const char *text)
 {

@@ -29,9 +29,9 @@ static void test_white_box(void)
         "integrator=vcm passes=4 spp=8 photons=256",
         "integrator=photonmap passes=2 spp=2 photons=4000 radius=.3",
     };
-    g_autoptr(scene) s = scene_of(WHITE_BOX);
+    g_autoptr(view) v = view_of(WHITE_BOX);
     for (size_t i = 0; i < G_N_ELEMENTS(each); i++) {
-        g_autoptr(image) img = render_with(s, each[i]);
+        g_autoptr(image) img = render_with(v, each[i]);
         double found = mean_of(img, "") * (1.0 - REFLECTANCE);
         g_test_message("%s: %.4f", each[i], found);
         g_assert_cmpfloat(fabs(found - 1.0), <, 0.05);
@@ -70,12 +70,12 @@ static void test_one_depth(void)
          "max_forward_bounces=0 final_gather=on gather_rays=16 precompute_radiance=off",
          2},
     };
-    g_autoptr(scene) s = scene_of(WHITE_BOX);
+    g_autoptr(view) v = view_of(WHITE_BOX);
     for (size_t i = 0; i < G_N_ELEMENTS(each); i++)
         for (int limit = 0; limit < 4; limit++) {
             g_autofree char *words =
                 g_strdup_printf("%s max_backward_bounces=%d", each[i].words, limit);
-            g_autoptr(image) img = render_with(s, words);
+            g_autoptr(image) img = render_with(v, words);
             double expected = light_of_events(MIN(limit, each[i].most));
             double found = mean_of(img, "");
             g_test_message("%s: %.4f, expected %.4f", words, found, expected);
@@ -104,13 +104,13 @@ static void test_one_depth(void)
    behind a pane a ray is rounded, and a few of them come out elsewhere. */
 #define ROUNDED 1e-4
 
-static double mean_with(const scene *s, const char *words, int limit)
+static double mean_with(const view *v, const char *words, int limit)
 {
     g_autofree char *all = g_strdup_printf("threads=1 caustic_emission=uniform seed=5 "
                                            "max_forward_bounces=%d "
                                            "max_backward_bounces=%d %s",
                                            limit, limit, words);
-    g_autoptr(image) img = render_with(s, all);
+    g_autoptr(image) img = render_with(v, all);
     return mean_of(img, "");
 }
 
@@ -129,8 +129,8 @@ static void test_interfaces_are_none(void)
         "integrator=vcm passes=1 spp=8 photons=2000 radius=.4 edges=false",
         "integrator=vcm vcm_strategies=bpt passes=1 spp=8 photons=2000",
     };
-    g_autoptr(scene) open = scene_of(ROOM SILVER_BALL);
-    g_autoptr(scene) paned = scene_of(ROOM PANES LYING SILVER_BALL);
+    g_autoptr(view) open = view_of(ROOM SILVER_BALL);
+    g_autoptr(view) paned = view_of(ROOM PANES LYING SILVER_BALL);
     for (size_t i = 0; i < G_N_ELEMENTS(each); i++)
         for (int limit = 0; limit < 4; limit++) {
             double expected = mean_with(open, each[i], limit);
@@ -157,8 +157,8 @@ static void test_interfaces_in_fog(void)
         "integrator=auto passes=1 spp=64 caustic_photons=2000 radius=.4",
         "integrator=photonmap passes=1 spp=8 photons=4000 radius=.4 edges=false",
     };
-    g_autoptr(scene) open = scene_of(FOGGY_ROOM SILVER_BALL);
-    g_autoptr(scene) paned = scene_of(FOGGY_ROOM PANES LYING SILVER_BALL);
+    g_autoptr(view) open = view_of(FOGGY_ROOM SILVER_BALL);
+    g_autoptr(view) paned = view_of(FOGGY_ROOM PANES LYING SILVER_BALL);
     for (size_t i = 0; i < G_N_ELEMENTS(each); i++)
         for (int limit = 1; limit < 3; limit++) {
             double expected = mean_with(open, each[i], limit);
@@ -180,11 +180,12 @@ static void test_visible_past_interfaces(void)
                                "2 -3 0 2] \"integer indices\" [0 1 2 0 2 3] "
                                "AttributeEnd\n",
                                -3.3 + 0.02 * i);
-    g_autoptr(scene) open = scene_of(ROOM), paned = scene_of(text->str);
+    g_autoptr(view) open = view_of(ROOM), paned = view_of(text->str);
     enum { N = 256 };
     visible_point a[N], b[N];
-    const transport_plan by_open = {.scene = open, .how = settings_default()};
-    const transport_plan by_paned = {.scene = paned, .how = settings_default()};
+    const settings how = settings_default();
+    const transport_plan by_open = transport_plan_of(open, &how);
+    const transport_plan by_paned = transport_plan_of(paned, &how);
     g_assert_cmpuint(find_visible_points(&by_open, N, a), ==, N);
     g_assert_cmpuint(find_visible_points(&by_paned, N, b), ==, N);
     for (int i = 0; i < N; i++)
@@ -220,12 +221,12 @@ static void test_ends(void)
         "integrator=vcm passes=1 spp=4 photons=16 radius=.3",
     };
     for (size_t i = 0; i < G_N_ELEMENTS(endless); i++) {
-        g_autoptr(scene) s = scene_of(endless[i]);
+        g_autoptr(view) v = view_of(endless[i]);
         for (size_t k = 0; k < G_N_ELEMENTS(each); k++) {
             g_test_message("room %zu, %s", i, each[k]);
             g_autofree char *words =
                 g_strconcat("caustic_emission=uniform ", each[k], NULL);
-            g_autoptr(image) img = render_with(s, words);
+            g_autoptr(image) img = render_with(v, words);
             g_assert_true(isfinite(mean_of(img, "")));
         }
     }
@@ -241,8 +242,8 @@ static bool stop_at_once(double done, const render_statistics *statistics, void 
 /* Also in a room where one path is long. */
 static void test_cancel_acts(void)
 {
-    g_autoptr(scene) s = scene_of(endless[0]);
-    g_autoptr(render) r = render_of(s, "integrator=path passes=1000000 spp=16 threads=1");
+    g_autoptr(view) v = view_of(endless[0]);
+    g_autoptr(render) r = render_of(v, "integrator=path passes=1000000 spp=16 threads=1");
     g_autoptr(GError) error = NULL;
     int asked = 0;
     render_run(r, stop_at_once, &asked, &error);

@@ -56,26 +56,26 @@ static bool same_bits(const image *a, const image *b)
 
 static void test_is_path(gconstpointer data)
 {
-    g_autoptr(scene) s = scene_of(((const subject *)data)->text);
-    g_autoptr(render) r = render_of(s, "integrator=auto" SHORT);
+    g_autoptr(view) v = view_of(((const subject *)data)->text);
+    g_autoptr(render) r = render_of(v, "integrator=auto" SHORT);
     g_assert_true(render_run(r, NULL, NULL, NULL));
     g_assert_cmpuint(photons_of(r), ==, 0);
     g_autoptr(image) shared = image_of(r);
-    g_autoptr(image) path = render_with(s, "integrator=path" SHORT);
+    g_autoptr(image) path = render_with(v, "integrator=path" SHORT);
     g_assert_true(same_bits(shared, path));
 }
 
 static void test_sends_photons(gconstpointer data)
 {
-    g_autoptr(scene) s = scene_of(((const subject *)data)->text);
-    g_autoptr(render) r = render_of(s, "integrator=auto" SHORT);
+    g_autoptr(view) v = view_of(((const subject *)data)->text);
+    g_autoptr(render) r = render_of(v, "integrator=auto" SHORT);
     g_assert_true(render_run(r, NULL, NULL, NULL));
     g_assert_cmpuint(photons_of(r), >, 100);
 }
 
-static double rays_of(const scene *s, const char *words)
+static double rays_of(const view *v, const char *words)
 {
-    g_autoptr(render) r = render_of(s, words);
+    g_autoptr(render) r = render_of(v, words);
     uint64_t before = rays_asked;
     g_assert_true(render_run(r, NULL, NULL, NULL));
     const render_statistics told = render_get_statistics(r);
@@ -84,16 +84,16 @@ static double rays_of(const scene *s, const char *words)
     return (double)rays;
 }
 
-/* Trials, of which there are a few even for the smallest picture, are all that it costs to
-   find out that photons do not pay; a tenth is what is aimed for. */
+/* Trials, of which there are a few even for the smallest picture, are all that it costs
+   to find out that photons do not pay; a tenth is what is aimed for. */
 #define DEARER 1.15
 
 static void test_costs_as_path(gconstpointer data)
 {
     const subject *of = data;
-    g_autoptr(scene) s = scene_of(of->text);
-    double path = rays_of(s, "integrator=path" SHORT);
-    double shared = rays_of(s, "integrator=auto" SHORT);
+    g_autoptr(view) v = view_of(of->text);
+    double path = rays_of(v, "integrator=path" SHORT);
+    double shared = rays_of(v, "integrator=auto" SHORT);
     g_test_message("%s: %.0f rays, %.3f of path", of->name, shared, shared / path);
     g_assert_cmpfloat(shared, <, DEARER * path);
 }

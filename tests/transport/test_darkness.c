@@ -12,16 +12,16 @@ static const char *const lamps[] = {
     "0] AreaLightSource \"diffuse\" \"rgb L\" [0 0 0]\n",
 };
 
-static scene *dark_room(const char *lamp, const log_sink *log)
+static view *dark_room(const char *lamp, const log_sink *log)
 {
     g_autofree char *text = g_strconcat(ROOM_CAMERA SIZE(8) "WorldBegin\n" ROOM_WALLS,
                                         lamp, GLASS_BALL, NULL);
     scene_folder f = folder_new(text);
     g_autoptr(GError) error = NULL;
-    scene *s = format_load(f.main, 1, log, &error);
+    view *v = load_view(f.main, log, &error);
     g_assert_no_error(error);
     folder_remove(&f);
-    return s;
+    return v;
 }
 
 static void test_picture_is_black(void)
@@ -38,9 +38,9 @@ static void test_picture_is_black(void)
         "integrator=vcm passes=2 vcm_strategies=bpm",
     };
     for (size_t i = 0; i < G_N_ELEMENTS(lamps); i++) {
-        g_autoptr(scene) s = dark_room(lamps[i], NULL);
+        g_autoptr(view) v = dark_room(lamps[i], NULL);
         for (size_t k = 0; k < G_N_ELEMENTS(ways); k++) {
-            g_autoptr(image) img = render_with(s, ways[k]);
+            g_autoptr(image) img = render_with(v, ways[k]);
             g_assert_false(fabs(mean_of(img, "")) > 0.0);
         }
     }
@@ -49,8 +49,8 @@ static void test_picture_is_black(void)
 /* Nothing but a camera: an empty picture. */
 static void test_nothing_is_black(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM_CAMERA SIZE(8) "WorldBegin\n");
-    g_autoptr(image) img = render_with(s, "integrator=auto passes=1");
+    g_autoptr(view) v = view_of(ROOM_CAMERA SIZE(8) "WorldBegin\n");
+    g_autoptr(image) img = render_with(v, "integrator=auto passes=1");
     g_assert_false(fabs(mean_of(img, "")) > 0.0);
 }
 
@@ -71,7 +71,7 @@ static void test_warning(void)
     for (size_t i = 0; i < G_N_ELEMENTS(lamps_and_words); i++) {
         g_autoptr(GString) text = g_string_new(NULL);
         const log_sink sink = {keep_warning, text};
-        g_autoptr(scene) s = dark_room(lamps_and_words[i][0], &sink);
+        g_autoptr(view) v = dark_room(lamps_and_words[i][0], &sink);
         g_assert_cmpstr(text->str, ==, lamps_and_words[i][1]);
     }
 }

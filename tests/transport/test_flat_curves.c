@@ -36,14 +36,14 @@ static const way sky_ways[] = {
 static void test_sky(gconstpointer data)
 {
     const way *how = data;
-    g_autoptr(scene) s = scene_of(
+    g_autoptr(view) v = view_of(
         "LookAt 1 -2 1.5  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 10\n" SIZE(
             8) "WorldBegin LightSource \"infinite\" Material \"diffuse\" \"rgb "
                "reflectance\" [0.5 0.5 0.5] Rotate 20 0 1 0 Shape \"curve\" \"string "
                "type\" \"flat\" \"float width\" 1 \"point3 P\" [0 0 -3 0 0 -1 0 0 1 0 0 "
                "3]\n");
     g_autofree char *words = g_strconcat("max_backward_bounces=-1 ", how->words, NULL);
-    g_autoptr(image) img = render_with(s, words);
+    g_autoptr(image) img = render_with(v, words);
     double found = mean_of(img, "");
     g_test_message("%s: %g, expected 0.5 (%+.2f %%)", words, found, 200 * found - 100);
     g_assert_cmpfloat(fabs(found / 0.5 - 1), <, how->tolerance);
@@ -86,11 +86,11 @@ static void check_room(const char *object, const char *strand, const way *how)
         g_string_append_printf(
             text, "AttributeBegin Translate %g %g 0.1 Rotate %d 0 0 1 %s AttributeEnd\n",
             0.06 * i - 0.87, 0.3 * sin(2.0 * i), 50 * i, strand);
-    g_autoptr(scene) s = scene_of(text->str);
+    g_autoptr(view) v = view_of(text->str);
     g_autofree char *words = g_strconcat("max_backward_bounces=-1 ", how->words, NULL);
     g_autoptr(image) path =
-        render_with(s, "integrator=path passes=8 spp=32 max_backward_bounces=-1");
-    g_autoptr(image) found = render_with(s, words);
+        render_with(v, "integrator=path passes=8 spp=32 max_backward_bounces=-1");
+    g_autoptr(image) found = render_with(v, words);
     const char *const layers[] = {"direct", "indirect"};
     for (size_t i = 0; i < G_N_ELEMENTS(layers); i++) {
         double a = mean_of(found, layers[i]), b = mean_of(path, layers[i]);

@@ -52,12 +52,12 @@ static void test_colour(gconstpointer data)
                         .radius = 1, .lamp = {2, -1.5, 0}, .strength = 1};
         weight[i] = twin_radiance(&t, eye, way, 400000, 11).sum;
     }
-    g_autoptr(scene) s = scene_of(COLOURED EYE("", "0 -4 .3  0 0 .3") BETWEEN("", "")
-                                      POINT("2 -1.5 0") BETWEEN("f", "") BALL("1"));
+    g_autoptr(view) v = view_of(COLOURED EYE("", "0 -4 .3  0 0 .3") BETWEEN("", "")
+                                    POINT("2 -1.5 0") BETWEEN("f", "") BALL("1"));
     float expected[3];
-    coloured_rgb(s, weight, expected);
+    coloured_rgb(v->scene, weight, expected);
     g_autofree char *how = g_strconcat(m->words, " spp=16 passes=64", NULL);
-    g_autoptr(image) img = render_with(s, how);
+    g_autoptr(image) img = render_with(v, how);
     for (int c = 0; c < 3; c++) {
         const char name[2] = {"RGB"[c], 0};
         double seen = 0;
@@ -73,7 +73,7 @@ static void test_colour(gconstpointer data)
 static void test_twin(void)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(scattering); i++) {
-        const view *v = &scattering[i];
+        const fog_view *v = &scattering[i];
         double way[3];
         if (v->expected != all_orders)
             continue;

@@ -23,13 +23,13 @@ typedef struct reference {
 static image *render_of(const reference *r, const char *path)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(scene) s = format_load(path, 2, NULL, &error);
+    g_autoptr(view) v = load_view(path, NULL, &error);
     g_assert_no_error(error);
-    scene_resize(s, r->width, r->height);
-    settings how = s->settings;
+    view_resize(v, r->width, r->height);
+    settings how = v->scene->settings;
     for (size_t i = 0; r->changes[i]; i += 2)
         g_assert_true(settings_set(&how, r->changes[i], r->changes[i + 1], NULL));
-    g_autoptr(render) run = render_new(s, &how, &error);
+    g_autoptr(render) run = render_new(v, &how, &error);
     g_assert_true(run && render_run(run, NULL, NULL, &error));
     return render_image(run, &error);
 }

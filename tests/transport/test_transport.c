@@ -11,8 +11,8 @@
 
 static void check_furnace(const char *words)
 {
-    g_autoptr(scene) s = scene_of(FURNACE);
-    g_autoptr(image) img = render_with(s, words);
+    g_autoptr(view) v = view_of(FURNACE);
+    g_autoptr(image) img = render_with(v, words);
     double found = mean_of(img, "");
     g_test_message("%s: radiance %g", words, found);
     g_assert_cmpfloat(fabs(found / 2.0 - 1.0), <, 0.01);
@@ -48,9 +48,9 @@ static void test_furnace_gathers_within_glass(void)
                       "radius\" 0.8 Material \"diffuse\" \"rgb reflectance\" [1 1 1] "
                       "Shape \"sphere\" \"float radius\" 0.7\n",
         room[1], NULL);
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     g_autoptr(image) img = render_with(
-        s, "passes=8 spp=2 photons=30000 radius=0.1 final_gather=on gather_rays=8 "
+        v, "passes=8 spp=2 photons=30000 radius=0.1 final_gather=on gather_rays=8 "
            "max_backward_bounces=-1 max_forward_bounces=-1");
     double found = mean_of(img, "");
     g_test_message("radiance %g", found);
@@ -72,14 +72,14 @@ static void test_kept_irradiance(void)
         const char *text, *words;
     } rooms[] = {{DARK_PLACES("0"), "photons=5000"}, {DARK_PLACES("1"), "photons=20000"}};
     for (size_t i = 0; i < G_N_ELEMENTS(rooms); i++) {
-        g_autoptr(scene) s = scene_of(rooms[i].text);
+        g_autoptr(view) v = view_of(rooms[i].text);
         double sum[2];
         for (int k = 0; k < 2; k++) {
             g_autofree char *words =
                 g_strdup_printf("passes=12 spp=4 radius=0.2 alpha=1 final_gather=on "
                                 "gather_rays=16 precompute_radiance=%s %s",
                                 k ? "on" : "off", rooms[i].words);
-            g_autoptr(image) img = render_with(s, words);
+            g_autoptr(image) img = render_with(v, words);
             sum[k] = mean_of(img, "indirect");
         }
         g_test_message("kept %g, asked %g (%+.2f %%)", sum[1], sum[0],
@@ -106,10 +106,11 @@ static spectrum asked_irradiance(const photonmap_pass *pass, vec3 p, vec3 n,
    as it is asked for there. */
 static void test_kept_with_own_radius(void)
 {
-    g_autoptr(scene) s = scene_of(DARK_PLACES("0"));
+    g_autoptr(view) v = view_of(DARK_PLACES("0"));
     const transport_kind *kind = transport_find(INTEGRATOR_PHOTONMAP);
-    transport_plan plan = {.scene = s};
-    plan.how = settings_with(s, "photons=20000 final_gather=on edges=off threads=2");
+    transport_plan plan = {.scene = v->scene, .view = v};
+    plan.how =
+        settings_with(v->scene, "photons=20000 final_gather=on edges=off threads=2");
     transport_counts counts = {0};
     transport_scratch scratch = {0};
     g_assert_true(kind->prepare(&plan, NULL, NULL));
@@ -148,16 +149,16 @@ static void test_photon_mapping_agrees_with_path_tracing(gconstpointer data)
 {
     const furnishing *f = data;
     g_autofree char *text = g_strconcat(ROOM, f->text, NULL);
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     g_autoptr(image) path =
-        render_with(s, "integrator=path passes=8 spp=128 max_backward_bounces=-1 seed=1");
+        render_with(v, "integrator=path passes=8 spp=128 max_backward_bounces=-1 seed=1");
     const char *const ways[] = {
         "passes=4 spp=4 photons=150000 radius=0.05 direct_illumination=off",
         "passes=4 spp=8 photons=100000 radius=0.05 final_gather=on gather_rays=8 "
         "precompute_radiance=off",
     };
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
-        g_autoptr(image) photons = render_with(s, ways[i]);
+        g_autoptr(image) photons = render_with(v, ways[i]);
         double a = reflected(photons), b = reflected(path);
         g_test_message("%s: %s: %g, path %g (%+.2f %%)", f->name, ways[i], a, b,
                        100 * (a / b - 1));
@@ -170,21 +171,21 @@ static void test_photon_mapping_agrees_with_path_tracing(gconstpointer data)
  * them to. */
 static void test_ground_glass_is_as_bright_as_by_paths(void)
 {
-    g_autoptr(scene) s =
-        scene_of("LookAt 0 -3 1.2  0 0 0.3  0 0 1\n"
-                 "Camera \"perspective\" \"float fov\" 9\n"
-                 "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"
-                 "WorldBegin\n"
-                 "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
-                 "Shape \"disk\" \"float radius\" 3\n"
-                 "AttributeBegin Translate 0 0 0.3\n"
-                 "Material \"dielectric\" \"float roughness\" 0.2\n"
-                 "Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n"
-                 "AttributeBegin Translate 1 -1 3\n"
-                 "AreaLightSource \"diffuse\" \"float scale\" 30\n"
-                 "Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n");
-    g_autoptr(image) path = render_with(s, "integrator=path passes=4 spp=64 seed=1");
-    g_autoptr(image) photons = render_with(s, "passes=2 spp=32 photons=60000");
+    g_autoptr(view) v =
+        view_of("LookAt 0 -3 1.2  0 0 0.3  0 0 1\n"
+                "Camera \"perspective\" \"float fov\" 9\n"
+                "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"
+                "WorldBegin\n"
+                "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
+                "Shape \"disk\" \"float radius\" 3\n"
+                "AttributeBegin Translate 0 0 0.3\n"
+                "Material \"dielectric\" \"float roughness\" 0.2\n"
+                "Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n"
+                "AttributeBegin Translate 1 -1 3\n"
+                "AreaLightSource \"diffuse\" \"float scale\" 30\n"
+                "Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n");
+    g_autoptr(image) path = render_with(v, "integrator=path passes=4 spp=64 seed=1");
+    g_autoptr(image) photons = render_with(v, "passes=2 spp=32 photons=60000");
     double a = reflected(photons), b = reflected(path);
     g_test_message("%g, path %g (%+.2f %%)", a, b, 100 * (a / b - 1));
     g_assert_cmpfloat(fabs(a / b - 1.0), <, 0.05);
@@ -194,10 +195,10 @@ static void test_ground_glass_is_as_bright_as_by_paths(void)
 static void test_layers_agree_with_path_tracing(void)
 {
     g_autofree char *text = g_strconcat(ROOM, furnishings[2].text, NULL);
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     g_autoptr(image) path =
-        render_with(s, "integrator=path passes=8 spp=64 max_backward_bounces=-1");
-    g_autoptr(image) photons = render_with(s, "passes=8 spp=8 photons=60000");
+        render_with(v, "integrator=path passes=8 spp=64 max_backward_bounces=-1");
+    g_autoptr(image) photons = render_with(v, "passes=8 spp=8 photons=60000");
     const char *const names[] = {"direct",   "indirect", "caustic",
                                  "specular", "emission", "albedo"};
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
@@ -219,12 +220,12 @@ static void test_same_bits_on_any_number_of_threads(void)
         "passes=1 spp=1 photons=10000 indirect_nearest=50 caustic_emission=uniform",
         "integrator=path passes=2 spp=4"};
     g_autofree char *text = g_strconcat(ROOM, furnishings[2].text, NULL);
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
         g_autofree char *one = g_strconcat(ways[i], " threads=1", NULL);
         g_autofree char *two = g_strconcat(ways[i], " threads=2", NULL);
-        g_autoptr(image) a = render_with(s, one);
-        g_autoptr(image) b = render_with(s, two);
+        g_autoptr(image) a = render_with(v, one);
+        g_autoptr(image) b = render_with(v, two);
         assert_same_bits(a, b);
     }
 }
@@ -232,17 +233,17 @@ static void test_same_bits_on_any_number_of_threads(void)
 static void test_maps_render_the_same(void)
 {
     g_autofree char *text = g_strconcat(ROOM, furnishings[1].text, NULL);
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     const char *const ways[] = {"passes=1 spp=1 photons=5000",
                                 "passes=1 spp=1 photons=5000 indirect_nearest=30 "
                                 "caustic_nearest=20"};
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
         g_autofree char *list = g_strconcat(ways[i], " photon_map=list", NULL);
-        g_autoptr(image) expected = render_with(s, list);
+        g_autoptr(image) expected = render_with(v, list);
         for (int k = 0; k < 2; k++) {
             g_autofree char *other =
                 g_strconcat(ways[i], k ? " photon_map=grid" : " photon_map=kdtree", NULL);
-            g_autoptr(image) found = render_with(s, other);
+            g_autoptr(image) found = render_with(v, other);
             image_difference d;
             g_assert_true(image_compare(found, expected, &d, NULL));
             g_assert_cmpfloat(d.rmse, <, 1e-4 * d.mean_b);
@@ -254,16 +255,16 @@ static void test_maps_render_the_same(void)
 static void test_scale_changes_nothing(void)
 {
     g_autofree char *metres = g_strconcat(ROOM, furnishings[2].text, NULL);
-    g_autoptr(scene) s = scene_of(metres);
+    g_autoptr(view) v = view_of(metres);
     GString *scaled = g_string_new(ROOM);
     g_string_replace(scaled, "LookAt 0 -3.4 1.2  0 0 0.9", "LookAt 0 -3400 1200  0 0 900",
                      1);
     g_string_replace(scaled, "WorldBegin\n", "WorldBegin\nScale 1000 1000 1000\n", 1);
     g_string_append(scaled, furnishings[2].text);
-    g_autoptr(scene) big = scene_of(scaled->str);
+    g_autoptr(view) big = view_of(scaled->str);
     g_string_free(scaled, TRUE);
     const char *how = "passes=2 spp=4 photons=50000";
-    g_autoptr(image) a = render_with(s, how);
+    g_autoptr(image) a = render_with(v, how);
     g_autoptr(image) b = render_with(big, how);
     image_difference d;
     g_assert_true(image_compare(b, a, &d, NULL));
@@ -284,20 +285,20 @@ static void test_shadow_rays_off_lights_through(void)
                "0 3]\n"
                "Shape \"disk\" \"float radius\" 5\n"
                "Translate 0 0 2.9 Shape \"disk\" \"float radius\" 0.5\n";
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     g_autoptr(image) dark =
-        render_with(s, "passes=1 spp=1 photons=100 max_forward_bounces=0");
+        render_with(v, "passes=1 spp=1 photons=100 max_forward_bounces=0");
     g_autoptr(image) lit = render_with(
-        s, "passes=1 spp=1 photons=100 max_forward_bounces=0 shadow_rays=off");
+        v, "passes=1 spp=1 photons=100 max_forward_bounces=0 shadow_rays=off");
     g_assert_cmpfloat(mean_of(lit, "direct"), >, mean_of(dark, "direct"));
 }
 
 static void test_cancel_keeps_what_there_is(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM);
-    settings how = settings_with(s, "passes=4 spp=1 photons=1000");
+    g_autoptr(view) v = view_of(ROOM);
+    settings how = settings_with(v->scene, "passes=4 spp=1 photons=1000");
     g_autoptr(GError) error = NULL;
-    g_autoptr(render) r = render_new(s, &how, &error);
+    g_autoptr(render) r = render_new(v, &how, &error);
     render_cancel(r);
     g_assert_false(render_run(r, NULL, NULL, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_CANCELLED);
@@ -313,9 +314,9 @@ static void *cancel_soon(void *data)
 }
 
 /* How long a render goes on once it is cancelled, s. */
-static double goes_on_for(const scene *s, const char *words)
+static double goes_on_for(const view *v, const char *words)
 {
-    g_autoptr(render) r = render_of(s, words);
+    g_autoptr(render) r = render_of(v, words);
     GThread *other = g_thread_new("cancel", cancel_soon, r);
     double start = (double)g_get_monotonic_time() * 1e-6;
     g_assert_false(render_run(r, NULL, NULL, NULL));
@@ -335,9 +336,9 @@ static void test_cancel_acts_soon(void)
         "spp=1 photons=400000 radius=2 final_gather=on",
         "photons=100000000",
     };
-    g_autoptr(scene) s = scene_of(ROOM);
+    g_autoptr(view) v = view_of(ROOM);
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++)
-        g_assert_cmpfloat(goes_on_for(s, ways[i]), <, 0.1 + 0.4);
+        g_assert_cmpfloat(goes_on_for(v, ways[i]), <, 0.1 + 0.4);
 }
 
 /* ---- Long ways ---- */
@@ -368,8 +369,8 @@ static double seen_by(const char *world, const char *how, double *rays)
     g_autofree char *words = g_strdup_printf(
         "%s max_backward_bounces=-1 max_forward_bounces=-1 passes=1 spp=%d", how,
         (int)SPP);
-    g_autoptr(scene) s = scene_of(text);
-    g_autoptr(render) r = render_of(s, words);
+    g_autoptr(view) v = view_of(text);
+    g_autoptr(render) r = render_of(v, words);
     g_assert_true(render_run(r, NULL, NULL, NULL));
     g_autoptr(image) img = image_of(r);
     *rays = (double)render_get_statistics(r).camera_rays / SAMPLES;

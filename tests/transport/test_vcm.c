@@ -234,7 +234,7 @@ static void test_weights_follow_their_definition(void)
 
 static void test_camera_is_connected_as_its_rays_go(void)
 {
-    g_autoptr(scene) s = scene_of(
+    g_autoptr(view) v = view_of(
         "Scale -2 2 2 LookAt 1 2 3  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 50 "
         "\"float lensradius\" 0.2 \"float focaldistance\" 3\n"
         "Film \"rgb\" \"integer xresolution\" 20 \"integer yresolution\" 10\n"
@@ -244,18 +244,18 @@ static void test_camera_is_connected_as_its_rays_go(void)
         vec2 u = {(float)g_rand_double(random), (float)g_rand_double(random)};
         vec2 raster = {20.0f * (float)g_rand_double(random),
                        10.0f * (float)g_rand_double(random)};
-        ray r = camera_ray(&s->camera, raster, u, 0.0f);
+        ray r = camera_ray(&v->camera, raster, u, 0.0f);
         camera_connection found;
         g_assert_true(
-            camera_connect(&s->camera, r.origin + 5.0f * r.direction, u, 0.0f, &found));
+            camera_connect(&v->camera, r.origin + 5.0f * r.direction, u, 0.0f, &found));
         g_assert_cmpfloat(fabsf(found.raster.x - raster.x), <, 1e-3f);
         g_assert_cmpfloat(fabsf(found.raster.y - raster.y), <, 1e-3f);
         g_assert_cmpfloat(fabsf(found.distance - 5.0f), <, 1e-4f);
         const float h = 0.05f;
-        vec3 dx = camera_ray(&s->camera, (vec2){raster.x + h, raster.y}, u, 0).direction -
-                  camera_ray(&s->camera, (vec2){raster.x - h, raster.y}, u, 0).direction;
-        vec3 dy = camera_ray(&s->camera, (vec2){raster.x, raster.y + h}, u, 0).direction -
-                  camera_ray(&s->camera, (vec2){raster.x, raster.y - h}, u, 0).direction;
+        vec3 dx = camera_ray(&v->camera, (vec2){raster.x + h, raster.y}, u, 0).direction -
+                  camera_ray(&v->camera, (vec2){raster.x - h, raster.y}, u, 0).direction;
+        vec3 dy = camera_ray(&v->camera, (vec2){raster.x, raster.y + h}, u, 0).direction -
+                  camera_ray(&v->camera, (vec2){raster.x, raster.y - h}, u, 0).direction;
         float solid_angle = length3(cross3(dx, dy)) / (4.0f * h * h);
         g_assert_cmpfloat(fabsf(found.pdf * solid_angle - 1.0f), <, 2e-3f);
     }
@@ -264,43 +264,43 @@ static void test_camera_is_connected_as_its_rays_go(void)
 
 /* ---- Against path tracing ---- */
 
-static void check_agreement(const scene *s, const char *words, double expected,
+static void check_agreement(const view *v, const char *words, double expected,
                             double tolerance)
 {
     g_autofree char *all =
         g_strconcat("integrator=vcm max_backward_bounces=-1 ", words, NULL);
-    g_autoptr(image) img = render_with(s, all);
+    g_autoptr(image) img = render_with(v, all);
     double found = mean_of(img, "");
     g_test_message("%s: %g, expected %g (%+.2f %%)", words, found, expected,
                    100 * (found / expected - 1));
     g_assert_cmpfloat(fabs(found / expected - 1.0), <, tolerance);
 }
 
-static double path_mean(const scene *s, const char *words)
+static double path_mean(const view *v, const char *words)
 {
     g_autofree char *all =
         g_strconcat("integrator=path max_backward_bounces=-1 ", words, NULL);
-    g_autoptr(image) img = render_with(s, all);
+    g_autoptr(image) img = render_with(v, all);
     return mean_of(img, "");
 }
 
 static void test_furnace(gconstpointer words)
 {
-    g_autoptr(scene) s = scene_of(FURNACE);
-    check_agreement(s, words, 2.0, 1e-3);
+    g_autoptr(view) v = view_of(FURNACE);
+    check_agreement(v, words, 2.0, 1e-3);
 }
 
 /* Plastic has a specular coat, which the light strategy does not see, over a base. */
 static void test_strategies_agree(void)
 {
     g_autofree char *text = g_strconcat(ROOM, furnishings[7].text, NULL);
-    g_autoptr(scene) s = scene_of(text);
-    double expected = path_mean(s, "passes=16 spp=32 seed=1");
-    check_agreement(s, "vcm_strategies=bpt passes=16 spp=4 photons=4096", expected,
+    g_autoptr(view) v = view_of(text);
+    double expected = path_mean(v, "passes=16 spp=32 seed=1");
+    check_agreement(v, "vcm_strategies=bpt passes=16 spp=4 photons=4096", expected,
                     0.006);
-    check_agreement(s, "vcm_strategies=bpm passes=8 spp=4 photons=8192", expected, 0.006);
-    check_agreement(s, "vcm_strategies=ppm passes=8 spp=4 photons=8192", expected, 0.006);
-    g_autoptr(scene) empty = scene_of(ROOM);
+    check_agreement(v, "vcm_strategies=bpm passes=8 spp=4 photons=8192", expected, 0.006);
+    check_agreement(v, "vcm_strategies=ppm passes=8 spp=4 photons=8192", expected, 0.006);
+    g_autoptr(view) empty = view_of(ROOM);
     expected = path_mean(empty, "passes=16 spp=32 seed=1");
     check_agreement(empty, "vcm_strategies=light passes=8 spp=8 photons=20000", expected,
                     0.006);
@@ -351,21 +351,21 @@ static void test_lights(gconstpointer data)
 {
     const lighting *l = data;
     g_autofree char *text = g_strconcat(EYE, STAGE, l->text, NULL);
-    g_autoptr(scene) s = scene_of(text);
-    double expected = path_mean(s, "passes=16 spp=64 seed=1");
-    check_agreement(s, "passes=16 spp=16 photons=8192 radius=0.05", expected, 0.008);
-    check_agreement(s, "vcm_strategies=bpt passes=16 spp=16 photons=8192", expected,
+    g_autoptr(view) v = view_of(text);
+    double expected = path_mean(v, "passes=16 spp=64 seed=1");
+    check_agreement(v, "passes=16 spp=16 photons=8192 radius=0.05", expected, 0.008);
+    check_agreement(v, "vcm_strategies=bpt passes=16 spp=16 photons=8192", expected,
                     0.008);
 }
 
 /* Two skies: whichever of them a path meets, it is weighed against its own. */
 static void test_two_skies_are_one(void)
 {
-    g_autoptr(scene) two =
-        scene_of(EYE STAGE "LightSource \"infinite\" \"rgb L\" [1 0.5 0.5] "
-                           "LightSource \"infinite\" \"rgb L\" [0.5 1 1]");
-    g_autoptr(scene) one =
-        scene_of(EYE STAGE "LightSource \"infinite\" \"rgb L\" [1.5 1.5 1.5]");
+    g_autoptr(view) two =
+        view_of(EYE STAGE "LightSource \"infinite\" \"rgb L\" [1 0.5 0.5] "
+                          "LightSource \"infinite\" \"rgb L\" [0.5 1 1]");
+    g_autoptr(view) one =
+        view_of(EYE STAGE "LightSource \"infinite\" \"rgb L\" [1.5 1.5 1.5]");
     double expected = path_mean(one, "passes=16 spp=64 seed=1");
     check_agreement(two, "passes=16 spp=16 photons=8192 radius=0.05", expected, 0.008);
     double path = path_mean(two, "passes=16 spp=64 seed=1");
@@ -385,10 +385,10 @@ static void test_splats_follow_the_filter(void)
             "cropwindow\" [0.2 0.9 0 0.8] Camera \"perspective\" WorldBegin LightSource "
             "\"point\" \"point3 from\" [0.5 0 0.4] Shape \"disk\" \"float radius\" 9",
             NULL);
-        g_autoptr(scene) s = scene_of(text);
-        g_autoptr(image) rays = render_with(s, "integrator=path passes=16 spp=64 seed=1");
+        g_autoptr(view) v = view_of(text);
+        g_autoptr(image) rays = render_with(v, "integrator=path passes=16 spp=64 seed=1");
         g_autoptr(image) splats = render_with(
-            s, "integrator=vcm vcm_strategies=light passes=16 spp=1 photons=20000");
+            v, "integrator=vcm vcm_strategies=light passes=16 spp=1 photons=20000");
         image_difference d;
         g_assert_true(image_compare(splats, rays, &d, NULL));
         g_test_message("%s: %g and %g, relMSE %g", filters[i], d.mean_a, d.mean_b,
@@ -402,19 +402,19 @@ static void test_splats_follow_the_filter(void)
    camera subpaths see. */
 static void test_shading_normals(void)
 {
-    g_autoptr(scene) s = scene_of(
+    g_autoptr(view) v = view_of(
         ROOM
         "Translate 0 0 0.8 Shape \"trianglemesh\" \"point3 P\" [1 0 0 0 1 0 -1 0 0 "
         "0 -1 0 0 0 0.8 0 0 -0.8] \"normal N\" [1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 1 0 0 "
         "-1] \"integer indices\" [0 1 4 1 2 4 2 3 4 3 0 4 1 0 5 2 1 5 3 2 5 0 3 5]\n");
-    double expected = path_mean(s, "passes=16 spp=32 seed=1");
-    check_agreement(s, "vcm_strategies=bpt passes=16 spp=8 photons=8192", expected,
+    double expected = path_mean(v, "passes=16 spp=32 seed=1");
+    check_agreement(v, "vcm_strategies=bpt passes=16 spp=8 photons=8192", expected,
                     0.006);
     /* merging mixes the facets along the edges: a small radius keeps that below the noise
      */
-    check_agreement(s, "vcm_strategies=bpm passes=16 spp=4 photons=20000 radius=0.03",
+    check_agreement(v, "vcm_strategies=bpm passes=16 spp=4 photons=20000 radius=0.03",
                     expected, 0.015);
-    check_agreement(s, "vcm_strategies=light passes=8 spp=8 photons=20000", expected,
+    check_agreement(v, "vcm_strategies=light passes=8 spp=8 photons=20000", expected,
                     0.006);
 }
 
@@ -422,15 +422,15 @@ static void test_shading_normals(void)
 
 static void test_point_light_through_glass(void)
 {
-    g_autoptr(scene) s = scene_of(
+    g_autoptr(view) v = view_of(
         "LookAt 0 -4 2  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 40\n" SIZE(
             12) "WorldBegin LightSource \"point\" \"rgb I\" [5 5 5] \"point3 from\" [0 0 "
                 "3] Shape \"disk\" \"float radius\" 4 Material \"dielectric\" Translate "
                 "0 "
                 "0 0.8 Shape \"sphere\" \"float radius\" 0.5");
     g_autoptr(image) photons =
-        render_with(s, "passes=8 spp=8 photons=100000 max_backward_bounces=-1");
-    g_autoptr(image) vcm = render_with(s, "integrator=vcm passes=16 spp=8 photons=16384");
+        render_with(v, "passes=8 spp=8 photons=100000 max_backward_bounces=-1");
+    g_autoptr(image) vcm = render_with(v, "integrator=vcm passes=16 spp=8 photons=16384");
     double a = mean_of(vcm, ""), b = mean_of(photons, "");
     double found = mean_of(vcm, "caustic"), caustic = mean_of(photons, "caustic");
     g_test_message("vcm %g, photons %g; caustic %g and %g", a, b, found, caustic);
@@ -443,10 +443,10 @@ static void test_point_light_through_glass(void)
 static void test_layers_agree_with_path_tracing(void)
 {
     g_autofree char *text = g_strconcat(ROOM, furnishings[4].text, NULL);
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     g_autoptr(image) path =
-        render_with(s, "integrator=path passes=16 spp=32 max_backward_bounces=-1");
-    g_autoptr(image) vcm = render_with(s, "integrator=vcm passes=16 spp=8 photons=8192");
+        render_with(v, "integrator=path passes=16 spp=32 max_backward_bounces=-1");
+    g_autoptr(image) vcm = render_with(v, "integrator=vcm passes=16 spp=8 photons=8192");
     const char *const names[] = {"direct",   "indirect", "caustic",
                                  "specular", "emission", "albedo"};
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
@@ -459,18 +459,18 @@ static void test_layers_agree_with_path_tracing(void)
 static void test_same_bits_on_any_number_of_threads(void)
 {
     g_autofree char *text = g_strconcat(ROOM, furnishings[3].text, NULL);
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     g_autoptr(image) one =
-        render_with(s, "integrator=vcm passes=2 spp=2 photons=5000 threads=1");
+        render_with(v, "integrator=vcm passes=2 spp=2 photons=5000 threads=1");
     g_autoptr(image) two =
-        render_with(s, "integrator=vcm passes=2 spp=2 photons=5000 threads=2");
+        render_with(v, "integrator=vcm passes=2 spp=2 photons=5000 threads=2");
     assert_same_bits(one, two);
 }
 
 /* Light subpaths of a pass. */
-static uint64_t light_paths_with(const scene *s, const char *words)
+static uint64_t light_paths_with(const view *v, const char *words)
 {
-    g_autoptr(render) r = render_of(s, words);
+    g_autoptr(render) r = render_of(v, words);
     g_assert_true(render_run(r, NULL, NULL, NULL));
     return render_get_statistics(r).emitted[PHOTON_INDIRECT];
 }
@@ -478,20 +478,20 @@ static uint64_t light_paths_with(const scene *s, const char *words)
 static void test_as_many_paths_from_lamps_as_from_the_eye(void)
 {
     g_autofree char *text = g_strconcat(ROOM, furnishings[3].text, NULL);
-    g_autoptr(scene) s = scene_of(text);
-    uint64_t pixels = (uint64_t)s->film.width * (uint64_t)s->film.height;
-    g_assert_cmpuint(light_paths_with(s, "integrator=vcm passes=1 spp=2"), ==,
+    g_autoptr(view) v = view_of(text);
+    uint64_t pixels = (uint64_t)v->film.width * (uint64_t)v->film.height;
+    g_assert_cmpuint(light_paths_with(v, "integrator=vcm passes=1 spp=2"), ==,
                      2 * pixels);
-    g_assert_cmpuint(light_paths_with(s, "integrator=vcm passes=1 photons=777"), ==, 777);
+    g_assert_cmpuint(light_paths_with(v, "integrator=vcm passes=1 photons=777"), ==, 777);
     g_assert_cmpuint(
-        light_paths_with(s, "integrator=vcm passes=1 spp=1 vcm_strategies=light"), ==,
+        light_paths_with(v, "integrator=vcm passes=1 spp=1 vcm_strategies=light"), ==,
         400000);
 }
 
 enum { N_RENDERS = 24 };
 
 /* Adds N_RENDERS independent renders' green to sum and squares, pixel by pixel. */
-static size_t sum_pixels(const scene *s, const char *words, int seed, double *sum,
+static size_t sum_pixels(const view *s, const char *words, int seed, double *sum,
                          double *squares)
 {
     size_t n = 0;
@@ -516,10 +516,10 @@ static void test_every_pixel_agrees(void)
     enum { N = 256 };
     double a[N] = {0}, a2[N] = {0}, b[N] = {0}, b2[N] = {0}, worst = 0, square_sum = 0;
     g_autofree char *text = g_strconcat(ROOM, furnishings[5].text, NULL);
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     size_t n =
-        sum_pixels(s, "integrator=path passes=2 spp=8 max_backward_bounces=3", 0, a, a2);
-    sum_pixels(s,
+        sum_pixels(v, "integrator=path passes=2 spp=8 max_backward_bounces=3", 0, a, a2);
+    sum_pixels(v,
                "integrator=vcm vcm_strategies=bpt passes=2 spp=4 photons=1024 "
                "max_backward_bounces=3",
                N_RENDERS, b, b2);

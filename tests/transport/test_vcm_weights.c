@@ -6,15 +6,15 @@
  */
 #include "rooms.h"
 
-static double mean_with(const scene *s, const char *words)
+static double mean_with(const view *v, const char *words)
 {
-    g_autoptr(image) img = render_with(s, words);
+    g_autoptr(image) img = render_with(v, words);
     return mean_of(img, "");
 }
 
-static void check(const scene *s, const char *words, double expected, double tolerance)
+static void check(const view *v, const char *words, double expected, double tolerance)
 {
-    double found = mean_with(s, words);
+    double found = mean_with(v, words);
     g_test_message("%s: %g, expected %g (%+.2f %%)", words, found, expected,
                    100 * (found / expected - 1));
     g_assert_cmpfloat(fabs(found / expected - 1), <, tolerance);
@@ -25,16 +25,16 @@ static void check(const scene *s, const char *words, double expected, double tol
 /* What a plane sends out under a sky of radiance one is its reflectance. */
 static void test_sky(void)
 {
-    g_autoptr(scene) s = scene_of(
+    g_autoptr(view) v = view_of(
         "LookAt 0 -1 1  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 30\n" SIZE(
             8) "WorldBegin LightSource \"infinite\" Material \"diffuse\" \"rgb "
                "reflectance\" [0.5 0.5 0.5] Shape \"disk\" "
                "\"float radius\" 1.5\n");
     double sum = 0.5; /* of all strategies */
-    check(s, "integrator=path passes=32 spp=16", sum, 0.004);
-    check(s, "integrator=vcm passes=32 spp=16 photons=100 radius=0.02", sum, 0.008);
-    check(s, "integrator=vcm passes=16 spp=1 photons=10000 radius=0.1", sum, 0.015);
-    check(s, "integrator=vcm vcm_strategies=bpt passes=16 spp=1 photons=10000", sum,
+    check(v, "integrator=path passes=32 spp=16", sum, 0.004);
+    check(v, "integrator=vcm passes=32 spp=16 photons=100 radius=0.02", sum, 0.008);
+    check(v, "integrator=vcm passes=16 spp=1 photons=10000 radius=0.1", sum, 0.015);
+    check(v, "integrator=vcm vcm_strategies=bpt passes=16 spp=1 photons=10000", sum,
           0.015);
 }
 
@@ -44,7 +44,7 @@ static void test_sky(void)
    is ρ/π I e^{-σ h} / h². */
 static void test_lamp_in_solid(void)
 {
-    g_autoptr(scene) s = scene_of(
+    g_autoptr(view) v = view_of(
         "LookAt 0.5 0 0.5  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 2\n" SIZE(
             4) "WorldBegin\n"
                "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] Shape \"disk\" "
@@ -54,7 +54,7 @@ static void test_lamp_in_solid(void)
                "AttributeEnd\n"
                "LightSource \"point\" \"spectrum I\" [300 1 900 1] \"point3 from\" "
                "[0 0 1]\n");
-    g_autoptr(scene) open = scene_of(
+    g_autoptr(view) open = view_of(
         "LookAt 0.5 0 0.5  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 2\n" SIZE(
             4) "WorldBegin\n"
                "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] Shape \"disk\" "
@@ -64,9 +64,9 @@ static void test_lamp_in_solid(void)
     double way = 1.0 + sqrt(0.5);
     double expected =
         mean_with(open, "integrator=path passes=16 spp=16") * exp(-2.0 * way);
-    check(s, "integrator=vcm passes=16 spp=16 photons=100 radius=0.01", expected, 0.04);
-    check(s, "integrator=vcm passes=8 spp=1 photons=20000 radius=0.1", expected, 0.04);
-    check(s, "integrator=vcm vcm_strategies=bpm passes=8 spp=1 photons=20000 radius=0.1",
+    check(v, "integrator=vcm passes=16 spp=16 photons=100 radius=0.01", expected, 0.04);
+    check(v, "integrator=vcm passes=8 spp=1 photons=20000 radius=0.1", expected, 0.04);
+    check(v, "integrator=vcm vcm_strategies=bpm passes=8 spp=1 photons=20000 radius=0.1",
           expected, 0.04);
 }
 

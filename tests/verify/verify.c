@@ -118,7 +118,7 @@ trial verify_render(const subject *of, int passes)
     trial t = {0};
     g_assert_cmpint(passes % VERIFY_GROUPS, ==, 0);
     g_autofree char *all = g_strdup_printf("%s passes=%d", of->words, passes);
-    g_autoptr(render) r = render_of(of->scene, all);
+    g_autoptr(render) r = render_of(of->view, all);
     g_autoptr(GError) error = NULL;
     recorder rec = {.render = r,
                     .trial = &t,
@@ -232,7 +232,7 @@ static const trial *rendered(yardstick *is, int level, int passes)
     if (!is->levels[level]) {
         is->levels[level] = g_new(trial, 1);
         *is->levels[level] =
-            is->of.scene ? verify_render(&is->of, passes) : constant(is->expected);
+            is->of.view ? verify_render(&is->of, passes) : constant(is->expected);
     }
     return is->levels[level];
 }

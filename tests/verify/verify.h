@@ -58,7 +58,7 @@ bool verify_is_long(void);
 /** @brief What is rendered, by settings in words. The image is cut into 8 x 8 blocks, so
  * its sides are multiples of 8 pixels. */
 typedef struct subject {
-    const scene *scene;
+    const view *view;
     const char *words;
     bool lamps; /**< with the lamps as the camera sees them */
     bool flip;  /**< left for right */

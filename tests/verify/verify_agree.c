@@ -181,19 +181,19 @@ static bool is_taken(const place *at, size_t which)
 static void test_agreement(gconstpointer data)
 {
     const place *at = data;
-    g_autoptr(scene) s = scene_of(at->text);
+    g_autoptr(view) v = view_of(at->text);
     g_auto(yardstick) path = {
-        .of = {.scene = s, .words = "integrator=path spp=8 max_backward_bounces=-1"}};
+        .of = {.view = v, .words = "integrator=path spp=8 max_backward_bounces=-1"}};
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
         g_autofree char *words = g_strconcat(ways[i].words, at->more, NULL);
-        if (!renders(words, s))
+        if (!renders(words, v->scene))
             continue;
-        verify_agree(ways[i].name, &(subject){.scene = s, .words = words}, &path, 32,
+        verify_agree(ways[i].name, &(subject){.view = v, .words = words}, &path, 32,
                      (allowance){0.005, ways[i].bias, false});
     }
     for (size_t i = 0; i < G_N_ELEMENTS(sharp_ways); i++) {
-        const subject of = {.scene = s, .words = sharp_ways[i].words};
-        if (is_taken(at, i) && renders(of.words, s))
+        const subject of = {.view = v, .words = sharp_ways[i].words};
+        if (is_taken(at, i) && renders(of.words, v->scene))
             verify_agree(sharp_ways[i].name, &of, &path, 32, (allowance){0.005, 0, true});
     }
 }

@@ -18,16 +18,16 @@
 
 static void test_point_light_through_glass(void)
 {
-    g_autoptr(scene) s = scene_of(POINT_LIGHT_AND_GLASS);
+    g_autoptr(view) v = view_of(POINT_LIGHT_AND_GLASS);
     const allowance allowed = {0.005, 0.02, false};
     g_auto(yardstick) sppm = {
-        .of = {.scene = s,
+        .of = {.view = v,
                .words = "integrator=sppm spp=8 photons=40000 max_backward_bounces=-1"}};
     const subject by_auto = {
-        .scene = s,
+        .view = v,
         .words = "integrator=auto spp=8 photons=20000 max_backward_bounces=-1"};
     const subject by_vcm = {
-        .scene = s, .words = "integrator=vcm spp=8 photons=8192 max_backward_bounces=-1"};
+        .view = v, .words = "integrator=vcm spp=8 photons=8192 max_backward_bounces=-1"};
     verify_agree("auto", &by_auto, &sppm, 32, allowed);
     verify_agree("vcm", &by_vcm, &sppm, 32, allowed);
 }
@@ -57,8 +57,8 @@ typedef struct brightness {
 static brightness ring_brightness(double roughness, const char *words)
 {
     g_autofree char *text = g_strdup_printf(RING, roughness);
-    g_autoptr(scene) s = scene_of(text);
-    g_autoptr(image) img = render_with(s, words);
+    g_autoptr(view) v = view_of(text);
+    g_autoptr(image) img = render_with(v, words);
     size_t all = channel_of(img, "G"), direct = channel_of(img, "direct.G"),
            lamps = channel_of(img, "emission.G"), depth = channel_of(img, "depth.Z");
     brightness b = {0};
@@ -168,7 +168,7 @@ static double layer_green(const image *img, const char *name)
    mends: light straight from the lamp, which has no noise, is the measure. Each is a pass
    as of a render of many: trials are a part of the work, and of one pass too few to learn
    from. */
-static double caustic_variance(const scene *s, const char *emission, int photons)
+static double caustic_variance(const view *s, const char *emission, int photons)
 {
     enum { PASSES = 32, SIDE = 24 };
     double sum[SIDE * SIDE] = {0}, square[SIDE * SIDE] = {0}, variance = 0;
@@ -194,9 +194,9 @@ static double caustic_variance(const scene *s, const char *emission, int photons
 
 static void test_guided_emission(void)
 {
-    g_autoptr(scene) s = scene_of(SMALL_GLASS);
-    double uniform = caustic_variance(s, "uniform", 10000);
-    double guided = caustic_variance(s, "guided", 500);
+    g_autoptr(view) v = view_of(SMALL_GLASS);
+    double uniform = caustic_variance(v, "uniform", 10000);
+    double guided = caustic_variance(v, "guided", 500);
     g_test_message("equal error in 1/%.0f of the photons", uniform / guided);
     g_assert_cmpfloat(uniform / guided, >, 45); /* 20 are wanted, unlearned it is 32 */
 }
@@ -217,9 +217,9 @@ static void test_guided_emission(void)
        glass is. */
 static void test_guided_to_the_eye(void)
 {
-    g_autoptr(scene) s = scene_of(SEEN_AND_UNSEEN);
-    double area = caustic_variance(s, "specular-area", 500);
-    double guided = caustic_variance(s, "guided", 500);
+    g_autoptr(view) v = view_of(SEEN_AND_UNSEEN);
+    double area = caustic_variance(v, "specular-area", 500);
+    double guided = caustic_variance(v, "guided", 500);
     g_test_message("equal error in 1/%.1f of the photons", area / guided);
     g_assert_cmpfloat(area / guided, >, 1.3);
 }

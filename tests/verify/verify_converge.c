@@ -46,12 +46,12 @@ static bool note_error(double fraction, const render_statistics *st, void *data)
 }
 
 /* Adds one seed's errors. */
-static void run_seed(const scene *s, const char *words, int seed, convergence *c)
+static void run_seed(const view *v, const char *words, int seed, convergence *c)
 {
     convergence own = *c;
     g_autofree char *all =
         g_strdup_printf("%s passes=%d seed=%d", words, (int)c->passes[c->n - 1], seed);
-    g_autoptr(render) r = render_of(s, all);
+    g_autoptr(render) r = render_of(v, all);
     own.render = r;
     for (size_t k = 0; k < own.n; k++)
         own.error[k] = 0;
@@ -72,15 +72,15 @@ static double slope_of(const convergence *c)
 
 static void test_path(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM);
+    g_autoptr(view) v = view_of(ROOM);
     int seeds = VERIFY_SHORT_LONG(2, 8);
     convergence c = {.layer = "direct", .n = 4, .passes = {4, 16, 64, 256}};
     g_autoptr(image) truth =
-        render_with(s, "integrator=path spp=64 passes=64 max_backward_bounces=1 seed=99");
+        render_with(v, "integrator=path spp=64 passes=64 max_backward_bounces=1 seed=99");
     for (size_t i = 0; i < pixels_of(truth); i++)
         c.truth[i] = pixel_of(truth, c.layer, i);
     for (int seed = 0; seed < seeds; seed++)
-        run_seed(s, "integrator=path spp=1 max_backward_bounces=1", seed, &c);
+        run_seed(v, "integrator=path spp=1 max_backward_bounces=1", seed, &c);
     double slope = slope_of(&c);
     g_test_message("slope %g", slope);
     g_assert_cmpfloat(slope, <, -0.92);
@@ -110,20 +110,20 @@ static void test_path(void)
             "indices\" [0 1 2 0 2 3]\n"
 
 /* The same without the mirror, and the light in the place of its image. */
-static scene *image_of_light(void)
+static view *image_of_light(void)
 {
     GString *text = g_string_new(MIRRORED_LIGHT);
     g_string_replace(text, "from\" [-0.5 0 0.4]", "from\" [2.5 0 0.4]", 1);
     g_string_truncate(text,
                       (gsize)(strstr(text->str, "Material \"conductor\"") - text->str));
-    scene *s = scene_of(text->str);
+    view *v = view_of(text->str);
     g_string_free(text, TRUE);
-    return s;
+    return v;
 }
 
 static void test_sppm(void)
 {
-    g_autoptr(scene) s = scene_of(MIRRORED_LIGHT), twin = image_of_light();
+    g_autoptr(view) v = view_of(MIRRORED_LIGHT), twin = image_of_light();
     int seeds = VERIFY_SHORT_LONG(8, 64);
     convergence c = {.layer = "caustic", .n = 6, .passes = {4, 8, 16, 32, 64, 128}};
     g_autoptr(image) truth =
@@ -131,7 +131,7 @@ static void test_sppm(void)
     for (size_t i = 0; i < pixels_of(truth); i++)
         c.truth[i] = pixel_of(truth, "direct", i);
     for (int seed = 0; seed < seeds; seed++)
-        run_seed(s,
+        run_seed(v,
                  "integrator=sppm radius=0.15 caustic_photons=400 indirect_photons=1 "
                  "caustic_emission=specular-area max_forward_bounces=1",
                  seed, &c);

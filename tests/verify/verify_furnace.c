@@ -56,11 +56,11 @@ static const way ways[] = {
 static void test_furnace(gconstpointer data)
 {
     const furnace *f = data;
-    g_autoptr(scene) s = scene_of(f->text);
+    g_autoptr(view) v = view_of(f->text);
     g_auto(yardstick) is = {.expected = f->radiance};
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++)
         verify_agree(ways[i].name,
-                     &(subject){.scene = s, .words = ways[i].words, .lamps = true}, &is,
+                     &(subject){.view = v, .words = ways[i].words, .lamps = true}, &is,
                      32,
                      (allowance){VERIFY_SHORT_LONG(0.0025, 0.001), ways[i].bias,
                                  !(ways[i].bias > 0)});
@@ -71,9 +71,9 @@ static void test_furnace(gconstpointer data)
 static void test_corner(gconstpointer data)
 {
     const way *w = data;
-    g_autoptr(scene) s = scene_of(CAMERA_AT("0.4 0.5 0.45  1 1 1", 16) BOX);
+    g_autoptr(view) v = view_of(CAMERA_AT("0.4 0.5 0.45  1 1 1", 16) BOX);
     g_auto(yardstick) is = {.expected = 2};
-    verify_agree(w->name, &(subject){.scene = s, .words = w->words, .lamps = true}, &is,
+    verify_agree(w->name, &(subject){.view = v, .words = w->words, .lamps = true}, &is,
                  32, (allowance){0.01, 0.01, true});
 }
 

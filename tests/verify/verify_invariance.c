@@ -46,11 +46,11 @@ static const char *const ways[] = {
     "integrator=vcm spp=1 photons=4096",
 };
 
-static scene *changed_scene(const char *look, const change *c)
+static view *changed_scene(const char *look, const change *c)
 {
     g_autofree char *text = g_strconcat(look, c->back, CAMERA, c->of_world, "\n", THINGS,
                                         c->intensity, "\n", NULL);
-    return scene_of(text);
+    return view_of(text);
 }
 
 static const change nothing = {"", "", "", "1"},
@@ -62,11 +62,11 @@ static const allowance allowed = {0.005, 0.005, false};
 
 static void test_changes(gconstpointer way)
 {
-    g_autoptr(scene) plain = changed_scene(LOOK, &nothing);
-    g_auto(yardstick) is = {.of = {.scene = plain, .words = way}};
+    g_autoptr(view) plain = changed_scene(LOOK, &nothing);
+    g_auto(yardstick) is = {.of = {.view = plain, .words = way}};
     for (size_t i = 0; i < G_N_ELEMENTS(changes); i++) {
-        g_autoptr(scene) s = changed_scene(LOOK, &changes[i]);
-        verify_agree(changes[i].name, &(subject){.scene = s, .words = way}, &is, 32,
+        g_autoptr(view) v = changed_scene(LOOK, &changes[i]);
+        verify_agree(changes[i].name, &(subject){.view = v, .words = way}, &is, 32,
                      allowed);
     }
 }
@@ -75,11 +75,11 @@ static void test_changes(gconstpointer way)
    then go other ways, and blur alike: each pixel must be the same, to noise. */
 static void test_mirror_image(gconstpointer way)
 {
-    g_autoptr(scene) plain = changed_scene(LOOK, &nothing);
-    g_autoptr(scene) s =
+    g_autoptr(view) plain = changed_scene(LOOK, &nothing);
+    g_autoptr(view) v =
         changed_scene("LookAt -0.4 -3.4 1.2  0 0 0.9  0 0 1 ", &mirrored_world);
-    g_auto(yardstick) is = {.of = {.scene = plain, .words = way}};
-    verify_agree("mirror image", &(subject){.scene = s, .words = way, .flip = true}, &is,
+    g_auto(yardstick) is = {.of = {.view = plain, .words = way}};
+    verify_agree("mirror image", &(subject){.view = v, .words = way, .flip = true}, &is,
                  32, (allowance){0.005, 0.005, true});
 }
 

@@ -57,7 +57,7 @@ static void test_photons_behind(void)
    round, whose seams would show in a block, and a floor that pretends to be tilted. */
 static void test_shading_normals(void)
 {
-    g_autoptr(scene) s = scene_of(ROOM_CAMERA SIZE(
+    g_autoptr(view) v = view_of(ROOM_CAMERA SIZE(
         32) "WorldBegin LightSource \"infinite\" \"rgb L\" [0.2 0.2 0.2] LightSource "
             "\"distant\" \"point3 from\" [2 1 1.5]\n"
             "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]\n"
@@ -69,8 +69,8 @@ static void test_shading_normals(void)
             "0 0 0 0.8 0 0 -0.8] \"normal N\" [1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 1 0 0 -1] "
             "\"integer indices\" [0 1 4 1 2 4 2 3 4 3 0 4 1 0 5 2 1 5 3 2 5 0 3 5]\n");
     g_auto(yardstick) path = {
-        .of = {.scene = s, .words = "integrator=path spp=4 max_backward_bounces=-1"}};
-    const subject by_map = {.scene = s,
+        .of = {.view = v, .words = "integrator=path spp=4 max_backward_bounces=-1"}};
+    const subject by_map = {.view = v,
                             .words = "integrator=photonmap direct_illumination=off spp=2 "
                                      "photons=40000 max_backward_bounces=-1"};
     verify_agree("direct map", &by_map, &path, 32, (allowance){0.01, 0.05, false});
@@ -91,9 +91,9 @@ static void add_caustic(const char *transforms, double way, double weight,
                         double mean[VERIFY_BLOCKS])
 {
     g_autofree char *text = g_strdup_printf(GLASS_ON_ITS_WAY, transforms, way);
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     g_autoptr(image) img =
-        render_with(s, "integrator=photonmap passes=1 spp=8 photons=80000 radius=0.08");
+        render_with(v, "integrator=photonmap passes=1 spp=8 photons=80000 radius=0.08");
     size_t caustic = channel_of(img, "caustic.G");
     for (size_t i = 0; i < pixels_of(img); i++)
         mean[i / 32 / 4 * 8 + i % 32 / 4] += weight * at(img, i, caustic) / 16;
@@ -128,7 +128,7 @@ static void test_one_time_a_pass(void)
 
 static double seconds_of(const char *more)
 {
-    g_autoptr(scene) s = scene_of(TABLE);
+    g_autoptr(view) v = view_of(TABLE);
     g_autofree char *words = g_strconcat("integrator=photonmap passes=2 spp=4 "
                                          "photons=100000 threads=1 "
                                          "direct_illumination=off ",
@@ -136,7 +136,7 @@ static double seconds_of(const char *more)
     double best = INFINITY;
     for (int i = 0; i < 3; i++) {
         clock_t start = clock();
-        g_autoptr(image) img = render_with(s, words);
+        g_autoptr(image) img = render_with(v, words);
         g_assert_nonnull(img);
         best = fmin(best, (double)(clock() - start) / CLOCKS_PER_SEC);
     }
@@ -170,9 +170,9 @@ typedef struct caustic_found {
 
 static caustic_found caustic_of(const char *text, const char *words)
 {
-    g_autoptr(scene) s = scene_of(text);
+    g_autoptr(view) v = view_of(text);
     g_autoptr(GError) error = NULL;
-    g_autoptr(render) r = render_of(s, words);
+    g_autoptr(render) r = render_of(v, words);
     render_run(r, NULL, NULL, &error);
     g_assert_no_error(error);
     g_autoptr(image) img = image_of(r);

@@ -89,7 +89,7 @@ json_value gltf_extension(const json_value *v, const char *name, json_value *ext
 /* ---- gltf_buffer.c ---- */
 
 /** @brief Bytes of a buffer view (an image's); NULL with an error noted. */
-GBytes *gltf_view_bytes(gltf *g, gint64 view);
+GBytes *gltf_view_bytes(gltf *g, gint64 index);
 /** @brief The bytes that a "data:" URI, or a path relative to the file, stands for. */
 GBytes *gltf_uri_bytes(gltf *g, const json_value *at, const char *uri);
 /** @brief A path beside the file from a URI; NULL with an error noted. */

@@ -98,11 +98,11 @@ static GBytes *read_buffer(gltf *g, const json_value *buffer, gint64 index)
 }
 
 /* The bytes of the buffer that a view names, as many as it says it has. */
-static const uint8_t *buffer_bytes(gltf *g, const json_value *view, size_t *size)
+static const uint8_t *buffer_bytes(gltf *g, const json_value *part, size_t *size)
 {
     json_value array;
     gint64 index;
-    json_value buffer = gltf_refer(g, view, "buffer", "buffers", &array, &index);
+    json_value buffer = gltf_refer(g, part, "buffer", "buffers", &array, &index);
     if (!json_exists(&buffer))
         return NULL;
     gint64 length = json_whole(&buffer, "byteLength", G_MAXINT64 / 4);
@@ -121,23 +121,23 @@ static const uint8_t *buffer_bytes(gltf *g, const json_value *view, size_t *size
 }
 
 /* A view's bytes. *stride is 0 if it says nothing. */
-static const uint8_t *view_bytes(gltf *g, const json_value *view, size_t *size,
+static const uint8_t *view_bytes(gltf *g, const json_value *part, size_t *size,
                                  size_t *stride)
 {
     size_t whole;
-    const uint8_t *bytes = buffer_bytes(g, view, &whole);
-    gint64 offset = MAX(0, json_whole(view, "byteOffset", G_MAXINT64 / 4));
-    gint64 length = json_whole(view, "byteLength", G_MAXINT64 / 4);
-    gint64 step = json_whole(view, "byteStride", 252);
+    const uint8_t *bytes = buffer_bytes(g, part, &whole);
+    gint64 offset = MAX(0, json_whole(part, "byteOffset", G_MAXINT64 / 4));
+    gint64 length = json_whole(part, "byteLength", G_MAXINT64 / 4);
+    gint64 step = json_whole(part, "byteStride", 252);
     if (gltf_failed(g) || !bytes)
         return NULL;
     json_value extensions,
-        packed = gltf_extension(view, "EXT_meshopt_compression", &extensions);
+        packed = gltf_extension(part, "EXT_meshopt_compression", &extensions);
     if (json_exists(&packed))
         json_fail(&packed, "meshes packed by meshopt are not supported");
     else if (length < 0 || (guint64)offset > whole ||
              (guint64)length > whole - (guint64)offset)
-        json_fail(view, "expected a part of a buffer of %zu bytes", whole);
+        json_fail(part, "expected a part of a buffer of %zu bytes", whole);
     else {
         *size = (size_t)length;
         *stride = step > 0 ? (size_t)step : 0;
@@ -149,9 +149,9 @@ static const uint8_t *view_bytes(gltf *g, const json_value *view, size_t *size,
 GBytes *gltf_view_bytes(gltf *g, gint64 index)
 {
     json_value views = json_member(&g->root, "bufferViews");
-    json_value view = json_element(&views, (guint)index);
+    json_value part = json_element(&views, (guint)index);
     size_t size, stride;
-    const uint8_t *bytes = gltf_failed(g) ? NULL : view_bytes(g, &view, &size, &stride);
+    const uint8_t *bytes = gltf_failed(g) ? NULL : view_bytes(g, &part, &size, &stride);
     return bytes ? g_bytes_new(bytes, size) : NULL;
 }
 
@@ -186,12 +186,12 @@ static bool place_run(gltf *g, const json_value *of, element_run *run)
 {
     json_value array;
     gint64 index;
-    json_value view = gltf_refer(g, of, "bufferView", "bufferViews", &array, &index);
-    if (!json_exists(&view))
+    json_value part = gltf_refer(g, of, "bufferView", "bufferViews", &array, &index);
+    if (!json_exists(&part))
         return !gltf_failed(g);
     gint64 offset = MAX(0, json_whole(of, "byteOffset", G_MAXINT64 / 4));
     size_t element = component_size(run->type) * run->n_components, size, stride;
-    const uint8_t *bytes = view_bytes(g, &view, &size, &stride);
+    const uint8_t *bytes = view_bytes(g, &part, &size, &stride);
     if (!bytes || gltf_failed(g))
         return false;
     run->stride = stride ? stride : element;

@@ -38,18 +38,18 @@ static const char *embedded_path(gltf *g, GBytes *bytes, gint64 index)
 static const char *path_of(gltf *g, const json_value *img, gint64 index)
 {
     const char *uri = json_text(img, "uri");
-    gint64 view = json_whole(img, "bufferView", GLTF_MOST);
+    gint64 buffer = json_whole(img, "bufferView", GLTF_MOST);
     json_value at = json_member(img, "uri");
     if (uri && !g_str_has_prefix(uri, "data:")) {
         g_autofree char *path = gltf_uri_path(g, &at, uri);
         return path ? intern(path) : NULL;
     }
-    if (!uri && view < 0) {
+    if (!uri && buffer < 0) {
         json_fail(img, "expected a \"uri\" or a \"bufferView\", found none");
         return NULL;
     }
     g_autoptr(GBytes) bytes =
-        uri ? gltf_uri_bytes(g, &at, uri) : gltf_view_bytes(g, view);
+        uri ? gltf_uri_bytes(g, &at, uri) : gltf_view_bytes(g, buffer);
     return bytes ? embedded_path(g, bytes, index) : NULL;
 }
 

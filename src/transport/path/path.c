@@ -73,7 +73,7 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     path->every_light = path_samples_every_light(path);
     path->by_either = path->looked > 0.0f && bsdf_has_both(b);
     path->at.ray = hit_ray(hit, next.wi);
-    path->at.from_eye = false;
+    path->at.eye = NULL;
     camera_path_count(path, next.lobe);
     if (path->bounces < ROULETTE_BOUNCES)
         return !spectrum_is_black(path->at.throughput);
@@ -99,7 +99,7 @@ static scene_event cross_medium(void *data, float length, const surface_hit *beh
                                 surface_hit *at)
 {
     path_walk *walk = data;
-    if (behind && walk->path.at.from_eye)
+    if (behind && walk->path.at.eye)
         note_seen(walk, behind);
     return path_meets_medium(walk, &walk->path, length, at) ? EVENT_MEDIUM : EVENT_NONE;
 }
@@ -117,7 +117,7 @@ static bool path_goes_on(path_walk *walk)
         return false;
     }
     scene_scatterer(walk->scene, &hit, &pass->w, path->at.lane, &pass->options, &b);
-    if (event == EVENT_SURFACE && path->at.from_eye && !path->at.ray.media.participating)
+    if (event == EVENT_SURFACE && path->at.eye && !path->at.ray.media.participating)
         radiance_sample_note(walk->out, &hit, &b, -path->at.ray.direction, path->from);
     if (path_is_cut(walk, path, 1))
         return false;
@@ -144,7 +144,9 @@ void path_radiance(const void *data, const ray *r, sampler *random,
                 .path = &walk,
                 .cross_medium = cross_medium,
                 .meet_light = meet_surface},
-        .path = {.at = path_segment_from_eye(r), .eta2 = 1.0f, .from = r->origin},
+        .path = {.at = path_segment_from_eye(pass->plan->view, r),
+                 .eta2 = 1.0f,
+                 .from = r->origin},
         .pass = pass,
         .scene = pass->plan->scene,
         .how = &pass->plan->how,

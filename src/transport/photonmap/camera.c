@@ -232,7 +232,7 @@ static bool bounce(camera_tree *tree, camera_branch *branch, const surface_hit *
     branch->glossy_pdf = (next.lobe & LOBE_GLOSSY) ? next.pdf * probability : 0.0f;
     branch->from = hit->p;
     branch->at.ray = hit_ray(hit, next.wi);
-    branch->at.from_eye = false;
+    branch->at.eye = NULL;
     branch->n_followed++;
     return !spectrum_is_black(branch->at.throughput);
 }
@@ -293,7 +293,7 @@ static void follow(camera_tree *tree, camera_branch branch)
             return;
         }
         scene_bsdf(pass->scene, &hit, &pass->w, branch.at.lane, &pass->options, &b);
-        if (branch.at.from_eye)
+        if (branch.at.eye)
             radiance_sample_note(tree->out, &hit, &b, -branch.at.ray.direction,
                                  branch.from);
         if (events_left(tree, &branch) == 0)
@@ -308,10 +308,11 @@ static void follow(camera_tree *tree, camera_branch branch)
 void photonmap_radiance(const void *pass, const ray *r, sampler *random,
                         transport_scratch *scratch, radiance_sample *out)
 {
+    const photonmap_pass *from = pass;
     *out = (radiance_sample){.groups = out->groups};
     camera_tree tree = {.pass = pass, .random = random, .scratch = scratch, .out = out};
     follow(&tree, (camera_branch){
-                      .at = path_segment_from_eye(r),
+                      .at = path_segment_from_eye(from->plan->view, r),
                       .eta2 = 1.0f,
                       .from = r->origin,
                   });

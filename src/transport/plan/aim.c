@@ -62,7 +62,7 @@ typedef struct trials {
 
 static double pixels_each(const transport_plan *plan)
 {
-    const film_settings *film = &plan->scene->film;
+    const film_settings *film = &plan->view->film;
     return (double)film->width * (double)film->height / (double)MAX(plan->n_sight, 1);
 }
 
@@ -104,8 +104,8 @@ static float sight_at(const trials *all, vec3 p, photon_hits *hits)
 static float sight_in_medium(const trials *all, const surface_hit *hit)
 {
     const trace_task *task = &all->task;
-    const film_settings *film = &task->scene->film;
-    const camera *c = &task->scene->camera;
+    const film_settings *film = &all->plan->view->film;
+    const camera *c = &all->plan->view->camera;
     camera_connection eye;
     if (!camera_connects(c) ||
         !camera_connect(c, hit->p, (vec2){0.5f, 0.5f}, hit->time, &eye) ||
@@ -208,7 +208,7 @@ static size_t keep_arrivals(emission_record *records, trial_noise *noise, size_t
 /* What the sum of all trials' parts is to be multiplied with to be a camera sample's. */
 static double noise_scale(const trials *all)
 {
-    const film_settings *film = &all->task.scene->film;
+    const film_settings *film = &all->plan->view->film;
     double pixels = (double)film->width * (double)film->height;
     double reflected = TYPICAL_ALBEDO / G_PI;
     double per_pixel = (double)(SIGHT_REACH * SIGHT_REACH) * all->pixels_each / pixels;

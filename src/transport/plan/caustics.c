@@ -13,7 +13,7 @@ enum { PHOTONS_PER_SAMPLE = 8, PHOTONS_AT_ONCE = 4096 };
 uint64_t caustics_most(const transport_plan *plan)
 {
     const settings *how = &plan->how;
-    const film_settings *film = &plan->scene->film;
+    const film_settings *film = &plan->view->film;
     int64_t own = how->class_photons[PHOTON_CAUSTIC];
     int64_t samples = (int64_t)film->width * film->height * how->spp;
     int64_t most = MAX(PHOTONS_PER_SAMPLE * samples, PHOTONS_AT_ONCE);

@@ -14,7 +14,7 @@ static double path_sample(const path_pass *pass, vec2 raster, sampler random,
     radiance_sample out = {.groups = NULL};
     spectrum sum = {0};
     vec2 u_lens = sampler_2d(&random);
-    ray r = camera_ray(&pass->plan->scene->camera, raster, u_lens, sampler_1d(&random));
+    ray r = camera_ray(&pass->plan->view->camera, raster, u_lens, sampler_1d(&random));
     path_radiance(pass, &r, &random, scratch, &out);
     for (int i = 0; i < N_LAYERS; i++)
         sum += out.layers[i];
@@ -25,7 +25,7 @@ static double path_sample(const path_pass *pass, vec2 raster, sampler random,
 static double variance_of_pairs(const path_pass *pass, uint64_t key, uint32_t n,
                                 transport_scratch *scratch)
 {
-    const film_settings *film = &pass->plan->scene->film;
+    const film_settings *film = &pass->plan->view->film;
     double sum = 0.0;
     for (uint32_t i = 0; i < n; i++) {
         sampler random = sampler_make(key, i);

@@ -2,7 +2,7 @@
 
 double plan_samples(const transport_plan *plan)
 {
-    const film_settings *film = &plan->scene->film;
+    const film_settings *film = &plan->view->film;
     return (double)film->width * (double)film->height * (double)plan->how.spp *
            settings_planned_passes(&plan->how);
 }

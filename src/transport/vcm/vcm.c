@@ -46,7 +46,7 @@ static bool choose_radius(transport_plan *plan, const cancel_flag *cancel, GErro
 static uint64_t count_light_paths(const transport_plan *plan)
 {
     const settings *how = &plan->how;
-    const film_settings *film = &plan->scene->film;
+    const film_settings *film = &plan->view->film;
     int64_t camera_paths = (int64_t)film->width * film->height * how->spp;
     int64_t n = settings_photons(how);
     if (how->photons == 0 && vcm_strategies_of(how->vcm_strategies).connect)
@@ -66,11 +66,11 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
     }
     plan->n_photons[PHOTON_INDIRECT] = count_light_paths(plan);
     plan_ask(plan, (double)plan->n_photons[PHOTON_INDIRECT]);
-    if (plan->how.vcm_strategies == VCM_LIGHT && !camera_connects(&plan->scene->camera)) {
+    if (plan->how.vcm_strategies == VCM_LIGHT && !camera_connects(&plan->view->camera)) {
         error_set(error, ERROR_INPUT,
                   "light can not be traced to camera \"%s\": expected other "
                   "vcm_strategies than light",
-                  camera_kind_name(&plan->scene->camera));
+                  camera_kind_name(&plan->view->camera));
         return false;
     }
     vcm_strategies strategies = vcm_strategies_of(plan->how.vcm_strategies);
@@ -178,7 +178,7 @@ static void *open_pass(const transport_plan *plan, uint32_t index)
             ((const shape *)plan->scene->shapes->pdata[i])->camera_hidden;
     pass->turning_ends = pass->strategies.connect ||
                          (pass->strategies.merge && !pass->strategies.end_here);
-    pass->strategies.splat &= camera_connects(&plan->scene->camera);
+    pass->strategies.splat &= camera_connects(&plan->view->camera);
     if (pass->strategies.merge)
         pass->ratios.merge = (float)discs;
     if (pass->strategies.connect && pass->strategies.merge)

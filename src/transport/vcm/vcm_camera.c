@@ -352,7 +352,7 @@ static void follow(camera_walk *c)
         vcm_vertex v = {.hit = &hit, .wo = -walk->at.ray.direction};
         float cosine = hit_cosine(&hit, v.wo);
         scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf);
-        if (walk->at.from_eye)
+        if (walk->at.eye)
             radiance_sample_note(c->out, v.hit, &v.bsdf, v.wo, walk->from);
         if (!vcm_length_allowed(pass, walk->counts.n + 1) || !(cosine > 0.0f))
             return;
@@ -385,13 +385,14 @@ void vcm_radiance(const void *data, const ray *r, sampler *random,
     const vcm_pass *pass = data;
     *out = (radiance_sample){.groups = out->groups};
     camera_walk c = {.pass = pass, .random = random, .scratch = scratch, .out = out};
-    c.walk = (vcm_walk){.at = path_segment_from_eye(r),
+    c.walk = (vcm_walk){.at = path_segment_from_eye(pass->plan->view, r),
                         .from = r->origin,
                         .eta2 = 1.0f,
                         .mirrors_only = true,
                         .mode = TRANSPORT_RADIANCE};
     if (pass->strategies.splat) {
-        float pdf = camera_pdf_direction(&pass->scene->camera, r->direction, r->time);
+        float pdf =
+            camera_pdf_direction(&pass->plan->view->camera, r->direction, r->time);
         c.walk.weights.vcm = 1.0f / (pdf * pass->camera_per_light);
     }
     if (pass->strategies.connect)

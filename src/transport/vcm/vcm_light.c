@@ -128,7 +128,7 @@ static bool seen(const vcm_pass *pass, const surface_hit *hit,
                                 .direction = -eye->direction,
                                 .t_max = eye->distance * (1.0f - SHORTENING),
                                 .time = hit->time},
-                        .from_eye = true};
+                        .eye = pass->plan->view};
     surface_hit between;
     return scene_advance(&who, &way, &between) == EVENT_ESCAPE;
 }
@@ -152,9 +152,10 @@ static void connect_to_eye(light_walk *l, const vcm_vertex *v)
     camera_connection eye;
     vec2 u_lens = sampler_2d(&l->random);
     if (hidden(pass->scene, v->hit) ||
-        !camera_connect(&pass->scene->camera, v->hit->p, u_lens, v->hit->time, &eye) ||
-        !filter_reaches(&pass->scene->filter, eye.raster, pass->scene->film.width,
-                        pass->scene->film.height))
+        !camera_connect(&pass->plan->view->camera, v->hit->p, u_lens, v->hit->time,
+                        &eye) ||
+        !filter_reaches(&pass->plan->view->filter, eye.raster,
+                        pass->plan->view->film.width, pass->plan->view->film.height))
         return;
     lobe_pair f = vcm_scatter(v, eye.direction, TRANSPORT_IMPORTANCE);
     if (lobe_pair_is_black(&f))

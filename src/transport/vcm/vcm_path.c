@@ -85,7 +85,7 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
     walk->eta2 *= next.eta * next.eta;
     walk->from = v->hit->p;
     walk->at.ray = hit_ray(v->hit, next.wi);
-    walk->at.from_eye = false;
+    walk->at.eye = NULL;
     walk->counts = vcm_count(walk->counts, (next.lobe & LOBE_DIFFUSE) != 0);
     return cosine > 0.0f && !spectrum_is_black(walk->at.throughput);
 }
