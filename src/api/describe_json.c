@@ -21,7 +21,7 @@ static void put_shapes(json *j, const scene *s, const summary *all)
         json_object_end(j);
     }
     json_array_end(j);
-    json_count(j, "objects", s->objects->len);
+    json_count(j, "objects", s->n_objects);
     json_count(j, "instances", s->instances->len);
     json_string(j, "unit", "m");
     json_object_begin(j, "bounds");

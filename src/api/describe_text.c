@@ -33,7 +33,7 @@ static void put_shapes(GString *out, const scene *s, const summary *all)
     }
     if (s->instances->len > 0)
         g_string_append_printf(out, "  instances      %u of %u objects\n",
-                               s->instances->len, s->objects->len);
+                               s->instances->len, s->n_objects);
     if (box3_is_empty(s->bounds))
         return;
     put_vec3(out, "from", s->bounds.low);

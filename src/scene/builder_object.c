@@ -26,10 +26,8 @@ int builder_object_begin(scene_builder *b, const char *name, source_place place,
     }
     if (!memory_ask(OBJECT_SIZE, "objects", error))
         return NO_INDEX;
-    scene_object made = {g_strdup(name), place};
-    g_array_append_val(b->scene->objects, made);
-    b->open_object = (int)b->scene->objects->len - 1;
-    if (made.name)
+    b->open_object = (int)b->scene->n_objects++;
+    if (name)
         g_hash_table_insert(b->object_names, g_strdup(name),
                             GINT_TO_POINTER(b->open_object + 1));
     LISTENER_TELL(b, object_begin, b->open_object, name);
@@ -68,7 +66,7 @@ bool builder_expect_instances(scene_builder *b, size_t n, source_place place,
 bool builder_add_instance(scene_builder *b, int object, const motion *to_world,
                           source_place place, GError **error)
 {
-    if (!b->scene || object < 0 || (guint)object >= b->scene->objects->len) {
+    if (!b->scene || object < 0 || (guint)object >= b->scene->n_objects) {
         error_at(error, place, "an instance needs an object, before the scene is whole");
         return false;
     }

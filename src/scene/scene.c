@@ -27,19 +27,12 @@ static void free_light(void *data)
     light_free(data);
 }
 
-static void clear_object(void *data)
-{
-    g_free(((scene_object *)data)->name);
-}
-
 scene *scene_new(void)
 {
     scene *s = g_new0(scene, 1);
     s->shapes = g_ptr_array_new_with_free_func(free_shape);
     s->materials = g_ptr_array_new_with_free_func(free_material);
     s->lights = g_ptr_array_new_with_free_func(free_light);
-    s->objects = g_array_new(FALSE, TRUE, sizeof(scene_object));
-    g_array_set_clear_func(s->objects, clear_object);
     s->instances = g_array_new(FALSE, TRUE, sizeof(instance));
     s->textures = g_ptr_array_new_with_free_func(free_texture);
     s->media = g_ptr_array_new_with_free_func(free_medium);
@@ -68,7 +61,6 @@ void scene_free(scene *s)
     g_ptr_array_unref(s->lights);
     g_ptr_array_unref(s->shapes);
     g_ptr_array_unref(s->materials);
-    g_array_unref(s->objects);
     memory_release(s->instance_room * INSTANCE_SIZE);
     g_array_unref(s->instances);
     g_ptr_array_unref(s->media);

@@ -18,12 +18,6 @@
 /** @brief What an instance takes: an array that grows holds up to twice what is in it. */
 #define INSTANCE_SIZE (2 * sizeof(instance))
 
-/** @brief Shapes that instances put into the world; they lie in scene->shapes. */
-typedef struct scene_object {
-    char *name; /**< NULL: of one shape that moves */
-    source_place place;
-} scene_object;
-
 /** @brief What pbrt's options switch off: for debugging, since the image is worse. */
 typedef struct scene_switches {
     bool fixed_pixels; /**< the eye sees pixels' middles, through the lens's middle, at
@@ -38,7 +32,8 @@ typedef struct scene {
     GPtrArray *lights;    /**< light* */
     GPtrArray *textures;  /**< texture* */
     GPtrArray *media;     /**< medium*, participating */
-    GArray *objects;      /**< scene_object */
+    guint n_objects;      /**< what instances put into the world: the shapes of the
+                             same shape.object */
     GArray *instances;    /**< instance */
     size_t instance_room; /**< as many have their memory reserved */
     float shutter[2];     /**< s, when it opens and closes */

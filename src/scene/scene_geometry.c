@@ -25,8 +25,8 @@ double scene_instance_growth(const scene *s, const instance *is)
 
 static box3 *object_bounds(const scene *s)
 {
-    box3 *boxes = g_aligned_alloc(MAX(s->objects->len, 1), sizeof *boxes, 16);
-    for (guint i = 0; i < s->objects->len; i++)
+    box3 *boxes = g_aligned_alloc(MAX(s->n_objects, 1), sizeof *boxes, 16);
+    for (guint i = 0; i < s->n_objects; i++)
         boxes[i] = box3_empty();
     for (guint i = 0; i < s->shapes->len; i++) {
         const shape *on = s->shapes->pdata[i];
@@ -193,7 +193,7 @@ bool scene_build_accel(scene *s, unsigned threads, GError **error)
         .n_shapes = s->shapes->len,
         .instances = (const instance *)(void *)s->instances->data,
         .n_instances = s->instances->len,
-        .n_objects = s->objects->len,
+        .n_objects = s->n_objects,
         .shutter = {(double)s->shutter[0], (double)s->shutter[1]},
     };
     s->accel = accel_build(&in, threads, error);

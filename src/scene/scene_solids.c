@@ -24,7 +24,7 @@ static bool anything_absorbs(const scene *s)
 /* The most that instances of an object grow it. */
 static float *object_scales(const scene *s)
 {
-    float *scales = g_new0(float, MAX(s->objects->len, 1));
+    float *scales = g_new0(float, MAX(s->n_objects, 1));
     for (guint i = 0; i < s->instances->len; i++) {
         const instance *is = scene_instance(s, (int)i);
         float scale = sqrtf((float)scene_instance_growth(s, is));

@@ -113,7 +113,7 @@ bool pbrt_color_space(pbrt_parser *parser, source_place place)
 static char *new_object_name(pbrt_parser *parser, const char *name, source_place at)
 {
     char *own = g_strdup(name);
-    guint n = parser->builder->scene->objects->len;
+    guint n = parser->builder->scene->n_objects;
     for (guint i = n + 1; builder_find_object(parser->builder, own) != NO_INDEX; i++) {
         g_free(own);
         own = g_strdup_printf("%s, %u", name, i);

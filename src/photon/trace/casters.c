@@ -14,7 +14,7 @@ static bool casts_caustics(const scene *s, const shape *on)
 /* The shapes of each object, or (first) of the world, that cast caustics. */
 static GArray **shapes_by_object(const scene *s)
 {
-    size_t n = (size_t)s->objects->len + 1;
+    size_t n = (size_t)s->n_objects + 1;
     GArray **lists = g_new0(GArray *, n);
     for (size_t i = 0; i < n; i++)
         lists[i] = g_array_new(FALSE, FALSE, sizeof(int));
@@ -89,7 +89,7 @@ static bool find_surfaces(caustic_casters *c, GError **error)
     box3 box = box3_empty();
     GArray **lists = shapes_by_object(s);
     float *areas = list_all(c, lists, &box, error);
-    free_lists(lists, s->objects->len);
+    free_lists(lists, s->n_objects);
     c->center = box3_is_empty(box) ? s->center : box3_center(box);
     c->radius = 1.001f * box3_radius(box);
     bool done = areas && distribution_init(&c->area, areas, (size_t)c->n, error);
