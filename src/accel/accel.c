@@ -228,17 +228,35 @@ void accel_free(accel *a)
 /* ---- Queries ---- */
 
 /* Of an instance: filled in the object's space, then placed. */
-static void fill_instance(const accel *a, const struct RTCRayHit *query, const ray *r,
-                          surface_hit *hit)
+static void fill_instance(const accel *a, const shape *s, const ray *r, surface_hit *hit)
 {
-    hit->instance = (int)(query->hit.instID[0] - a->world.n);
-    const placed *p = &a->instances[hit->instance];
-    hit->shape = (int)a->objects[p->is->object].shapes[query->hit.geomID];
-    const shape *s = a->shapes[hit->shape].shape;
-    transform to_world = placed_at(p, r->time);
+    transform to_world = placed_at(&a->instances[hit->instance], r->time);
     ray local = instance_ray(&to_world, r);
-    s->kind->fill_hit(s->self, &local, query->hit.u, query->hit.v, hit);
+    s->kind->fill_hit(s->self, &local, hit->corners.x, hit->corners.y, hit);
     instance_place_hit(&to_world, hit);
+}
+
+void accel_fill_hit(const accel *a, const ray *r, surface_hit *hit)
+{
+    const shape *s = a->shapes[hit->shape].shape;
+    hit->dpdv = (vec3){0};
+    hit->footprint = 0.0f;
+    hit->mesh = NULL;
+    hit->turns = false;
+    if (hit->instance != NO_INDEX)
+        fill_instance(a, s, r, hit);
+    else
+        s->kind->fill_hit(s->self, r, hit->corners.x, hit->corners.y, hit);
+}
+
+/* The shape and the instance that Embree's numbers stand for. */
+static void name_hit(const accel *a, const struct RTCHit *found, surface_hit *hit)
+{
+    bool placed_there = found->instID[0] != RTC_INVALID_GEOMETRY_ID;
+    hit->instance = placed_there ? (int)(found->instID[0] - a->world.n) : NO_INDEX;
+    const accel_group *group =
+        placed_there ? &a->objects[a->instances[hit->instance].is->object] : &a->world;
+    hit->shape = (int)group->shapes[found->geomID];
 }
 
 static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit *hit)
@@ -252,21 +270,12 @@ static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit 
     embree_nearest(a->world.scene, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return false;
+    name_hit(a, &query.hit, hit);
     hit->t = query.ray.tfar / a->world.per_metre;
     hit->time = r->time;
     hit->primitive = query.hit.primID;
-    hit->dpdv = (vec3){0};
-    hit->footprint = 0.0f;
-    hit->mesh = NULL;
-    hit->turns = false;
-    if (query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
-        fill_instance(a, &query, r, hit);
-        return true;
-    }
-    hit->instance = NO_INDEX;
-    hit->shape = (int)a->world.shapes[query.hit.geomID];
-    const shape *s = a->shapes[hit->shape].shape;
-    s->kind->fill_hit(s->self, r, query.hit.u, query.hit.v, hit);
+    hit->corners = (vec2){query.hit.u, query.hit.v};
+    accel_fill_hit(a, r, hit);
     return true;
 }
 

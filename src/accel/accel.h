@@ -28,6 +28,9 @@ void accel_free(accel *a);
 bool accel_intersect(const accel *a, const ray *r, surface_hit *hit);
 /** @brief The same with all cut-outs solid. */
 bool accel_intersect_solid(const accel *a, const ray *r, surface_hit *hit);
+/** @brief Fills in what a nearest hit of the ray is beyond its t, time, shape, instance,
+ * primitive and corners. */
+void accel_fill_hit(const accel *a, const ray *r, surface_hit *hit);
 /** @brief True if anything but interfaces (shapes without a material) lies in (0,
  * r->t_max). Thread-safe. */
 bool accel_occluded(const accel *a, const ray *r);

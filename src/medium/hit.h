@@ -56,7 +56,8 @@ typedef struct surface_hit {
     medium_stack media; /**< that the ray came through */
     const mesh *mesh;   /**< that the triangle is of (mesh_attributes.h); NULL: on
                            another shape */
-    vec2 corners;       /**< weights of the triangle's second and third corner */
+    vec2 corners;       /**< where on the primitive it is, as shape_kind.fill_hit takes
+                           it: of a triangle, weights of its second and third corner */
     uint32_t solid;     /**< behind the surface, against n_geom, as in a
                            medium_stack; 0: it bounds none */
     bool from_inside;   /**< the ray came from behind; only where solid is set */

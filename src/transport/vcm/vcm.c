@@ -85,16 +85,18 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
 /* What moves is kept where it is in the middle of its slice of time. */
 photon vcm_photon(const vcm_pass *pass, const light_vertex *v)
 {
-    bool behind = dot3(v->wi, v->hit.n_geom) < 0.0f;
-    photon p = {.p = scene_hit_place(pass->scene, &v->hit),
-                .wi = v->wi,
+    const surface_hit hit = scene_restore_hit(pass->scene, &v->hit);
+    const vec3 wi = kept_hit_wo(&v->hit);
+    bool behind = dot3(wi, hit.n_geom) < 0.0f;
+    photon p = {.p = scene_hit_place(pass->scene, &hit),
+                .wi = wi,
                 .flux = v->flux / (float)pass->light.n,
                 .flags = behind ? PHOTON_BEHIND : 0,
-                .n = face_forward(v->hit.n_geom, v->wi),
+                .n = face_forward(hit.n_geom, wi),
                 .tag = (uint32_t)scene_light_group(pass->scene, v->light),
-                .home = scene_curve_of(pass->scene, &v->hit)};
-    if (scene_hit_moves(pass->scene, &v->hit)) {
-        transform by = vcm_motion_to_map(pass, &v->hit);
+                .home = scene_curve_of(pass->scene, &hit)};
+    if (scene_hit_moves(pass->scene, &hit)) {
+        transform by = vcm_motion_to_map(pass, &hit);
         p.p = transform_point(&by, p.p);
         p.wi = normalize3(transform_vector(&by, p.wi));
         p.n = normalize3(transform_normal(&by, p.n));

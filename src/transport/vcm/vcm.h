@@ -42,6 +42,7 @@
 #pragma once
 
 #include "scene/advance.h"
+#include "scene/kept_hit.h"
 #include "transport/transport.h"
 #include "transport/vcm/vcm_weights.h"
 
@@ -59,20 +60,23 @@ typedef struct vcm_strategies {
 
 /** @brief What scattered on a subpath, in the order from the eye. */
 typedef struct scattering_counts {
-    unsigned n, n_diffuse;
-    bool first_diffuse; /**< of a camera subpath: the first was a diffuse lobe */
+    unsigned n : 16,
+        n_diffuse : 15;     /**< roulette ends paths long before these are full */
+    bool first_diffuse : 1; /**< of a camera subpath: the first was a diffuse lobe */
 } scattering_counts;
 
-/** @brief Where light arrived at a surface that scatters not only as a mirror. */
+/** @brief Where light arrived at a surface that scatters not only as a mirror. The hit is
+ * restored where it is asked for: passes hold millions of these. */
 typedef struct light_vertex {
-    surface_hit hit;
-    vec3 wi;       /**< to where the light came from */
     spectrum flux; /**< that arrived; one of N */
+    kept_hit hit;  /**< light came to it along kept_hit_wo */
     partial_weights weights;
     scattering_counts before; /**< what scattered between lamp and here */
     int light;                /**< that it left */
     float alone;              /**< see vcm_weights.h */
 } light_vertex;
+
+_Static_assert(sizeof(light_vertex) <= 128, "a light vertex is at most two cache lines");
 
 /** @brief The light subpaths of a pass. */
 typedef struct light_paths {
@@ -216,8 +220,9 @@ scattering_counts vcm_count(scattering_counts from_eye, bool diffuse);
 /** @brief Counts from the eye, then those of a light subpath. */
 static inline scattering_counts vcm_join(scattering_counts eye, scattering_counts lamp)
 {
-    return (scattering_counts){eye.n + lamp.n, eye.n_diffuse + lamp.n_diffuse,
-                               eye.first_diffuse};
+    eye.n += lamp.n;
+    eye.n_diffuse += lamp.n_diffuse;
+    return eye;
 }
 
 /** @brief True if a path of n scattering events is not longer than asked for. */

@@ -188,13 +188,15 @@ static void connect_to_vertex(camera_walk *c, const vcm_vertex *v, const light_v
 {
     static const bsdf_options options = {0};
     const vcm_pass *pass = c->pass;
-    vec3 to = l->hit.p - v->hit->p;
-    float distance2 = length3_2(to);
-    if (!vcm_length_allowed(pass, c->walk.counts.n + l->before.n + 2) ||
-        !(distance2 > 0.0f) || vcm_ends_light(pass, &l->hit))
+    if (!vcm_length_allowed(pass, c->walk.counts.n + l->before.n + 2u))
         return;
-    vcm_vertex lamp = {.hit = &l->hit, .wo = l->wi, .alone = l->alone};
-    scene_bsdf(pass->scene, &l->hit, &pass->w, ALL_LANES, &options, &lamp.bsdf);
+    const surface_hit hit = scene_restore_hit(pass->scene, &l->hit);
+    vec3 to = hit.p - v->hit->p;
+    float distance2 = length3_2(to);
+    if (!(distance2 > 0.0f) || vcm_ends_light(pass, &hit))
+        return;
+    vcm_vertex lamp = {.hit = &hit, .wo = kept_hit_wo(&l->hit), .alone = l->alone};
+    scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &lamp.bsdf);
     const vertex_pair p = {v, &lamp, l, to / sqrtf(distance2), distance2};
     add_pair(c, &p);
 }
@@ -225,20 +227,29 @@ static float merge_weight(const camera_walk *c, const vcm_vertex *v,
     return 1.0f / (lamp_side + 1.0f + eye_side);
 }
 
+/* To where light came from, of what moves with its surface to another time. */
+static vec3 direction_at(const scene *s, const kept_hit *kept, float time)
+{
+    const surface_hit on = {.instance = kept->instance, .time = kept->time};
+    vec3 wi = kept_hit_wo(kept);
+    if (!scene_hit_moves(s, &on))
+        return wi;
+    transform by = scene_motion_to(s, &on, time);
+    return normalize3(transform_vector(&by, wi));
+}
+
 /* Light vertices are a density over the true surface; light sees the shading normal by
    the cosine that is in f. */
 static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *l,
                        float kernel_over_area)
 {
     int n_slices = c->pass->n_slices;
-    vec3 wi = l->wi;
+    vec3 wi = kept_hit_wo(&l->hit);
     if (vcm_ends_light(c->pass, v->hit) && c->pass->strategies.connect &&
         l->weights.vcm > 0.0f)
         return;
-    if (scene_hit_moves(c->pass->scene, &l->hit)) {
-        transform by = scene_motion_to(c->pass->scene, &l->hit, v->hit->time);
-        wi = normalize3(transform_vector(&by, wi));
-    }
+    if (c->pass->scene->moves)
+        wi = direction_at(c->pass->scene, &l->hit, v->hit->time);
     float cosine = hit_cosine(v->hit, wi);
     if (!(cosine > 0.0f) ||
         time_slice(l->hit.time, n_slices) != time_slice(v->hit->time, n_slices) ||

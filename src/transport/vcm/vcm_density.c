@@ -12,14 +12,15 @@
 /* id: a pass that no render reaches. */
 #define PILOT_PASS 0xfffffffeu
 
-static photon_map *map_of(const light_paths *paths, unsigned threads, GError **error)
+static photon_map *map_of(const scene *s, const light_paths *paths, unsigned threads,
+                          GError **error)
 {
     photon_store store = {0};
     if (!photon_store_reserve(&store, paths->n_vertices, error))
         return NULL;
     for (size_t i = 0; i < paths->n_vertices; i++) {
         const light_vertex *v = &paths->vertices[i];
-        photon p = {.p = v->hit.p, .wi = v->wi};
+        photon p = {.p = scene_restore_hit(s, &v->hit).p, .wi = kept_hit_wo(&v->hit)};
         photon_store_put(&store, &p);
     }
     return photon_map_build(MAP_KDTREE, &store, 0.0f, threads, error);
@@ -52,7 +53,8 @@ bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **
     if (!vcm_trace_light(&pilot, cancel, &counts, error))
         return false;
     plan->planning += (double)counts.photon_rays;
-    g_autoptr(photon_map) map = map_of(&pilot.light, (unsigned)plan->how.threads, error);
+    g_autoptr(photon_map) map =
+        map_of(plan->scene, &pilot.light, (unsigned)plan->how.threads, error);
     if (map)
         plan->density = places_keep(map, (unsigned)plan->how.threads, density_at,
                                     &pilot.light, error);

@@ -79,8 +79,7 @@ static void keep(light_walk *l, const vcm_vertex *v)
         return;
     out->vertices = room;
     room[out->n_vertices++] = (light_vertex){
-        .hit = *v->hit,
-        .wi = v->wo,
+        .hit = hit_keep(&l->walk.at.ray, v->hit),
         .flux = l->walk.at.throughput,
         .weights = l->walk.weights,
         .before = l->walk.counts,
