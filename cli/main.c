@@ -12,7 +12,7 @@
 
 static const command commands[] = {
     {"render", "render a scene to an image", command_render},
-    {"photons", "trace photons only: count them, save them, tell their story",
+    {"photons", "trace photons only: count them, save them, print their event log",
      command_photons},
     {"info", "say what is in a scene", command_info},
     {"convert", "write any scene as pbrt-v4 text with its meshes and images",

@@ -87,15 +87,15 @@ static void print_line(const char *line, void *data)
     fprintf(data, "%s\n", line);
 }
 
-static int tell_story(const NephScene *scene, const NephSettings *settings, size_t n)
+static int print_event_log(const NephScene *scene, const NephSettings *settings, size_t n)
 {
     g_autoptr(GError) error = NULL;
-    if (!neph_photons_story(scene, settings, n, print_line, stdout, &error))
+    if (!neph_photons_event_log(scene, settings, n, print_line, stdout, &error))
         return report_error(error);
     return print_result("%s", "");
 }
 
-static int work_on(const char *file, unsigned threads, size_t n_stories)
+static int work_on(const char *file, unsigned threads, size_t n_logged)
 {
     g_autoptr(GError) error = NULL;
     const NephLoadOptions options = loading_options(threads, given.quiet);
@@ -108,9 +108,9 @@ static int work_on(const char *file, unsigned threads, size_t n_stories)
          !neph_file_spares(given.output, neph_scene_files(scene), &error)) ||
         !overrides_apply(&given.settings, settings, &error))
         result = report_error(error);
-    if (!result && n_stories)
-        result = tell_story(scene, settings, n_stories);
-    if (!result && (!n_stories || given.output))
+    if (!result && n_logged)
+        result = print_event_log(scene, settings, n_logged);
+    if (!result && (!n_logged || given.output))
         result = trace(scene, settings);
     return result;
 }
@@ -122,11 +122,11 @@ int command_photons(int argc, char **argv)
         return exit_code;
     g_autoptr(GError) error = NULL;
     unsigned threads;
-    guint64 n_stories = 0;
+    guint64 n_logged = 0;
     if ((given.trace &&
-         !argument_count("--trace", given.trace, 1, 1000000, &n_stories, &error)) ||
+         !argument_count("--trace", given.trace, 1, 1000000, &n_logged, &error)) ||
         !overrides_check(&given.settings, &threads, &error) ||
         (given.output && !neph_file_can_write(given.output, &error)))
         return report_error(error);
-    return work_on(argv[1], threads, (size_t)n_stories);
+    return work_on(argv[1], threads, (size_t)n_logged);
 }

@@ -488,11 +488,12 @@ NEPH_API void neph_photons_statistics(const NephPhotons *photons, NephStatistics
 /** @brief Binary PLY: x y z, nx ny nz (direction), red green blue (float flux), class. */
 NEPH_API bool neph_photons_write_ply(const NephPhotons *photons, const char *path,
                                      GError **error);
-/** @brief The story of the first n photons of each class, one line an event: position,
- * surface, what happened, flux. Each line is given to write. */
-NEPH_API bool neph_photons_story(const NephScene *scene, const NephSettings *settings,
-                                 size_t n, void (*write)(const char *line, void *data),
-                                 void *data, GError **error);
+/** @brief The event log of the first n photons of each class, one line an event:
+ * position, surface, what happened, flux. Each line is given to write. */
+NEPH_API bool neph_photons_event_log(const NephScene *scene, const NephSettings *settings,
+                                     size_t n,
+                                     void (*write)(const char *line, void *data),
+                                     void *data, GError **error);
 
 typedef enum {
     NEPH_PHOTON_EMITTED,

@@ -13,7 +13,7 @@ typedef struct asking {
     void *data;
 } asking;
 
-static inline void asking_beat(void *data)
+static inline void asking_progress(void *data)
 {
     asking *a = data;
     if (!a->go_on(a->data))
@@ -23,8 +23,9 @@ static inline void asking_beat(void *data)
 /** @param go_on NULL: the work is never stopped */
 static inline const cancel_flag *asking_begin(asking *a, NephGoOnFunc go_on, void *data)
 {
-    *a = (asking){.cancel = {.beat = go_on ? asking_beat : NULL, .beat_data = a},
-                  .go_on = go_on,
-                  .data = data};
+    *a = (asking){
+        .cancel = {.progress = go_on ? asking_progress : NULL, .progress_data = a},
+        .go_on = go_on,
+        .data = data};
     return &a->cancel;
 }

@@ -144,9 +144,9 @@ bool neph_photons_write_ply(const NephPhotons *photons, const char *path, GError
     return output_commit(out, error);
 }
 
-bool neph_photons_story(const NephScene *s, const NephSettings *how, size_t n,
-                        void (*write)(const char *line, void *data), void *data,
-                        GError **error)
+bool neph_photons_event_log(const NephScene *s, const NephSettings *how, size_t n,
+                            void (*write)(const char *line, void *data), void *data,
+                            GError **error)
 {
-    return render_photon_story(s->view, &how->values, n, write, data, error);
+    return render_photon_event_log(s->view, &how->values, n, write, data, error);
 }

@@ -18,8 +18,8 @@ bool parallel_for(size_t n, size_t chunk_size, unsigned threads,
         size_t begin = chunk * chunk_size;
         if (!cancelled(cancel))
             body(begin, MIN(begin + chunk_size, n), (unsigned)omp_get_thread_num(), data);
-        if (cancel && cancel->beat && omp_get_thread_num() == 0)
-            cancel->beat(cancel->beat_data);
+        if (cancel && cancel->progress && omp_get_thread_num() == 0)
+            cancel->progress(cancel->progress_data);
     }
     return !cancelled(cancel);
 }

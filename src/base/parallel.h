@@ -13,9 +13,9 @@
  * and the pulse of that work. Zero to begin. */
 typedef struct cancel_flag {
     atomic_bool set;
-    void (*beat)(void *data); /**< called again and again on the thread that called
+    void (*progress)(void *data); /**< called again and again on the thread that called
                                  parallel_for; NULL: nobody listens */
-    void *beat_data;
+    void *progress_data;
 } cancel_flag;
 
 /** @brief True if flag is not NULL and has been set. */
@@ -35,7 +35,7 @@ typedef void (*parallel_body)(size_t begin, size_t end, unsigned thread, void *d
  * @brief Calls body for every chunk of [0, n), in any order, on the given number of
  * threads.
  * @param threads 0 = one per processor
- * @param cancel may be NULL; when set, chunks not yet begun are skipped; its beat is
+ * @param cancel may be NULL; when set, chunks not yet begun are skipped; its progress is
  * called after each chunk on the calling thread
  * @return false if cancelled before all chunks ran
  */

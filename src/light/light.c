@@ -75,7 +75,7 @@ light *light_new(const build_context *context, const char *name, const params *p
     *l = (light){.kind = kind,
                  .self = self,
                  .place = p->place,
-                 .is_unmet = kind->is_delta || (on && on->is_invisible),
+                 .is_delta = kind->is_delta || (on && on->is_invisible),
                  .group = g_steal_pointer(&group)};
     return l;
 }

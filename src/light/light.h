@@ -96,7 +96,7 @@ struct light {
     int group_index;        /**< in scene->light_groups, if there are any */
     medium_stack solids;    /**< that it shines in; no participating medium */
     medium_interface media; /**< around it */
-    bool is_unmet;          /**< no ray can meet it: without an extent, or of alpha 0 */
+    bool is_delta;          /**< no ray can meet it: without an extent, or of alpha 0 */
 };
 
 /** @brief Kind number i of the table; NULL behind the last. */

@@ -44,12 +44,12 @@ typedef struct surface_hit {
     float error; /**< m: how far off the surface rounding may see a ray that starts at p
                     (large triangles near the origin); 0: the coordinates of p tell */
     float time;
-    float footprint; /**< m: how wide the eye sees at once there; 0 for photons and
-                        where it is not known */
-    bool turns;      /**< the surface faces every ray, as far as it can by turning about
-                        dpdu (a flat curve): normals and dpdv are those for this ray */
-    int shape;       /**< index in scene->shapes */
-    int instance;    /**< index in scene->instances, or NO_INDEX */
+    float footprint;    /**< m: how wide the eye sees at once there; 0 for photons and
+                           where it is not known */
+    bool camera_facing; /**< the surface faces every ray, as far as it can by turning
+                   about dpdu (a flat curve): normals and dpdv are those for this ray */
+    int shape;          /**< index in scene->shapes */
+    int instance;       /**< index in scene->instances, or NO_INDEX */
     uint32_t primitive; /**< triangle of a mesh, else 0 */
     int material; /**< index in scene->materials, or NO_INDEX: an invisible interface */
     int light;    /**< index in scene->lights of the area light here, or NO_INDEX */
@@ -70,8 +70,8 @@ typedef struct surface_hit {
  */
 static inline float hit_cosine(const surface_hit *hit, vec3 w)
 {
-    return hit->turns ? length3(cross3(w, normalize3(hit->dpdu)))
-                      : fabsf(dot3(w, hit->n_geom));
+    return hit->camera_facing ? length3(cross3(w, normalize3(hit->dpdu)))
+                              : fabsf(dot3(w, hit->n_geom));
 }
 
 /** @brief Where a ray that leaves p in the given direction must start so as not to meet

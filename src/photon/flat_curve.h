@@ -13,7 +13,7 @@
 /** @brief A place on a flat curve, where its photons are kept (scene_hit_place). */
 typedef struct flat_curve {
     const scene *scene;
-    const surface_hit *hit; /**< surface_hit.turns is set */
+    const surface_hit *hit; /**< surface_hit.camera_facing is set */
 } flat_curve;
 
 /** @brief The area that the curve shows within radius of p, a place on its axis, each

@@ -25,10 +25,10 @@ float caustic_share_of(const caustic_share *share, const caustic_end *end)
 {
     if (!share)
         return 1.0f;
-    bool unmet = scene_light(share->casters->scene, end->light)->is_unmet;
+    bool delta = scene_light(share->casters->scene, end->light)->is_delta;
     float scatter = end->specular ? 1.0f : end->pdf_scatter;
     float merged = scatter * PI_F * share->discs * emission_density(share, end);
-    float others = (unmet ? 0.0f : scatter) + (end->specular ? 0.0f : end->pdf_lights);
+    float others = (delta ? 0.0f : scatter) + (end->specular ? 0.0f : end->pdf_lights);
     if (!(others > 0.0f) || isinf(merged))
         return 1.0f;
     return merged > 0.0f ? merged / (merged + others) : 0.0f;

@@ -37,16 +37,16 @@ static bool trace_class(render_photons *p, photon_class c, transport_counts *cou
 
 static void note(render_photons *p, const transport_counts *counts)
 {
-    render_statistics *st = &p->statistics;
-    st->time_trace = st->time_total = counts->time_trace;
-    st->photon_rays = counts->photon_rays;
-    st->n_not_finite = counts->n_not_finite;
-    st->memory_peak = memory_peak();
+    render_statistics *log = &p->statistics;
+    log->time_trace = log->time_total = counts->time_trace;
+    log->photon_rays = counts->photon_rays;
+    log->n_not_finite = counts->n_not_finite;
+    log->memory_peak = memory_peak();
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        st->emitted[c] = counts->emitted[c];
-        st->stored[c] = counts->stored[c];
-        st->radius[c] = counts->radius[c];
-        st->memory_photons +=
+        log->emitted[c] = counts->emitted[c];
+        log->stored[c] = counts->stored[c];
+        log->radius[c] = counts->radius[c];
+        log->memory_photons +=
             photon_store_bytes(&p->stores[c]) + photon_store_bytes(&p->in_media[c]);
     }
 }
@@ -199,30 +199,30 @@ bool render_photons_follow(render_photons *p, const cancel_flag *cancel, GError 
     return ok;
 }
 
-/* ---- The story ---- */
+/* ---- The event log ---- */
 
-typedef struct story {
+typedef struct event_log {
     const scene *scene;
     const wavelengths *w;
     photon_class photon_class;
     void (*write)(const char *line, void *data);
     void *data;
-} story;
+} event_log;
 
-static char *surface_name(const story *st, const photon_event *event)
+static char *surface_name(const event_log *log, const photon_event *event)
 {
     if (!event->hit)
         return event->kind == PHOTON_LEFT
                    ? g_strdup("out of the scene")
                    : g_strdup_printf("light %d (%s)", event->light,
-                                     scene_light(st->scene, event->light)->kind->name);
+                                     scene_light(log->scene, event->light)->kind->name);
     if (event->hit->shape == NO_INDEX)
         return g_strdup_printf(
-            "medium %s", scene_medium(st->scene, event->hit->media.participating)->name);
-    const shape *on = st->scene->shapes->pdata[event->hit->shape];
+            "medium %s", scene_medium(log->scene, event->hit->media.participating)->name);
+    const shape *on = log->scene->shapes->pdata[event->hit->shape];
     const material *m = event->hit->material == NO_INDEX
                             ? NULL
-                            : st->scene->materials->pdata[event->hit->material];
+                            : log->scene->materials->pdata[event->hit->material];
     return g_strdup_printf("shape %d (%s, %s)", event->hit->shape, on->kind->name,
                            !m        ? "interface"
                            : m->name ? m->name
@@ -249,34 +249,34 @@ static char *what_happened(const photon_event *event)
 
 static void tell_event(const photon_event *event, void *data)
 {
-    const story *st = data;
-    g_autofree char *surface = surface_name(st, event);
+    const event_log *log = data;
+    g_autofree char *surface = surface_name(log, event);
     g_autofree char *what = what_happened(event);
     float xyz[3], rgb[3];
-    spectrum_to_xyz(st->w, event->flux, xyz);
+    spectrum_to_xyz(log->w, event->flux, xyz);
     color_space_from_xyz(color_space_srgb(), xyz, rgb);
     g_autofree char *line = g_strdup_printf(
         "%s %" G_GUINT64_FORMAT
         ": at (%.5g %.5g %.5g) on %s: %s, flux (%.4g %.4g %.4g) W, "
         "going (%.4f %.4f %.4f)",
-        class_names[st->photon_class], event->index, (double)event->p[0],
+        class_names[log->photon_class], event->index, (double)event->p[0],
         (double)event->p[1], (double)event->p[2], surface, what, (double)rgb[0],
         (double)rgb[1], (double)rgb[2], (double)event->direction[0],
         (double)event->direction[1], (double)event->direction[2]);
-    st->write(line, st->data);
+    log->write(line, log->data);
 }
 
-bool render_photon_story(const view *v, const settings *how, size_t n,
-                         void (*write)(const char *line, void *data), void *data,
-                         GError **error)
+bool render_photon_event_log(const view *v, const settings *how, size_t n,
+                             void (*write)(const char *line, void *data), void *data,
+                             GError **error)
 {
     g_autoptr(render_photons) p = g_aligned_alloc0(1, sizeof *p, 64);
     if (!plan_photons(p, v, how, NULL, error))
         return false;
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        story st = {v->scene, &p->w, (photon_class)c, write, data};
+        event_log log = {v->scene, &p->w, (photon_class)c, write, data};
         for (size_t i = 0; i < MIN(n, n_emitted(p, (photon_class)c)); i++)
-            render_photons_tell(p, (photon_class)c, i, tell_event, &st);
+            render_photons_tell(p, (photon_class)c, i, tell_event, &log);
     }
     return true;
 }

@@ -47,6 +47,6 @@ void render_photons_free(render_photons *p);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(render_photons, render_photons_free)
 
 /** @brief The story of the first n photons of each class, a line an event. */
-bool render_photon_story(const view *v, const settings *how, size_t n,
-                         void (*write)(const char *line, void *data), void *data,
-                         GError **error);
+bool render_photon_event_log(const view *v, const settings *how, size_t n,
+                             void (*write)(const char *line, void *data), void *data,
+                             GError **error);

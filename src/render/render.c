@@ -9,12 +9,12 @@
 #include <string.h>
 
 enum {
-    SAMPLES_BETWEEN_BEATS = 64,
+    SAMPLES_BETWEEN_PROGRESS = 64,
     TIMED_SHARE = 16, /* one camera sample in so many is timed: the clock is not free */
 };
 
 /* The caller hears of progress no more often than this, s. */
-#define BEAT_INTERVAL 0.1
+#define PROGRESS_INTERVAL 0.1
 
 /* Nothing is done before it is. */
 #define LARGEST_FRACTION 0.99
@@ -37,8 +37,8 @@ struct render {
     /* Of the call under way. */
     render_progress progress;
     void *progress_data;
-    double start;     /* clock when it would have begun without pauses */
-    double last_beat; /* clock */
+    double start;         /* clock when it would have begun without pauses */
+    double last_progress; /* clock */
 
     /* Of the pass under way: how far it is. */
     double pass_start, last_pass; /* clock; s */
@@ -107,7 +107,7 @@ static stop_state state_of(const render *r, double pass_fraction)
 static void tell(render *r, double pass_fraction)
 {
     stop_state now = state_of(r, pass_fraction);
-    r->last_beat = clock_seconds();
+    r->last_progress = clock_seconds();
     r->statistics.time_total = now.elapsed;
     double fraction = r->statistics.stopped_by == RENDER_GOES_ON
                           ? fmin(stop_fraction(&r->plan.how, &now), LARGEST_FRACTION)
@@ -128,13 +128,13 @@ static void watch_time(render *r)
     }
 }
 
-/* cancel_flag.beat: comes from all parallel work, on the thread that called. */
-static void beat(void *data)
+/* cancel_flag.progress: comes from all parallel work, on the thread that called. */
+static void on_progress(void *data)
 {
     render *r = data;
     if (r->plan.how.time > 0.0)
         watch_time(r);
-    if (r->progress && clock_seconds() - r->last_beat >= BEAT_INTERVAL)
+    if (r->progress && clock_seconds() - r->last_progress >= PROGRESS_INTERVAL)
         tell(r, r->prepared ? pass_fraction(r) : 0.0);
 }
 
@@ -247,8 +247,8 @@ static void render_pixel(camera_loop *loop, int x, int y, unsigned thread)
     for (int64_t i = 0; i < how->spp; i++) {
         if (cancelled(&r->cancel))
             return;
-        if (thread == 0 && i % SAMPLES_BETWEEN_BEATS == 0)
-            beat(r);
+        if (thread == 0 && i % SAMPLES_BETWEEN_PROGRESS == 0)
+            on_progress(r);
         sampler random =
             sampler_make(key, loop->index * (uint64_t)how->spp + (uint64_t)i);
         render_sample(loop, (vec2){(float)x, (float)y}, &random, thread, &sums, &groups);
@@ -524,7 +524,7 @@ static bool run_passes(render *r, GError **error)
 static void end_run(render *r)
 {
     render_statistics *st = &r->statistics;
-    r->cancel.beat = NULL;
+    r->cancel.progress = NULL;
     st->time_total = clock_seconds() - r->start;
     st->memory_peak = memory_peak();
     st->noise = film_noise(&r->film);
@@ -540,8 +540,8 @@ bool render_run(render *r, render_progress progress, void *data, GError **error)
     r->given_up = false;
     if (r->plan.how.time > 0.0)
         r->after = pace_write_seconds(&r->film, r->n_threads, r->paths);
-    r->cancel.beat = beat;
-    r->cancel.beat_data = r;
+    r->cancel.progress = on_progress;
+    r->cancel.progress_data = r;
     r->statistics.stopped_by = RENDER_GOES_ON;
     bool ok = prepare(r, error) && run_passes(r, error);
     end_run(r);
@@ -598,7 +598,7 @@ GStrv render_repeat(const render *r)
 
 bool render_get_plan(render *r, render_plan *out, GError **error)
 {
-    if (!r->prepared && r->cancel.beat) /* it is being made */
+    if (!r->prepared && r->cancel.progress) /* it is being made */
         return false;
     if (!r->prepared) {
         r->start = clock_seconds() - MAX(r->statistics.time_total, r->before);

@@ -60,7 +60,7 @@ typedef struct scene {
                             */
     float media_radius;    /**< m, around center: where such a medium ends */
     bool moves;            /**< some instance does while the shutter is open */
-    bool turns;            /**< some shape may (surface_hit.turns) */
+    bool camera_facing;    /**< some shape may (surface_hit.camera_facing) */
 } scene;
 
 /** @brief Those of a pass. */
@@ -170,14 +170,15 @@ static inline bool scene_hit_moves(const scene *s, const surface_hit *hit)
 /** @brief How what a hit is on moves from the hit's time to another one: identity for
  * what stands still. */
 transform scene_motion_to(const scene *s, const surface_hit *hit, float time);
-/** @brief Where the axis is that the surface at the hit turns about (surface_hit.turns).
+/** @brief Where the axis is that the surface at the hit turns about
+ * (surface_hit.camera_facing).
  */
 vec3 scene_axis_at(const scene *s, const surface_hit *hit);
-/** @brief Where light that arrives at the hit is kept: on that axis, of what turns; else
- * at the hit. */
+/** @brief Where light that arrives at the hit is kept: on that axis, of what
+ * camera_facing; else at the hit. */
 static inline vec3 scene_hit_place(const scene *s, const surface_hit *hit)
 {
-    return hit->turns ? scene_axis_at(s, hit) : hit->p;
+    return hit->camera_facing ? scene_axis_at(s, hit) : hit->p;
 }
 /** @brief Which of the surfaces that turn a hit is on, from 1; 0: it is on none. (The
  * number goes round after 2³² of shapes times instances.) */
@@ -238,7 +239,7 @@ spectrum scene_emitted(const scene *s, const surface_hit *hit, vec3 wo,
                        const wavelengths *w);
 /** @brief True if some light is one that no ray meets: such as a point, or a lamp of
  * alpha 0. What it sends through glass or by mirrors only photons find. */
-bool scene_has_unmet_lights(const scene *s);
+bool scene_has_delta_lights(const scene *s);
 /** @brief Lobe classes and sides of the surface at the hit or beside it: a mixture is one
  * material here and another a hair away, where the eye may gather what landed here. */
 unsigned scene_lobes_around(const scene *s, const surface_hit *hit, const bsdf *b);

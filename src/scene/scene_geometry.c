@@ -125,7 +125,7 @@ vec3 scene_axis_at(const scene *s, const surface_hit *hit)
 
 uint32_t scene_curve_of(const scene *s, const surface_hit *hit)
 {
-    if (!hit->turns)
+    if (!hit->camera_facing)
         return 0;
     uint32_t placed = (uint32_t)(hit->instance - NO_INDEX);
     uint32_t number = placed * s->shapes->len + (uint32_t)hit->shape + 1;
@@ -197,9 +197,9 @@ bool scene_build_accel(scene *s, unsigned threads, GError **error)
         .shutter = {(double)s->shutter[0], (double)s->shutter[1]},
     };
     s->accel = accel_build(&in, threads, error);
-    s->moves = s->turns = false;
+    s->moves = s->camera_facing = false;
     for (guint i = 0; i < s->shapes->len; i++)
-        s->turns |= in.shapes[i]->kind->axis_at != NULL;
+        s->camera_facing |= in.shapes[i]->kind->axis_at != NULL;
     for (guint i = 0; i < s->instances->len && s->accel; i++)
         s->moves |= accel_instance_moves(s->accel, (int)i);
     return s->accel != NULL;

@@ -13,10 +13,10 @@ spectrum scene_emitted(const scene *s, const surface_hit *hit, vec3 wo,
     return l->kind->radiance(l->self, hit, wo, w);
 }
 
-bool scene_has_unmet_lights(const scene *s)
+bool scene_has_delta_lights(const scene *s)
 {
     for (unsigned i = 0; i < s->lights->len; i++)
-        if (scene_light(s, (int)i)->is_unmet)
+        if (scene_light(s, (int)i)->is_delta)
             return true;
     return false;
 }

@@ -72,8 +72,8 @@ typedef struct shape_kind {
     /** pdf_solid_angle of sample_toward for a hit on the shape seen from ref. NULL as
      * above. */
     float (*pdf_toward)(const void *self, vec3 ref, const surface_hit *hit);
-    /** Of surfaces that turn (surface_hit.turns), else NULL: where their axis is at a
-     * hit.
+    /** Of surfaces that turn (surface_hit.camera_facing), else NULL: where their axis is
+     * at a hit.
      */
     vec3 (*axis_at)(const void *self, const surface_hit *hit);
     /** ... and short pieces of them, of all whose axis is within radius of p. */

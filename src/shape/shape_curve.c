@@ -6,17 +6,17 @@
  * Unlike pbrt's "cylinder", which is a flat ribbon with the normals of a tube, this one
  * is a tube, so that glass fibres and the light behind wires come out right; its v goes
  * around. "flat" curves turn to every ray, so a place seen from two sides is not the same
- * place: light tracing and camera rays differ by about a width there (surface_hit.turns).
- * As in pbrt, rays that leave a flat curve start two widths above it, and no curve can be
- * a lamp.
+ * place: light tracing and camera rays differ by about a width there
+ * (surface_hit.camera_facing). As in pbrt, rays that leave a flat curve start two widths
+ * above it, and no curve can be a lamp.
  *
  * Places for aimed photons are drawn on the tube, of flat curves too: uniform along and
  * around, exact where the curve is straight.
  */
-#include "shape/instance.h"
 #include "base/memory.h"
 #include "math/distribution.h"
 #include "shape/curve_segment.h"
+#include "shape/instance.h"
 #include "shape/shape_kinds.h"
 #include "shape/shape_quadric.h"
 
@@ -377,8 +377,8 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
         dpdv[i] = h.across[i];
     }
     quadric_fill_hit(&c->q, &point, dpdu, dpdv, hit);
-    hit->turns = c->type == CURVE_FLAT;
-    if (hit->turns)
+    hit->camera_facing = c->type == CURVE_FLAT;
+    if (hit->camera_facing)
         hit->error = (float)(4.0 * at.r / dvec3_length(d)) * length3(r->direction);
 }
 

@@ -31,13 +31,13 @@ static float density_of_following(const direct_query *query, vec3 wi)
 /* f of one class of lobes, weighed against following where that is done too. *pdf: of
  * following, the same for all classes; negative until one has asked for it. */
 static spectrum weighed_lobe(const direct_query *query, const light_sample *to_light,
-                             bool unmet, unsigned lobe, float *pdf)
+                             bool delta, unsigned lobe, float *pdf)
 {
     if (!(query->bsdf->lobes & lobe))
         return (spectrum){0};
     spectrum f = bsdf_eval(query->bsdf, query->wo, to_light->wi, lobe | LOBE_ANY_SIDE,
                            TRANSPORT_RADIANCE);
-    bool shared = (query->followed & lobe) && !unmet && query->shadow_rays;
+    bool shared = (query->followed & lobe) && !delta && query->shadow_rays;
     if (!shared || spectrum_is_black(f))
         return f;
     if (*pdf < 0.0f)
@@ -71,10 +71,10 @@ static float glossy_share(const direct_query *query, const light_sample *to_ligh
 static bool radiance_of(const direct_query *query, const light_sample *to_light,
                         bool each, direct_radiance *found, uint64_t *shadow_rays_traced)
 {
-    bool unmet = scene_light(query->scene, found->light)->is_unmet;
+    bool delta = scene_light(query->scene, found->light)->is_delta;
     float pdf = -1.0f;
-    spectrum diffuse = weighed_lobe(query, to_light, unmet, LOBE_DIFFUSE, &pdf);
-    spectrum glossy = weighed_lobe(query, to_light, unmet, LOBE_GLOSSY, &pdf);
+    spectrum diffuse = weighed_lobe(query, to_light, delta, LOBE_DIFFUSE, &pdf);
+    spectrum glossy = weighed_lobe(query, to_light, delta, LOBE_GLOSSY, &pdf);
     if (query->share && !spectrum_is_black(glossy))
         glossy *= glossy_share(query, to_light, found->light, each);
     if (spectrum_is_black(diffuse + glossy))

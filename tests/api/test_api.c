@@ -351,7 +351,7 @@ static void test_photons(void)
     g_assert_false(neph_photons_write_ply(photons, "/nowhere/x.ply", NULL));
     neph_photons_free(photons);
     g_autoptr(GPtrArray) lines = g_ptr_array_new_with_free_func(g_free);
-    g_assert_true(neph_photons_story(scene, settings, 2, keep_line, lines, &error));
+    g_assert_true(neph_photons_event_log(scene, settings, 2, keep_line, lines, &error));
     g_assert_cmpuint(lines->len, >=, 4);
     neph_settings_free(settings);
     neph_scene_free(scene);

@@ -492,9 +492,9 @@ static void test_photons(folder *f, gconstpointer data)
     g_stat(path, &info);
     size_t header = (size_t)(strstr(ply, "end_header\n") - ply) + 11;
     g_assert_cmpuint((size_t)info.st_size, ==, header + 37 * n);
-    g_auto(result) story = run(f, "photons box.pbrt --trace 2");
-    g_assert_cmpint(story.code, ==, 0);
-    g_assert_cmpuint(count_parts(story.out, "\n"), >=, 4);
+    g_auto(result) told = run(f, "photons box.pbrt --trace 2");
+    g_assert_cmpint(told.code, ==, 0);
+    g_assert_cmpuint(count_parts(told.out, "\n"), >=, 4);
 }
 
 int main(int argc, char **argv)

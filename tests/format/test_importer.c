@@ -164,8 +164,8 @@ static void cancel_now(void *flag)
 
 static void test_cancel(void)
 {
-    cancel_flag cancel = {.beat = cancel_now};
-    cancel.beat_data = &cancel.set;
+    cancel_flag cancel = {.progress = cancel_now};
+    cancel.progress_data = &cancel.set;
     gint64 start = g_get_monotonic_time();
     g_autoptr(GError) error = run_script("exec sleep 100", small, &cancel);
     g_assert_error(error, NEPH_ERROR, ERROR_CANCELLED);

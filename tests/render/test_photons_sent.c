@@ -253,8 +253,8 @@ static void test_follow_again(void)
     g_autoptr(render_photons) a = render_trace_photons(v, &how, NULL, NULL);
     g_autoptr(render_photons) b = render_trace_photons(v, &how, NULL, NULL);
     for (int i = 0; i < 3; i++) {
-        cancel_flag flag = {.beat = stop_at};
-        flag.beat_data = &flag;
+        cancel_flag flag = {.progress = stop_at};
+        flag.progress_data = &flag;
         g_autoptr(GError) error = NULL;
         g_assert_false(render_photons_follow(a, &flag, &error));
         g_assert_error(error, NEPH_ERROR, ERROR_CANCELLED);

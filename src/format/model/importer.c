@@ -237,8 +237,8 @@ static bool make_room(heard *h, GError **error)
 
 static bool is_cancelled(const cancel_flag *cancel)
 {
-    if (cancel && cancel->beat)
-        cancel->beat(cancel->beat_data);
+    if (cancel && cancel->progress)
+        cancel->progress(cancel->progress_data);
     return cancelled(cancel);
 }
 

@@ -30,7 +30,7 @@ typedef struct import_job {
     size_t n_files;       /**< at most MOST_IMPORT_FILES */
     import_limits limits; /**< memory 0: import_limits_of the file */
     const cancel_flag
-        *cancel; /**< its beat is called about twenty times a second; NULL */
+        *cancel; /**< its progress is called about twenty times a second; NULL */
 } import_job;
 
 enum { MOST_IMPORT_FILES = 60 };

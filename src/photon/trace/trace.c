@@ -112,7 +112,7 @@ static bool emit(photon_path *path)
     path->at.throughput = at.flux / (float)task->n_photons;
     path->light = at.light;
     path->at.lane = ALL_LANES;
-    path->from_delta = scene_light(task->scene, at.light)->is_unmet;
+    path->from_delta = scene_light(task->scene, at.light)->is_delta;
     path->specular_only = true;
     path->share = 1.0f;
     path->primitive = at.primitive;
@@ -442,7 +442,7 @@ static trace_result empty_result(const scene *s, bool oriented)
 {
     bool tagged = s->n_light_groups > 0;
     return (trace_result){
-        .photons = {.oriented = oriented, .tagged = tagged, .homed = s->turns},
+        .photons = {.oriented = oriented, .tagged = tagged, .homed = s->camera_facing},
         .in_media = {.tagged = tagged, .homed = true},
     };
 }

@@ -156,7 +156,7 @@ void path_gather_caustics(path_walk *walk, const camera_path *path,
     const photonmap_pass *photons = walk->pass->caustics;
     if (!photons)
         return;
-    unsigned delta = path->n_diffuse == 0 && photons->has_unmet_lights ? LOBE_GLOSSY : 0;
+    unsigned delta = path->n_diffuse == 0 && photons->has_delta_lights ? LOBE_GLOSSY : 0;
     camera_path seen = *path;
     if (!(b->lobes & (LOBE_DIFFUSE | delta)) || path_is_caustic(path) ||
         path_is_cut(walk, path, 2))

@@ -170,7 +170,7 @@ static void shade(camera_tree *tree, const camera_branch *branch, const surface_
 {
     const photonmap_pass *pass = tree->pass;
     const shading_point at = {.hit = hit, .bsdf = b, .wo = -branch->at.ray.direction};
-    unsigned delta = pass->has_unmet_lights ? LOBE_GLOSSY : 0;
+    unsigned delta = pass->has_delta_lights ? LOBE_GLOSSY : 0;
     bool gathers = (b->lobes & (LOBE_DIFFUSE | delta)) != 0;
     if (pass->how->direct_illumination)
         shade_direct(tree, branch, hit, b, p_follow);

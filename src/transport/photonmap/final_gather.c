@@ -243,7 +243,7 @@ static spectrum outgoing_by_maps(const photonmap_pass *pass, const shading_point
 static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
                          spectrum beta, sampler *random, transport_scratch *scratch)
 {
-    if (pass->irradiance[0] && at->bsdf->lambertian && !at->hit->turns)
+    if (pass->irradiance[0] && at->bsdf->lambertian && !at->hit->camera_facing)
         return outgoing_by_maps(pass, at, beta, scratch);
     spectrum radiance = {0};
     if (pass->how->direct_illumination) {

@@ -241,7 +241,7 @@ static void *open_pass(const transport_plan *plan, uint32_t index)
     pass->how = &plan->how;
     pass->w = scene_wavelengths(plan->scene, &plan->how, index);
     pass->options.deterministic = !plan->how.multiple_samples;
-    pass->has_unmet_lights = scene_has_unmet_lights(plan->scene);
+    pass->has_delta_lights = scene_has_delta_lights(plan->scene);
     pass->n_slices = scene_time_slices(plan->scene, &plan->how);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         pass->estimates[c] = photonmap_estimate_options(

@@ -33,7 +33,7 @@ typedef struct photonmap_pass {
     spectrum *irradiance_groups[MOST_TIME_SLICES];
     estimate_options estimates[N_PHOTON_CLASSES];
     caustic_share share; /**< if plan->shares */
-    bool has_unmet_lights;
+    bool has_delta_lights;
 } photonmap_pass;
 
 /** @brief Radius of pass i from that of pass 0 (Knaus & Zwicker 2011, eq. 20). */

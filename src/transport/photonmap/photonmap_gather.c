@@ -72,7 +72,7 @@ static spectrum gather_at(const photonmap_pass *pass, const photon_map *map,
 {
     const scene *s = pass->scene;
     bool moves = scene_hit_moves(s, at->hit);
-    if (!moves && !at->hit->turns)
+    if (!moves && !at->hit->camera_facing)
         return photon_estimate(map, at->hit->p, at->bsdf, at->wo, options,
                                &scratch->estimate, NULL);
     surface_hit hit = *at->hit;
@@ -87,7 +87,7 @@ static spectrum gather_at(const photonmap_pass *pass, const photon_map *map,
     }
     const flat_curve flat = {s, &hit};
     estimate_options there = *options;
-    there.curve = hit.turns ? &flat : NULL;
+    there.curve = hit.camera_facing ? &flat : NULL;
     return photon_estimate(map, scene_hit_place(s, &hit), &turned, wo, &there,
                            &scratch->estimate, NULL);
 }

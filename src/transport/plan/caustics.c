@@ -94,7 +94,7 @@ static double share_to_send(transport_plan *plan, const aim_result *found,
     double share = best_share(plan, found, paths);
     if (plan->how.class_photons[PHOTON_CAUSTIC] > 0)
         share = 1.0;
-    else if (found->noise + found->unseen > 0.0 && scene_has_unmet_lights(plan->scene))
+    else if (found->noise + found->unseen > 0.0 && scene_has_delta_lights(plan->scene))
         share = fmax(share, LEAST_WORTH);
     plan->trials[plan->n_trials - 1].taken = share > 0.0;
     return share;
@@ -115,6 +115,6 @@ void caustics_settle(transport_plan *plan)
 {
     plan->p_blurred = plan->p_blurred_in_media = 1.0f;
     if (plan->how.class_photons[PHOTON_CAUSTIC] == 0 &&
-        !scene_has_unmet_lights(plan->scene))
+        !scene_has_delta_lights(plan->scene))
         plan->n_photons[PHOTON_CAUSTIC] = 0;
 }

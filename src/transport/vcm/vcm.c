@@ -108,7 +108,7 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
 {
     const settings *how = &pass->plan->how;
     const light_paths *paths = &pass->light;
-    photon_store store = {.oriented = how->edges, .homed = pass->scene->turns};
+    photon_store store = {.oriented = how->edges, .homed = pass->scene->camera_facing};
     double start = clock_seconds();
     if (!photon_store_reserve(&store, paths->n_vertices, error))
         return false;
@@ -211,7 +211,7 @@ static bool keep_photons(const vcm_pass *pass, trace_result *result, GError **er
 {
     const light_paths *paths = &pass->light;
     result->photons = (photon_store){.tagged = pass->scene->n_light_groups > 0,
-                                     .homed = pass->scene->turns};
+                                     .homed = pass->scene->camera_facing};
     if (!photon_store_reserve(&result->photons, paths->n_vertices, error))
         return false;
     for (size_t i = 0; i < paths->n_vertices; i++) {

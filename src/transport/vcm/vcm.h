@@ -97,10 +97,10 @@ typedef struct vcm_pass {
     uint32_t index;
     vcm_strategies strategies;
     strategy_ratios ratios;
-    float radius;           /**< of merging, m */
-    int n_slices;           /**< of the shutter's time, that merge apart */
-    bool camera_hides;      /**< some shape is not seen by the camera */
-    bool turning_ends;      /**< light subpaths end at what turns to face rays */
+    float radius;            /**< of merging, m */
+    int n_slices;            /**< of the shutter's time, that merge apart */
+    bool camera_hides;       /**< some shape is not seen by the camera */
+    bool camera_facing_ends; /**< light subpaths end at what turns to face rays */
     float camera_per_light; /**< camera samples of a pixel over light subpaths, spp / N */
     light_paths light;
     photon_map *map; /**< flux of a photon in it: see vcm_payload; NULL: no merging */
@@ -116,7 +116,7 @@ static inline transform vcm_motion_to_map(const vcm_pass *pass, const surface_hi
 /** @brief True if light subpaths go no further than the hit. */
 static inline bool vcm_ends_light(const vcm_pass *pass, const surface_hit *hit)
 {
-    return hit->turns && pass->turning_ends;
+    return hit->camera_facing && pass->camera_facing_ends;
 }
 
 /** @brief Traces a few light subpaths and keeps in plan->density how close they lie. */

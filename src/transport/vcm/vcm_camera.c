@@ -110,7 +110,7 @@ static float lamp_weight(const camera_walk *c, const vcm_vertex *v, int index,
         .cosine = hit_cosine(v->hit, to_light->wi),
     };
     float met =
-        l->is_unmet ? 0.0f : vcm_pdf(v, to_light->wi, TRANSPORT_RADIANCE) / to_light->pdf;
+        l->is_delta ? 0.0f : vcm_pdf(v, to_light->wi, TRANSPORT_RADIANCE) / to_light->pdf;
     float reverse = vcm_pdf_reverse(v, to_light->wi, TRANSPORT_RADIANCE);
     float traced =
         weights_connected(&c->walk.weights, light_start_traced_over_connected(&start),

@@ -101,7 +101,7 @@ float vcm_find_vertices(const vcm_pass *pass, const vcm_vertex *v, const kernel 
     s.scratch = scratch;
     if (!find(&s))
         return 0.0f;
-    if (s.at.turns) {
+    if (s.at.camera_facing) {
         const flat_curve flat = {pass->scene, &s.at};
         return flat_curve_area(&flat, s.at.p, pass->radius, kappa);
     }

@@ -37,7 +37,7 @@ partial_weights weights_from_light(const light_start *start,
 {
     float density = traced(start);
     partial_weights w = {.vcm = connected(start) / density};
-    w.vc = start->light->is_unmet ? 0.0f : light_cosine(start) / density;
+    w.vc = start->light->is_delta ? 0.0f : light_cosine(start) / density;
     w.vm = w.vc * ratios->connect;
     return w;
 }
