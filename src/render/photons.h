@@ -46,7 +46,7 @@ void render_photons_tell(const render_photons *p, photon_class c, uint64_t i,
 void render_photons_free(render_photons *p);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(render_photons, render_photons_free)
 
-/** @brief The story of the first n photons of each class, a line an event. */
+/** @brief The event log of the first n photons of each class, a line an event. */
 bool render_photon_event_log(const view *v, const settings *how, size_t n,
                              void (*write)(const char *line, void *data), void *data,
                              GError **error);

@@ -416,16 +416,16 @@ static void test_unknown_parameters(void)
         g_autofree char *text = g_strconcat(LOOK FILM3 "WorldBegin\n" LAMP FLOOR,
                                             texts[i][0], "WorldEnd\n", NULL);
         g_autoptr(GString) notes = g_string_new(NULL);
-        g_autoptr(scene) s = noted_scene(text, notes);
+        scene_free(noted_scene(text, notes));
         if (!strstr(notes->str, texts[i][1]))
             g_error("expected %s, found %s", texts[i][1], notes->str);
     }
     g_autoptr(GString) notes = g_string_new(NULL);
-    g_autoptr(scene) s = noted_scene(
+    scene_free(noted_scene(
         LOOK "Film \"image\" \"float shine\" 1 Sampler \"halton\" \"float shine\" 1\n"
              "Integrator \"path\" \"float shine\" 1 PixelFilter \"box\" \"float "
              "shine\" 1 Accelerator \"bvh\" \"float shine\" 1\nWorldBegin WorldEnd\n",
-        notes);
+        notes));
     static const char *const of[] = {"film", "Sampler", "Integrator", "filter",
                                      "accelerator"};
     for (size_t i = 0; i < G_N_ELEMENTS(of); i++) {

@@ -178,8 +178,8 @@ static void *open_pass(const transport_plan *plan, uint32_t index)
     for (guint i = 0; i < plan->scene->shapes->len; i++)
         pass->camera_hides |=
             ((const shape *)plan->scene->shapes->pdata[i])->camera_hidden;
-    pass->turning_ends = pass->strategies.connect ||
-                         (pass->strategies.merge && !pass->strategies.end_here);
+    pass->camera_facing_ends = pass->strategies.connect ||
+                               (pass->strategies.merge && !pass->strategies.end_here);
     pass->strategies.splat &= camera_connects(&plan->view->camera);
     if (pass->strategies.merge)
         pass->ratios.merge = (float)discs;
