@@ -242,7 +242,7 @@ void accel_fill_hit(const accel *a, const ray *r, surface_hit *hit)
     hit->dpdv = (vec3){0};
     hit->footprint = 0.0f;
     hit->mesh = NULL;
-    hit->turns = false;
+    hit->camera_facing = false;
     if (hit->instance != NO_INDEX)
         fill_instance(a, s, r, hit);
     else

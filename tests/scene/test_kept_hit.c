@@ -85,7 +85,7 @@ static void same_place(const surface_hit *a, const surface_hit *b)
 
 static void same_surface(const surface_hit *a, const surface_hit *b)
 {
-    g_assert_cmpint(a->turns, ==, b->turns);
+    g_assert_cmpint(a->camera_facing, ==, b->camera_facing);
     g_assert_cmpint(a->shape, ==, b->shape);
     g_assert_cmpint(a->instance, ==, b->instance);
     g_assert_cmpuint(a->primitive, ==, b->primitive);
