@@ -20,8 +20,9 @@
 #include "photon/map/map.h"
 
 typedef struct photon_probe {
-    const photon_store *store;
-    const float *x, *y, *z; /* of the store */
+    const photon_store *store; /* NULL: of points that are no photons (point_index.h) */
+    const size_t *number;      /* of those, their owner's */
+    const float *x, *y, *z;    /* of the store or the points */
     const uint32_t *wi;
     const uint32_t *normal, *curve; /* NULL if they keep none */
     vec3 p;

@@ -18,7 +18,6 @@
  */
 #include "math/median.h"
 #include "transport/photonmap/photonmap.h"
-#include "transport/places.h"
 #include "transport/plan/work.h"
 #include "transport/visible.h"
 
@@ -50,19 +49,23 @@ static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
 typedef struct pilot {
     transport_plan *plan;
     wavelengths w;
-    photon_map *pixels; /* at those points; flux[0] is a pixel's width there */
+    point_index *sight; /* over the plan's */
 } pilot;
 
 /* A bound of a class' radii, and what turns the pilot's distances into radii. */
 typedef struct radius_rule {
     double scale, largest;
-    const photon_map *pixels;
+    const pilot *pilot;
+    const photon_map *map; /* of the class' photons */
 } radius_rule;
 
 /* The finest radius of use at p. */
 static double least_radius(const radius_rule *rule, vec3 p, photon_hits *hits)
 {
-    return (double)(LEAST_PIXELS * places_at(rule->pixels, p, 0.0f, hits));
+    const pilot *by = rule->pilot;
+    if (!point_index_nearest(by->sight, p, 1, INFINITY, hits) || hits->n == 0)
+        return 0.0;
+    return (double)(LEAST_PIXELS * by->plan->sight[hits->index[0]].pixel);
 }
 
 /* By the distance to the k-th nearest photon of the pilot; 0: there are too few. */
@@ -75,21 +78,26 @@ static float radius_by(const void *data, vec3 p, float distance, photon_hits *hi
     return (float)fmin(fmax(rule->scale * (double)distance, least), rule->largest);
 }
 
+static bool nearest_photons(const void *data, vec3 p, photon_hits *hits)
+{
+    const radius_rule *rule = data;
+    return photon_map_nearest(rule->map, p, RADIUS_NEAREST, INFINITY, NULL, hits);
+}
+
 /* The median over the places where the camera looks or, for caustics and in media, where
    photons are. Where there are too few to tell, light that is smooth is faint, and its
    radius as wide as may be; a caustic may be sharp all the same. */
-static double typical_radius(const pilot *p, bool at_photons, const photon_map *map,
-                             const radius_rule *rule)
+static double typical_radius(const radius_rule *rule, bool at_photons)
 {
     float radii[PROBES];
-    const transport_plan *plan = p->plan;
-    const photon_store *store = photon_map_store(map);
+    const transport_plan *plan = rule->pilot->plan;
+    const photon_store *store = photon_map_store(rule->map);
     size_t n = 0, n_probes = at_photons ? PROBES : MIN(plan->n_sight, PROBES);
     photon_hits hits = {0};
-    for (size_t i = 0; i < n_probes && store->n >= PLACES_NEAREST; i++) {
+    for (size_t i = 0; i < n_probes && store->n >= RADIUS_NEAREST; i++) {
         vec3 at = at_photons ? photon_store_get(store, i * store->n / n_probes).p
                              : plan->sight[i].p;
-        float d = places_distance(map, at, &hits);
+        float d = nearest_photons(rule, at, &hits) ? radius_of_nearest(&hits) : 0.0f;
         if (d > 0.0f)
             radii[n++] = radius_by(rule, at, d, &hits);
     }
@@ -99,17 +107,29 @@ static double typical_radius(const pilot *p, bool at_photons, const photon_map *
                         : rule->largest;
 }
 
-static photon_map *map_of_pixels(const pilot *p, GError **error)
+/* Radii at some of the photons. */
+static radius_cache *cache_radii(const radius_rule *rule, GError **error)
 {
-    photon_store store = {0};
-    if (!photon_store_reserve(&store, p->plan->n_sight, error))
-        return NULL;
-    for (size_t i = 0; i < p->plan->n_sight; i++) {
-        const visible_point *seen = &p->plan->sight[i];
-        photon at = {.p = seen->p, .wi = {0, 0, 1}, .flux = spectrum_fill(seen->pixel)};
-        photon_store_put(&store, &at);
-    }
-    return photon_map_build(MAP_KDTREE, &store, 0.0f, 1, error);
+    const photon_store *store = photon_map_store(rule->map);
+    size_t n = MIN(store->n, RADIUS_PLACES);
+    vec3 *places = g_aligned_alloc0(MAX(n, 1), sizeof *places, 16);
+    for (size_t i = 0; i < n; i++)
+        places[i] = photon_store_get(store, radius_place(i, store->n)).p;
+    const radius_source source = {nearest_photons, radius_by, rule};
+    unsigned threads = (unsigned)rule->pilot->plan->how.threads;
+    radius_cache *cache = radius_cache_build(places, n, &source, threads, error);
+    g_aligned_free(places);
+    return cache;
+}
+
+static point_index *index_sight(const transport_plan *plan, GError **error)
+{
+    vec3 *points = g_aligned_alloc0(MAX(plan->n_sight, 1), sizeof *points, 16);
+    for (size_t i = 0; i < plan->n_sight; i++)
+        points[i] = plan->sight[i].p;
+    point_index *index = point_index_build(points, plan->n_sight, 1, error);
+    g_aligned_free(points);
+    return index;
 }
 
 /* The photons of the pilot, on surfaces and in media. */
@@ -193,14 +213,14 @@ static bool choose_on_surfaces(pilot *p, photon_class c, const pilot_maps *maps,
     double density = density_over_pilot(p, c, maps);
     double in_map = (double)photon_map_store(map)->n * density;
     const radius_rule rule = {
-        .scale = sqrt(wanted_in_reach(plan, c, in_map) / PLACES_NEAREST / density),
+        .scale = sqrt(wanted_in_reach(plan, c, in_map) / RADIUS_NEAREST / density),
         .largest = 0.1 * (double)plan->scene->radius,
-        .pixels = p->pixels,
+        .pilot = p,
+        .map = map,
     };
-    plan->radius[c] = typical_radius(p, c == PHOTON_CAUSTIC, map, &rule);
-    plan->radius_map[c] =
-        places_keep(map, (unsigned)plan->how.threads, radius_by, &rule, error);
-    return plan->radius_map[c] != NULL;
+    plan->radius[c] = typical_radius(&rule, c == PHOTON_CAUSTIC);
+    plan->radius_cache[c] = cache_radii(&rule, error);
+    return plan->radius_cache[c] != NULL;
 }
 
 static bool choose_in_media(pilot *p, photon_class c, const pilot_maps *maps,
@@ -210,14 +230,14 @@ static bool choose_in_media(pilot *p, photon_class c, const pilot_maps *maps,
     const photon_map *map = maps->in_media;
     double density = density_over_pilot(p, c, maps);
     const radius_rule rule = {
-        .scale = cbrt(WANTED_IN_MEDIA / PLACES_NEAREST / density),
+        .scale = cbrt(WANTED_IN_MEDIA / RADIUS_NEAREST / density),
         .largest = 0.1 * (double)plan->scene->radius,
-        .pixels = p->pixels,
+        .pilot = p,
+        .map = map,
     };
-    plan->radius_in_media[c] = typical_radius(p, true, map, &rule);
-    plan->radius_map_in_media[c] =
-        places_keep(map, (unsigned)plan->how.threads, radius_by, &rule, error);
-    return plan->radius_map_in_media[c] != NULL;
+    plan->radius_in_media[c] = typical_radius(&rule, true);
+    plan->radius_cache_in_media[c] = cache_radii(&rule, error);
+    return plan->radius_cache_in_media[c] != NULL;
 }
 
 static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,
@@ -238,14 +258,14 @@ bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,
     pilot p = {.plan = plan, .w = scene_trial_wavelengths(plan->scene, 0)};
     if (!(plan->how.radius > 0.0)) {
         plan_look(plan);
-        p.pixels = map_of_pixels(&p, error);
-        ok = p.pixels != NULL;
+        p.sight = index_sight(plan, error);
+        ok = p.sight != NULL;
     }
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
         plan->radius[c] = plan->radius_in_media[c] = plan->how.radius;
         if (!(plan->how.radius > 0.0) && plan->n_photons[c] > 0)
             ok = choose_radius(&p, (photon_class)c, cancel, error);
     }
-    photon_map_free(p.pixels);
+    point_index_free(p.sight);
     return ok;
 }

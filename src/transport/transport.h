@@ -16,6 +16,7 @@
 #include "photon/share.h"
 #include "photon/trace/trace.h"
 #include "scene/view.h"
+#include "transport/radius_cache.h"
 
 /** @brief The layers of the picture. Their sum is the beauty image. */
 typedef enum radiance_layer {
@@ -127,15 +128,16 @@ typedef struct transport_plan {
     uint64_t
         n_photons[N_PHOTON_CLASSES]; /**< emitted each pass; 0: the class is not needed */
     double radius[N_PHOTON_CLASSES]; /**< of pass 0, m: everywhere, or the median */
-    /** Where the radius is automatic: places (as photons) whose flux[0] is the radius of
-     * pass 0 around there; owned. NULL: the same everywhere. */
-    photon_map *radius_map[N_PHOTON_CLASSES];
+    /** Where the radius is automatic: of pass 0, place by place; owned. NULL: the same
+     * everywhere. */
+    radius_cache *radius_cache[N_PHOTON_CLASSES];
     /** The same for photons in media. */
     double radius_in_media[N_PHOTON_CLASSES];
-    photon_map *radius_map_in_media[N_PHOTON_CLASSES];
-    /** vcm: places (as photons) whose flux[0] is how many vertices a light subpath has
-     * per square metre around there, on average; owned. NULL: not known. */
-    photon_map *density;
+    radius_cache *radius_cache_in_media[N_PHOTON_CLASSES];
+    /** vcm: how far the nearest vertices of some light subpaths lie, place by place;
+     * owned. NULL: not known. */
+    radius_cache *vertex_radii;
+    size_t n_vertex_paths; /**< light subpaths that these are of */
     emission_guide *guide; /**< owned; NULL: none was learned */
     bool shares;           /**< photons share caustics with paths from the eye */
     caustic_share share;   /**< what they share before radii are known, for trials */

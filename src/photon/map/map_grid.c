@@ -253,8 +253,9 @@ static void grid_runs(const photon_map *map, vec3 p, float radius,
     cell_range range;
     if (!cells_within(g, p, radius, &range))
         return;
+    const point_arrays points = photon_points(&map->store);
     run_batch batch;
-    run_batch_begin(&batch, &map->store, visit, data);
+    run_batch_begin(&batch, &points, visit, data);
     if (g->hashed)
         hashed_runs(g, &range, &batch);
     else

@@ -1,412 +1,58 @@
 /*
- * The kd-tree: left-balanced, implicit, eight-wide, with boxes instead of planes.
- *
- *   level 2   group 0: boxes of 8 groups below       low.x[8] low.y[8] .. high.z[8]
- *   level 1   group 0 .. 7: boxes of 8 leaves each
- *   level 0   leaf 0: photons 0..15 │ leaf 1: 16..31 │ ..          (the store itself)
- *
- * Group g of a level has groups 8g .. 8g + 7 below it, so there are no pointers; every
- * leaf but the last is full. Three binary splits at the median (in photons, rounded to
- * whole subtrees as in Jensen's left-balanced tree) along the widest axis of the photons
- * make one level. Photons lie on surfaces: boxes are then flat and prune far better than
- * planes, and eight are tested at once. 1.7 bytes a photon.
- *
- * Bentley, "Multidimensional binary search trees used for associative searching", 1975;
- * Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001.
+ * Photons in a kd-tree (kdtree.h).
  */
 #include "base/memory.h"
-#include "math/box.h"
+#include "photon/map/kdtree.h"
 #include "photon/map/map_kind.h"
-#include "photon/map/nearest.h"
 
-enum {
-    WIDTH = 8,       /* size: of a vector */
-    LEAF = 16,       /* size: photons of one */
-    MAX_LEVELS = 20, /* size: of 2^64 photons, to spare */
-    MAX_STACK = MAX_LEVELS * (WIDTH - 1) + WIDTH,
-    TASK = 1 << 15, /* size: photons that one task sorts down to leaves by itself */
-};
-
-/* The boxes of eight subtrees; an absent one is empty, infinitely far from everything. */
-typedef struct kd_group {
-    floats8 low[3], high[3];
-} kd_group;
-
-typedef struct kdtree {
-    unsigned n_levels;             /* 1 .. MAX_LEVELS */
-    size_t offset[MAX_LEVELS + 1]; /* of a level's first group; level 0 has none */
-    size_t n_groups;
-    kd_group *groups;
-} kdtree;
-
-/* ---- Building ---- */
-
-/* A photon on its way to its place. */
-typedef struct kd_item {
-    float x[3];
-    uint32_t index;
-} kd_item;
-
-typedef struct kd_builder {
-    kdtree *tree;
-    kd_item *items;
-    size_t n;
-    size_t span; /* photons below a full node of the split being made */
-    size_t *order;
-    const photon_store *store;
-    unsigned level;
-} kd_builder;
-
-/* Moves items below pivot (or_like: or like it) to the front, without branches; returns
- * their number. */
-static size_t partition(kd_item *items, size_t n, int axis, float pivot, bool or_like)
+static void map_kdtree_free(photon_map *map)
 {
-    size_t below = 0;
-    for (size_t i = 0; i < n; i++) {
-        kd_item item = items[i];
-        items[i] = items[below];
-        items[below] = item;
-        float x = item.x[axis];
-        below += or_like ? !(pivot < x) : x < pivot;
-    }
-    return below;
+    kdtree_free(map->index);
 }
 
-/* A value of items that should stand near rank, from a sample. */
-static float choose_pivot(const kd_item *items, size_t n, int axis, size_t rank)
-{
-    enum { MOST = 31 }; /* size: of the sample */
-    float sample[MOST];
-    size_t n_sample = n < 32 ? 1 : n < 1024 ? 7 : MOST;
-    for (size_t i = 0; i < n_sample; i++) {
-        float x = items[(2 * i + 1) * n / (2 * n_sample)].x[axis];
-        size_t j = i;
-        for (; j > 0 && sample[j - 1] > x; j--)
-            sample[j] = sample[j - 1];
-        sample[j] = x;
-    }
-    return sample[rank * n_sample / n];
-}
-
-/* Orders items so that those before rank are not above those from rank on. */
-static void split_at(kd_item *items, size_t n, int axis, size_t rank)
-{
-    while (n > 1) {
-        float pivot = choose_pivot(items, n, axis, rank);
-        size_t below = partition(items, n, axis, pivot, false);
-        if (rank < below) {
-            n = below;
-            continue;
-        }
-        if (below == 0) {
-            below = partition(items, n, axis, pivot, true);
-            if (rank < below)
-                return;
-        }
-        items += below;
-        rank -= below;
-        n -= below;
-    }
-}
-
-/* In this order a NaN changes nothing. */
-static box3 with_photon(box3 box, float x, float y, float z)
-{
-    vec3 p = vec3_make(x, y, z);
-    return (box3){min3(p, box.low), max3(p, box.high)};
-}
-
-static int widest_axis(const kd_item *items, size_t n)
-{
-    box3 box = box3_empty();
-    for (size_t i = 0; i < n; i++)
-        box = with_photon(box, items[i].x[0], items[i].x[1], items[i].x[2]);
-    vec3 extent = box.high - box.low;
-    if (extent[0] >= extent[1] && extent[0] >= extent[2])
-        return 0;
-    return extent[1] >= extent[2] ? 1 : 2;
-}
-
-/* One binary split of a node that has room for span photons. */
-static void split_node(kd_item *items, size_t n, size_t span)
-{
-    if (n > span / 2)
-        split_at(items, n, widest_axis(items, n), span / 2);
-}
-
-/* Splits down to leaves. */
-static void split_subtree(kd_item *items, size_t n, size_t span)
-{
-    if (n <= LEAF)
-        return;
-    split_node(items, n, span);
-    size_t half = MIN(n, span / 2);
-    split_subtree(items, half, span / 2);
-    split_subtree(items + half, n - half, span / 2);
-}
-
-static void split_task(size_t node, size_t end, unsigned thread, void *data)
-{
-    (void)end, (void)thread;
-    const kd_builder *b = data;
-    size_t begin = node * b->span, n = MIN(b->span, b->n - begin);
-    if (b->span > TASK)
-        split_node(b->items + begin, n, b->span);
-    else
-        split_subtree(b->items + begin, n, b->span);
-}
-
-/* Large nodes one level after the other, each level's in parallel; then whole subtrees in
- * parallel. */
-static void split_all(kd_builder *b, unsigned threads)
-{
-    b->span = LEAF;
-    for (unsigned level = 0; level < b->tree->n_levels; level++)
-        b->span *= WIDTH;
-    for (;; b->span /= 2) {
-        parallel_for((b->n + b->span - 1) / b->span, 1, threads, NULL, split_task, b);
-        if (b->span <= TASK)
-            return;
-    }
-}
-
-static void load_items(size_t begin, size_t end, unsigned thread, void *data)
-{
-    (void)thread;
-    const kd_builder *b = data;
-    const photon_store *s = b->store;
-    for (size_t i = begin; i < end; i++)
-        b->items[i] = (kd_item){{s->x[i], s->y[i], s->z[i]}, (uint32_t)i};
-}
-
-static void store_order(size_t begin, size_t end, unsigned thread, void *data)
-{
-    (void)thread;
-    const kd_builder *b = data;
-    for (size_t i = begin; i < end; i++)
-        b->order[i] = b->items[i].index;
-}
-
-static bool order_photons(photon_map *map, unsigned threads, GError **error)
-{
-    kd_builder b = {.tree = map->index, .n = map->store.n, .store = &map->store};
-    b.items = big_alloc(b.n, sizeof *b.items, "sorting photons", error);
-    if (!b.items)
-        return false;
-    parallel_for(b.n, 1 << 14, threads, NULL, load_items, &b);
-    split_all(&b, threads);
-    b.order = big_alloc(b.n, sizeof *b.order, "sorting photons", error);
-    if (b.order)
-        parallel_for(b.n, 1 << 14, threads, NULL, store_order, &b);
-    big_free(b.items);
-    bool ok = b.order && photon_store_permute(&map->store, b.order, threads, error);
-    big_free(b.order);
-    return ok;
-}
-
-static box3 leaf_bounds(const photon_store *s, size_t leaf)
-{
-    box3 box = box3_empty();
-    size_t end = MIN((leaf + 1) * LEAF, s->n);
-    for (size_t i = leaf * LEAF; i < end; i++)
-        box = with_photon(box, s->x[i], s->y[i], s->z[i]);
-    return box;
-}
-
-static box3 group_bounds(const kd_group *group)
-{
-    box3 box = box3_empty();
-    for (int lane = 0; lane < WIDTH; lane++) {
-        vec3 low = {group->low[0][lane], group->low[1][lane], group->low[2][lane]};
-        vec3 high = {group->high[0][lane], group->high[1][lane], group->high[2][lane]};
-        box = box3_union(box, (box3){low, high});
-    }
-    return box;
-}
-
-/* Nodes on a level: leaves on level 0, groups above. */
-static size_t nodes_on_level(size_t n, unsigned level)
-{
-    size_t span = LEAF;
-    for (; level > 0; level--)
-        span *= WIDTH;
-    return (n + span - 1) / span;
-}
-
-/* The bounds of a node on the level below the one being filled; empty if there is none.
- */
-static box3 child_bounds(const kd_builder *b, size_t child)
-{
-    if (child >= nodes_on_level(b->n, b->level - 1))
-        return box3_empty();
-    if (b->level == 1)
-        return leaf_bounds(b->store, child);
-    return group_bounds(b->tree->groups + b->tree->offset[b->level - 1] + child);
-}
-
-static void fill_groups(size_t begin, size_t end, unsigned thread, void *data)
-{
-    (void)thread;
-    const kd_builder *b = data;
-    for (size_t g = begin; g < end; g++) {
-        kd_group *group = b->tree->groups + b->tree->offset[b->level] + g;
-        for (int lane = 0; lane < WIDTH; lane++) {
-            box3 box = child_bounds(b, g * WIDTH + (size_t)lane);
-            for (int axis = 0; axis < 3; axis++) {
-                group->low[axis][lane] = box.low[axis];
-                group->high[axis][lane] = box.high[axis];
-            }
-        }
-    }
-}
-
-static void shape_tree(kdtree *tree, size_t n)
-{
-    tree->n_levels = 1;
-    while (nodes_on_level(n, tree->n_levels) > 1)
-        tree->n_levels++;
-    for (unsigned level = 1; level <= tree->n_levels; level++) {
-        tree->offset[level] = tree->n_groups;
-        tree->n_groups += nodes_on_level(n, level);
-    }
-}
-
-static void kdtree_free(photon_map *map)
-{
-    kdtree *tree = map->index;
-    big_free(tree->groups);
-    big_free(tree);
-}
-
-static bool kdtree_build(photon_map *map, float radius, unsigned threads, GError **error)
+static bool map_kdtree_build(photon_map *map, float radius, unsigned threads,
+                             GError **error)
 {
     (void)radius;
-    if (map->store.n > UINT32_MAX) {
-        error_set(error, ERROR_FAILED,
-                  "the kdtree holds at most 2^32 photons, not %zu: "
-                  "use the grid",
-                  map->store.n);
+    point_arrays points = photon_points(&map->store);
+    size_t *order = kdtree_sort(&points, threads, error);
+    bool sorted = order && photon_store_permute(&map->store, order, threads, error);
+    big_free(order);
+    if (!sorted)
         return false;
-    }
-    kdtree *tree = map->index = big_alloc(1, sizeof *tree, "kdtree", error);
-    if (!tree)
-        return false;
-    shape_tree(tree, map->store.n);
-    if (!order_photons(map, threads, error))
-        return false;
-    tree->groups = big_alloc(tree->n_groups, sizeof *tree->groups, "kdtree", error);
-    if (!tree->groups)
-        return false;
-    kd_builder b = {.tree = tree, .n = map->store.n, .store = &map->store};
-    for (b.level = 1; b.level <= tree->n_levels; b.level++)
-        parallel_for(nodes_on_level(b.n, b.level), 64, threads, NULL, fill_groups, &b);
-    return true;
+    points = photon_points(&map->store);
+    map->index = kdtree_build(&points, threads, error);
+    return map->index != NULL;
 }
 
-static size_t kdtree_bytes(const photon_map *map)
+static size_t map_kdtree_bytes(const photon_map *map)
 {
-    const kdtree *tree = map->index;
-    return sizeof *tree + tree->n_groups * sizeof *tree->groups;
+    return kdtree_bytes(map->index);
 }
 
-/* ---- Searching ---- */
-
-/* A subtree still to be visited, and the squared distance to its box. */
-typedef struct kd_entry {
-    float distance2;
-    unsigned level;
-    size_t node;
-} kd_entry;
-
-/* Squared distances from p to eight boxes. Each step rounds monotonely, so none exceeds
- * probe_distance2 of a photon in the box. */
-static floats8 box_distances(const kd_group *group, vec3 p)
+static bool map_kdtree_nearest(const photon_map *map, const photon_probe *probe, size_t k,
+                               float radius, photon_hits *hits)
 {
-    floats8 d[3];
-    for (int axis = 0; axis < 3; axis++) {
-        floats8 x = fill8(p[axis]);
-        d[axis] = max8(max8(group->low[axis] - x, x - group->high[axis]), fill8(0.0f));
-    }
-    return fused8(d[2], d[2], fused8(d[1], d[1], d[0] * d[0]));
-}
-
-/* Pushes the subtrees below `node` that are nearer than limit, the nearest on top. */
-static size_t push_sorted(const kdtree *tree, vec3 p, kd_entry node, float limit,
-                          kd_entry *stack, size_t top)
-{
-    floats8 d2 = box_distances(tree->groups + tree->offset[node.level] + node.node, p);
-    size_t bottom = top;
-    for (unsigned bits = bits8(d2 < limit); bits; bits &= bits - 1) {
-        int lane = __builtin_ctz(bits);
-        size_t i = top++;
-        for (; i > bottom && stack[i - 1].distance2 < d2[lane]; i--)
-            stack[i] = stack[i - 1];
-        stack[i] = (kd_entry){d2[lane], node.level - 1, node.node * WIDTH + (size_t)lane};
-    }
-    return top;
-}
-
-static bool kdtree_nearest(const photon_map *map, const photon_probe *probe, size_t k,
-                           float radius, photon_hits *hits)
-{
-    const kdtree *tree = map->index;
     nearest_set set;
     if (!nearest_begin(&set, probe, k, radius, hits))
         return false;
-    kd_entry stack[MAX_STACK];
-    stack[0] = (kd_entry){0.0f, tree->n_levels, 0};
-    for (size_t top = 1; top > 0;) {
-        kd_entry node = stack[--top];
-        if (!(node.distance2 < set.limit))
-            continue;
-        if (node.level > 0)
-            top = push_sorted(tree, probe->p, node, set.limit, stack, top);
-        else
-            nearest_add_run(&set, node.node * LEAF,
-                            MIN((node.node + 1) * LEAF, map->store.n));
-    }
-    nearest_cut(&set);
+    kdtree_nearest(map->index, &set);
     return true;
 }
 
-/* Visits leaves in the order of the store, joining neighbours to one run. */
-static void kdtree_runs(const photon_map *map, vec3 p, float radius,
-                        photon_run_visitor visit, void *data)
+static void map_kdtree_runs(const photon_map *map, vec3 p, float radius,
+                            photon_run_visitor visit, void *data)
 {
-    const kdtree *tree = map->index;
-    float limit = radius * radius;
-    run_batch batch;
-    run_batch_begin(&batch, &map->store, visit, data);
-    photon_run run = {0, 0};
-    kd_entry stack[MAX_STACK];
-    stack[0] = (kd_entry){0.0f, tree->n_levels, 0};
-    for (size_t top = 1; top > 0;) {
-        kd_entry node = stack[--top];
-        if (node.level == 0) {
-            if (node.node * LEAF != run.end) {
-                run_batch_add(&batch, run.begin, run.end);
-                run.begin = node.node * LEAF;
-            }
-            run.end = MIN((node.node + 1) * LEAF, map->store.n);
-            continue;
-        }
-        const kd_group *group = tree->groups + tree->offset[node.level] + node.node;
-        unsigned bits = bits8(box_distances(group, p) < limit);
-        for (; bits; bits &= ~(1u << (31 - __builtin_clz(bits)))) {
-            size_t child = node.node * WIDTH + 31 - (size_t)__builtin_clz(bits);
-            stack[top++] = (kd_entry){0.0f, node.level - 1, child};
-        }
-    }
-    run_batch_add(&batch, run.begin, run.end);
-    run_batch_flush(&batch);
+    const point_arrays points = photon_points(&map->store);
+    kdtree_runs(map->index, &points, p, radius, visit, data);
 }
 
 const photon_map_kind photon_map_kdtree = {
     .name = "kdtree",
-    .build = kdtree_build,
-    .free = kdtree_free,
-    .bytes = kdtree_bytes,
-    .runs = kdtree_runs,
+    .build = map_kdtree_build,
+    .free = map_kdtree_free,
+    .bytes = map_kdtree_bytes,
+    .runs = map_kdtree_runs,
     .within = photon_map_within_runs,
-    .nearest = kdtree_nearest,
+    .nearest = map_kdtree_nearest,
 };

@@ -85,15 +85,28 @@ static float select_value(float *a, size_t n, size_t rank)
     }
 }
 
+/* Of those at one distance: photons by all that they are, other points by place and
+   number. */
+static int compare_ties(const photon_probe *probe, size_t a, size_t b)
+{
+    if (probe->store)
+        return compare_photons(probe->store, a, b);
+    int order = compare(probe->x[a], probe->x[b]);
+    order = order ? order : compare(probe->y[a], probe->y[b]);
+    order = order ? order : compare(probe->z[a], probe->z[b]);
+    size_t i = probe->number[a], j = probe->number[b];
+    return order ? order : (i > j) - (i < j);
+}
+
 /* Hoare's partition of index[low, high); returns where the upper part begins. */
-static size_t partition_photons(const photon_store *s, size_t *index, size_t low,
-                                size_t high)
+static size_t partition_ties(const photon_probe *probe, size_t *index, size_t low,
+                             size_t high)
 {
     size_t pivot = index[low + (high - low - 1) / 2], i = low, j = high - 1;
     for (;; i++, j--) {
-        while (compare_photons(s, index[i], pivot) < 0)
+        while (compare_ties(probe, index[i], pivot) < 0)
             i++;
-        while (compare_photons(s, index[j], pivot) > 0)
+        while (compare_ties(probe, index[j], pivot) > 0)
             j--;
         if (i >= j)
             return j + 1;
@@ -103,12 +116,12 @@ static size_t partition_photons(const photon_store *s, size_t *index, size_t low
     }
 }
 
-/* Moves the k first photons of index[0, n) to its front. */
-static void select_photons(const photon_store *s, size_t *index, size_t n, size_t k)
+/* Moves the k first of index[0, n) to its front. */
+static void select_ties(const photon_probe *probe, size_t *index, size_t n, size_t k)
 {
     size_t low = 0, high = n;
     while (high - low > 1 && k > low && k < high) {
-        size_t split = partition_photons(s, index, low, high);
+        size_t split = partition_ties(probe, index, low, high);
         if (k < split)
             high = split;
         else
@@ -147,7 +160,7 @@ void nearest_cut(nearest_set *set)
     size_t nearer = keep_nearer(hits, kth, ties);
     size_t wanted = set->k - nearer;
     if (hits->n > set->k)
-        select_photons(set->probe->store, ties, hits->n - nearer, wanted);
+        select_ties(set->probe, ties, hits->n - nearer, wanted);
     for (size_t i = 0; i < wanted; i++) {
         hits->index[nearer + i] = ties[i];
         hits->distance2[nearer + i] = kth;

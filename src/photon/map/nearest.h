@@ -8,7 +8,7 @@
  */
 #pragma once
 
-#include "photon/map/map_kind.h"
+#include "photon/map/runs.h"
 
 typedef struct nearest_set {
     const photon_probe *probe;

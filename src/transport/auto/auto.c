@@ -112,7 +112,8 @@ static transport_plan small_pass(const transport_plan *plan)
     double fewer = (double)plan->n_photons[PHOTON_CAUSTIC] / (double)MAX(*n, 1);
     small.radius[PHOTON_CAUSTIC] *= sqrt(fewer);
     small.radius_in_media[PHOTON_CAUSTIC] *= cbrt(fewer);
-    small.radius_map[PHOTON_CAUSTIC] = small.radius_map_in_media[PHOTON_CAUSTIC] = NULL;
+    small.radius_cache[PHOTON_CAUSTIC] = NULL;
+    small.radius_cache_in_media[PHOTON_CAUSTIC] = NULL;
     return small;
 }
 

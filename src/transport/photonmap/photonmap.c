@@ -3,7 +3,6 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "transport/photonmap/photonmap_medium.h"
-#include "transport/places.h"
 #include "transport/plan/aim.h"
 #include "transport/plan/work.h"
 
@@ -130,7 +129,7 @@ static bool build_class(photonmap_pass *pass, const slice_task *s, trace_result 
     photon_store store = result->photons;
     result->photons = (photon_store){0};
     bool radii_differ =
-        pass->plan->radius_map[s->c] && pass->estimates[s->c].nearest == 0;
+        pass->plan->radius_cache[s->c] && pass->estimates[s->c].nearest == 0;
     map_choice wanted = (map_choice)pass->how->photon_map;
     *map = photon_map_build(photon_map_chosen(wanted, radii_differ), &store,
                             isfinite(radius) ? radius : 0.0f,

@@ -4,7 +4,6 @@
 #include "transport/photonmap/photonmap.h"
 
 #include "base/clock.h"
-#include "transport/places.h"
 
 double photonmap_radius(double radius, double alpha, uint32_t pass)
 {
@@ -35,11 +34,11 @@ estimate_options photonmap_estimate_options(const settings *how, photon_class c,
 static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
                           photon_hits *hits)
 {
-    const photon_map *radii = pass->plan->radius_map[c];
+    const radius_cache *radii = pass->plan->radius_cache[c];
     float typical = pass->estimates[c].radius;
     if (!radii || pass->estimates[c].nearest > 0)
         return typical;
-    float r = places_at(radii, p, -1.0f, hits);
+    float r = radius_cache_at(radii, p, -1.0f, hits);
     if (r < 0.0f)
         return typical;
     float shrunk = typical / (float)pass->plan->radius[c];

@@ -3,17 +3,15 @@
  */
 #include "transport/photonmap/photonmap_medium.h"
 
-#include "transport/places.h"
-
 #include "base/memory.h"
 
 enum { CHUNK = 1024 }; /* size: of a thread's work */
 
 typedef struct radius_loop {
     const photon_store *store;
-    const photon_map *places; /* whose numbers are radii of pass 0; NULL: one for all */
-    double typical;           /* of pass 0 */
-    float shrunk;             /* radius of this pass over that of pass 0 */
+    const radius_cache *of_pass_0; /* NULL: one for all */
+    double typical;                /* of pass 0 */
+    float shrunk;                  /* radius of this pass over that of pass 0 */
     float *radii;
 } radius_loop;
 
@@ -27,8 +25,9 @@ static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
         vec3 p = vec3_make(s->x[i], s->y[i], s->z[i]);
         float typical = (float)loop->typical;
         loop->radii[i] =
-            loop->shrunk *
-            (loop->places ? places_at(loop->places, p, typical, &hits) : typical);
+            loop->shrunk * (loop->of_pass_0
+                                ? radius_cache_at(loop->of_pass_0, p, typical, &hits)
+                                : typical);
     }
     photon_hits_clear(&hits);
 }
@@ -46,7 +45,7 @@ bool photonmap_keep_in_media(photonmap_pass *pass, int slice, photon_class c,
         return false;
     radius_loop loop = {
         .store = photons,
-        .places = plan->radius_map_in_media[c],
+        .of_pass_0 = plan->radius_cache_in_media[c],
         .typical = radius,
         .shrunk = (float)photonmap_radius(1.0, plan->how.alpha, pass->index),
         .radii = radii,

@@ -3,7 +3,7 @@
  * light subpaths of a pass that no render reaches, so that the weights of a pass do not
  * depend on the vertices they are for.
  */
-#include "transport/places.h"
+#include "base/memory.h"
 #include "transport/plan/work.h"
 #include "transport/vcm/vcm.h"
 
@@ -12,29 +12,56 @@
 /* id: a pass that no render reaches. */
 #define PILOT_PASS 0xfffffffeu
 
-static photon_map *map_of(const scene *s, const light_paths *paths, unsigned threads,
-                          GError **error)
+float vcm_density_at(const transport_plan *plan, vec3 p, photon_hits *hits)
 {
-    photon_store store = {0};
-    if (!photon_store_reserve(&store, paths->n_vertices, error))
-        return NULL;
-    for (size_t i = 0; i < paths->n_vertices; i++) {
-        const light_vertex *v = &paths->vertices[i];
-        photon p = {.p = scene_restore_hit(s, &v->hit).p, .wi = kept_hit_wo(&v->hit)};
-        photon_store_put(&store, &p);
-    }
-    return photon_map_build(MAP_KDTREE, &store, 0.0f, threads, error);
+    float radius = radius_cache_at(plan->vertex_radii, p, 0.0f, hits);
+    if (!(radius > 0.0f))
+        return 0.0f;
+    float density =
+        RADIUS_NEAREST / (PI_F * square(radius) * (float)plan->n_vertex_paths);
+    return isfinite(density) ? density : FLT_MAX;
 }
 
-/* Vertices of a subpath per square metre around p; 0: too few to tell. */
-static float density_at(const void *data, vec3 p, float distance, photon_hits *hits)
+static bool nearest(const void *vertices, vec3 p, photon_hits *hits)
 {
-    (void)p, (void)hits;
-    const light_paths *paths = data;
-    if (!(distance > 0.0f))
-        return 0.0f;
-    float density = PLACES_NEAREST / (PI_F * square(distance) * (float)paths->n);
-    return isfinite(density) ? density : FLT_MAX;
+    return point_index_nearest(vertices, p, RADIUS_NEAREST, INFINITY, hits);
+}
+
+static float distance_itself(const void *data, vec3 p, float distance, photon_hits *hits)
+{
+    (void)data, (void)p, (void)hits;
+    return distance;
+}
+
+/* Radii at places of some of the points. */
+static radius_cache *radii_among(const vec3 *points, size_t n, unsigned threads,
+                                 GError **error)
+{
+    g_autoptr(point_index) index = point_index_build(points, n, threads, error);
+    if (!index)
+        return NULL;
+    size_t n_places = MIN(n, RADIUS_PLACES);
+    vec3 *places = g_aligned_alloc0(MAX(n_places, 1), sizeof *places, 16);
+    for (size_t i = 0; i < n_places; i++)
+        places[i] = points[point_index_number(index, radius_place(i, n))];
+    const radius_source source = {nearest, distance_itself, index};
+    radius_cache *cache = radius_cache_build(places, n_places, &source, threads, error);
+    g_aligned_free(places);
+    return cache;
+}
+
+static bool keep_radii(transport_plan *plan, const light_paths *paths, GError **error)
+{
+    size_t n = paths->n_vertices;
+    vec3 *points = big_alloc(n, sizeof *points, "light vertices", error);
+    if (!points)
+        return false;
+    for (size_t i = 0; i < n; i++)
+        points[i] = scene_restore_hit(plan->scene, &paths->vertices[i].hit).p;
+    plan->n_vertex_paths = paths->n;
+    plan->vertex_radii = radii_among(points, n, (unsigned)plan->how.threads, error);
+    big_free(points);
+    return plan->vertex_radii != NULL;
 }
 
 bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **error)
@@ -53,11 +80,7 @@ bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **
     if (!vcm_trace_light(&pilot, cancel, &counts, error))
         return false;
     plan->planning += (double)counts.photon_rays;
-    g_autoptr(photon_map) map =
-        map_of(plan->scene, &pilot.light, (unsigned)plan->how.threads, error);
-    if (map)
-        plan->density = places_keep(map, (unsigned)plan->how.threads, density_at,
-                                    &pilot.light, error);
+    bool kept = keep_radii(plan, &pilot.light, error);
     light_paths_clear(&pilot.light);
-    return plan->density != NULL;
+    return kept;
 }

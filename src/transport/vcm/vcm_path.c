@@ -1,5 +1,4 @@
 /* What light and camera subpaths have in common. */
-#include "transport/places.h"
 #include "transport/vcm/vcm.h"
 
 lobe_pair vcm_scatter(const vcm_vertex *v, vec3 wi, transport_mode mode)
@@ -92,10 +91,9 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
 
 float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, photon_hits *hits)
 {
-    const photon_map *density = pass->plan->density;
-    if (!density)
+    if (!pass->plan->vertex_radii)
         return 1.0f;
     vec3 p = scene_hit_place(pass->scene, hit);
-    float within = pass->ratios.merge * places_at(density, p, 0.0f, hits);
+    float within = pass->ratios.merge * vcm_density_at(pass->plan, p, hits);
     return 1.0f / (1.0f + fminf(within, 1e6f));
 }

@@ -1,0 +1,28 @@
+/*
+ * The kd-tree over positions, of photons or of whatever else is kept by its place.
+ *
+ *   order = kdtree_sort(points) ─► the owner puts its arrays in this order
+ *                               ─► kdtree_build(sorted points) ─► searches
+ *
+ * What a search finds are places in the sorted arrays.
+ */
+#pragma once
+
+#include "photon/map/nearest.h"
+
+typedef struct kdtree kdtree;
+
+/** @brief The order that a tree wants points in, owned by the caller (big_free); NULL
+ * when memory is refused. It does not depend on the number of threads. */
+size_t *kdtree_sort(const point_arrays *points, unsigned threads, GError **error);
+/** @brief Over points in this order: at least one. They are not kept. */
+kdtree *kdtree_build(const point_arrays *sorted, unsigned threads, GError **error);
+void kdtree_free(kdtree *tree);
+size_t kdtree_bytes(const kdtree *tree); /**< memory kept */
+
+/** @brief Lets what is nearest enter the set, and cuts it. */
+void kdtree_nearest(const kdtree *tree, nearest_set *set);
+/** @brief Visits runs that hold every point within radius of p, as
+ * photon_map_kind.runs. */
+void kdtree_runs(const kdtree *tree, const point_arrays *points, vec3 p, float radius,
+                 photon_run_visitor visit, void *data);

@@ -1,0 +1,71 @@
+#include "transport/radius_cache.h"
+
+#include "base/parallel.h"
+
+enum { CHUNK = 256 }; /* size: of a thread's work */
+
+struct radius_cache {
+    point_index *index;
+    float *radii; /* by the numbers of the index */
+};
+
+float radius_of_nearest(const photon_hits *nearest)
+{
+    float furthest2 = 0.0f;
+    if (nearest->n < RADIUS_NEAREST)
+        return 0.0f;
+    for (size_t i = 0; i < nearest->n; i++)
+        furthest2 = maxf(furthest2, nearest->distance2[i]);
+    return sqrtf(furthest2);
+}
+
+typedef struct radius_loop {
+    const vec3 *places;
+    const radius_source *source;
+    float *radii;
+} radius_loop;
+
+static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const radius_loop *loop = data;
+    const radius_source *source = loop->source;
+    photon_hits hits = {0};
+    for (size_t i = begin; i < end; i++) {
+        vec3 p = loop->places[i];
+        bool found = source->nearest(source->data, p, &hits);
+        float distance = found ? radius_of_nearest(&hits) : 0.0f;
+        loop->radii[i] = source->radius(source->data, p, distance, &hits);
+    }
+    photon_hits_clear(&hits);
+}
+
+radius_cache *radius_cache_build(const vec3 *places, size_t n,
+                                 const radius_source *source, unsigned threads,
+                                 GError **error)
+{
+    g_autoptr(radius_cache) cache = g_new0(radius_cache, 1);
+    cache->radii = g_new0(float, MAX(n, 1));
+    cache->index = point_index_build(places, n, 1, error);
+    if (!cache->index)
+        return NULL;
+    radius_loop loop = {places, source, cache->radii};
+    parallel_for(n, CHUNK, threads, NULL, find_radii, &loop);
+    return g_steal_pointer(&cache);
+}
+
+void radius_cache_free(radius_cache *cache)
+{
+    if (!cache)
+        return;
+    point_index_free(cache->index);
+    g_free(cache->radii);
+    g_free(cache);
+}
+
+float radius_cache_at(const radius_cache *cache, vec3 p, float none, photon_hits *hits)
+{
+    if (!point_index_nearest(cache->index, p, 1, INFINITY, hits) || hits->n == 0)
+        return none;
+    return cache->radii[hits->index[0]];
+}

@@ -1,0 +1,47 @@
+/*
+ * The radius cache: radii at some places all over the scene, by how close points lie
+ * there. What is asked anywhere is answered by the nearest place.
+ */
+#pragma once
+
+#include "photon/map/point_index.h"
+
+/** Points whose distance tells how close they lie. */
+enum { RADIUS_NEAREST = 16 };
+
+typedef struct radius_cache radius_cache;
+
+/** @brief Distance to the furthest of the RADIUS_NEAREST points found nearest; 0 if there
+ * are not so many. */
+float radius_of_nearest(const photon_hits *nearest);
+
+/** @brief What radii are made from. Both calls are thread-safe. */
+typedef struct radius_source {
+    /** Finds the RADIUS_NEAREST points nearest to p. @return false: memory is refused */
+    bool (*nearest)(const void *data, vec3 p, photon_hits *hits);
+    /** The radius at p, from radius_of_nearest there. @param hits scratch */
+    float (*radius)(const void *data, vec3 p, float distance, photon_hits *hits);
+    const void *data;
+} radius_source;
+
+/** @brief At most so many places are of use: one for each patch as wide as a hundredth of
+ * what holds the scene. */
+enum { RADIUS_PLACES = 8192 };
+
+/** @brief Of n points, evenly chosen, which is place i of RADIUS_PLACES or fewer. */
+static inline size_t radius_place(size_t i, size_t n)
+{
+    return n > RADIUS_PLACES ? i * n / RADIUS_PLACES : i;
+}
+
+/** @brief Finds radii at n places, RADIUS_PLACES at most, which do not depend on the
+ * number of threads. NULL: out of memory. */
+radius_cache *radius_cache_build(const vec3 *places, size_t n,
+                                 const radius_source *source, unsigned threads,
+                                 GError **error);
+void radius_cache_free(radius_cache *cache);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(radius_cache, radius_cache_free)
+
+/** @brief The radius nearest to p, or `none` if none is kept. Thread-safe.
+ *  @param hits gets the place whose radius it is */
+float radius_cache_at(const radius_cache *cache, vec3 p, float none, photon_hits *hits);
