@@ -41,8 +41,11 @@ static void free_arrays(photon_store *store)
     big_free(store->normal);
     big_free(store->tag);
     big_free(store->home);
-    *store = (photon_store){
-        .oriented = store->oriented, .tagged = store->tagged, .homed = store->homed};
+    big_free(store->number);
+    *store = (photon_store){.oriented = store->oriented,
+                            .tagged = store->tagged,
+                            .homed = store->homed,
+                            .numbered = store->numbered};
 }
 
 bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
@@ -54,15 +57,17 @@ bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
         return false;
     }
     size_t n = store->n, room = padded(capacity);
-    bool ok = grow(&store->x, n, room, sizeof *store->x, error) &&
-              grow(&store->y, n, room, sizeof *store->y, error) &&
-              grow(&store->z, n, room, sizeof *store->z, error) &&
-              grow(&store->wi, n, room, sizeof *store->wi, error) &&
-              grow(&store->flux, n, room, sizeof *store->flux, error) &&
-              (!store->oriented ||
-               grow(&store->normal, n, room, sizeof *store->normal, error)) &&
-              (!store->tagged || grow(&store->tag, n, room, sizeof *store->tag, error)) &&
-              (!store->homed || grow(&store->home, n, room, sizeof *store->home, error));
+    bool ok =
+        grow(&store->x, n, room, sizeof *store->x, error) &&
+        grow(&store->y, n, room, sizeof *store->y, error) &&
+        grow(&store->z, n, room, sizeof *store->z, error) &&
+        grow(&store->wi, n, room, sizeof *store->wi, error) &&
+        (store->numbered ? grow(&store->number, n, room, sizeof *store->number, error)
+                         : grow(&store->flux, n, room, sizeof *store->flux, error)) &&
+        (!store->oriented ||
+         grow(&store->normal, n, room, sizeof *store->normal, error)) &&
+        (!store->tagged || grow(&store->tag, n, room, sizeof *store->tag, error)) &&
+        (!store->homed || grow(&store->home, n, room, sizeof *store->home, error));
     if (ok)
         store->capacity = room - STORE_BLOCK;
     else if (store->capacity == 0)
@@ -77,7 +82,10 @@ void photon_store_put(photon_store *store, const photon *p)
     store->y[i] = p->p[1];
     store->z[i] = p->p[2];
     store->wi[i] = direction_pack(p->wi, p->flags);
-    store->flux[i] = p->flux;
+    if (store->numbered)
+        store->number[i] = p->number;
+    else
+        store->flux[i] = p->flux;
     if (store->oriented)
         store->normal[i] = direction_pack(p->n, 0);
     if (store->tagged)
@@ -91,11 +99,12 @@ photon photon_store_get(const photon_store *store, size_t i)
     return (photon){
         .p = vec3_make(store->x[i], store->y[i], store->z[i]),
         .wi = direction_unpack(store->wi[i]),
-        .flux = store->flux[i],
+        .flux = store->numbered ? (spectrum){0} : store->flux[i],
         .flags = direction_flags(store->wi[i]),
         .n = store->oriented ? direction_unpack(store->normal[i]) : (vec3){0},
         .tag = store->tagged ? store->tag[i] : 0,
         .home = store->homed ? store->home[i] : 0,
+        .number = store->numbered ? store->number[i] : 0,
     };
 }
 
@@ -114,7 +123,10 @@ void photon_store_copy(const photon_store *to, size_t at, const photon_store *fr
     memcpy(to->y + at, from->y, n * sizeof *from->y);
     memcpy(to->z + at, from->z, n * sizeof *from->z);
     memcpy(to->wi + at, from->wi, n * sizeof *from->wi);
-    memcpy(to->flux + at, from->flux, n * sizeof *from->flux);
+    if (to->numbered)
+        memcpy(to->number + at, from->number, n * sizeof *from->number);
+    else
+        memcpy(to->flux + at, from->flux, n * sizeof *from->flux);
     if (to->oriented)
         memcpy(to->normal + at, from->normal, n * sizeof *from->normal);
     if (to->tagged)
@@ -125,7 +137,8 @@ void photon_store_copy(const photon_store *to, size_t at, const photon_store *fr
 
 size_t photon_store_bytes(const photon_store *store)
 {
-    size_t each = 3 * sizeof(float) + sizeof(uint32_t) + sizeof(spectrum);
+    size_t each = 3 * sizeof(float) + sizeof(uint32_t);
+    each += store->numbered ? sizeof(size_t) : sizeof(spectrum);
     each += store->oriented ? sizeof(uint32_t) : 0;
     each += store->tagged ? sizeof(uint32_t) : 0;
     each += store->homed ? sizeof(uint32_t) : 0;
@@ -149,6 +162,16 @@ static void permute_words(size_t begin, size_t end, unsigned thread, void *data)
         to[i] = from[job->order[i]];
 }
 
+static void permute_numbers(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const permutation *job = data;
+    const size_t *from = job->from;
+    size_t *to = job->to;
+    for (size_t i = begin; i < end; i++)
+        to[i] = from[job->order[i]];
+}
+
 static void permute_spectra(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
@@ -168,7 +191,10 @@ static bool permute(void *array, const photon_store *store, const size_t *order,
         return false;
     permutation job = {order, *old, to};
     parallel_for(store->n, 1 << 14, threads, NULL,
-                 size == sizeof(spectrum) ? permute_spectra : permute_words, &job);
+                 size == sizeof(spectrum) ? permute_spectra
+                 : size == sizeof(size_t) ? permute_numbers
+                                          : permute_words,
+                 &job);
     big_free(*old);
     *old = to;
     return true;
@@ -181,7 +207,10 @@ bool photon_store_permute(photon_store *store, const size_t *order, unsigned thr
               permute(&store->y, store, order, sizeof *store->y, threads, error) &&
               permute(&store->z, store, order, sizeof *store->z, threads, error) &&
               permute(&store->wi, store, order, sizeof *store->wi, threads, error) &&
-              permute(&store->flux, store, order, sizeof *store->flux, threads, error) &&
+              (store->numbered ? permute(&store->number, store, order,
+                                         sizeof *store->number, threads, error)
+                               : permute(&store->flux, store, order, sizeof *store->flux,
+                                         threads, error)) &&
               (!store->oriented || permute(&store->normal, store, order,
                                            sizeof *store->normal, threads, error)) &&
               (!store->tagged ||

@@ -7,7 +7,8 @@
  *
  *   x[] y[] z[]   4 bytes each   read for every candidate
  *   wi[]          4 bytes        octahedral and flags, read for blocks with some in reach
- *   flux[]        32 bytes       eight wavelengths, read for those in reach
+ *   flux[]        32 bytes       eight wavelengths, read for those in reach; or
+ *   number[]      8 bytes        where the owner keeps what lies there
  *
  * 48 bytes a photon, and four more each for normals, tags and homes where they are asked
  * for.
@@ -50,6 +51,8 @@ typedef struct photon {
     uint32_t home; /**< kept by homed stores only: the flat curve that it is on, see
                       scene_curve_of, 0: it is on none; or the medium that it is in, see
                       medium_home */
+    size_t number; /**< kept by numbered stores only, in place of flux: of what their
+                      owner keeps of it */
 } photon;
 
 /** @brief Photons as arrays of n, big_alloc'ed; capacity >= n. The arrays go on behind
@@ -66,6 +69,8 @@ typedef struct photon_store {
     uint32_t *tag;    /**< NULL unless tagged */
     bool homed;       /**< set before room is made: photons keep their curves or media */
     uint32_t *home;   /**< NULL unless homed */
+    bool numbered;    /**< set before room is made: photons keep numbers and no flux */
+    size_t *number;   /**< NULL unless numbered; flux is NULL if so */
 } photon_store;
 
 /** @brief Makes room for capacity photons in all; on failure the store holds what it did:

@@ -122,6 +122,34 @@ static void test_store(void)
     g_assert_cmpuint(store.n + store.capacity, ==, 0);
 }
 
+/* Stores of numbers: in place of flux, sorted and copied with the rest. */
+static void test_store_numbers(void)
+{
+    enum { N = 100 };
+    photon_store store = {.numbered = true}, twice = {.numbered = true};
+    size_t order[N];
+    g_assert_true(photon_store_reserve(&store, N, NULL));
+    g_assert_true(photon_store_reserve(&twice, 2 * N, NULL));
+    g_assert_cmpuint(photon_store_bytes(&store), <=, N * 24 + 32 * 24);
+    for (uint32_t i = 0; i < N; i++) {
+        photon p = random_photon(i);
+        p.number = ((size_t)i << 33) + 5;
+        photon_store_put(&store, &p);
+        order[i] = i * 7 % N;
+    }
+    g_assert_true(photon_store_permute(&store, order, 2, NULL));
+    photon_store_copy(&twice, N, &store);
+    for (uint32_t i = 0; i < N; i++) {
+        photon expected = random_photon((uint32_t)order[i]);
+        const photon found = photon_store_get(&store, i);
+        g_assert_cmpfloat(expected.p[0], ==, found.p[0]);
+        g_assert_cmpuint(found.number, ==, ((size_t)order[i] << 33) + 5);
+        g_assert_cmpuint(photon_store_get(&twice, N + i).number, ==, found.number);
+    }
+    photon_store_clear(&store);
+    photon_store_clear(&twice);
+}
+
 static void test_store_memory(void)
 {
     photon_store store = {0};
@@ -157,6 +185,7 @@ int main(int argc, char **argv)
     g_test_add_func("/photon/direction/special", test_direction_special);
     g_test_add_func("/photon/direction/lanes", test_direction_lanes);
     g_test_add_func("/photon/store/put-get-permute", test_store);
+    g_test_add_func("/photon/store/numbers", test_store_numbers);
     g_test_add_func("/photon/store/memory", test_store_memory);
     g_test_add_func("/photon/store/refused", test_store_refused);
     return g_test_run();

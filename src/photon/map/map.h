@@ -7,9 +7,9 @@
  *
  * Built once from a store, const afterwards; queries write only into the caller's struct.
  * A photon is "within r" if its squared distance is < r². Photons that tie for the k-th
- * place are taken in the order of (x, y, z, wi, flux), compared as numbers: no index
- * needs to be kept for it, and photons that tie even then are interchangeable. So all
- * maps find the same photons to the bit.
+ * place are taken in the order of (x, y, z, wi, flux or number), compared as numbers: no
+ * index needs to be kept for it, and photons that tie even then are interchangeable. So
+ * all maps find the same photons to the bit.
  *
  * Memory kept: that of the photons; the kdtree adds about 2, the grid at most 8.
  */

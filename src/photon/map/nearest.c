@@ -16,6 +16,9 @@ static int compare_photons(const photon_store *s, size_t a, size_t b)
     order = order ? order : compare(s->y[a], s->y[b]);
     order = order ? order : compare(s->z[a], s->z[b]);
     order = order ? order : (s->wi[a] > s->wi[b]) - (s->wi[a] < s->wi[b]);
+    if (s->numbered)
+        return order ? order
+                     : (s->number[a] > s->number[b]) - (s->number[a] < s->number[b]);
     for (int lane = 0; lane < N_LANES && !order; lane++)
         order = compare(s->flux[a][lane], s->flux[b][lane]);
     return order;

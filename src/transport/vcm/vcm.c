@@ -108,13 +108,14 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
 {
     const settings *how = &pass->plan->how;
     const light_paths *paths = &pass->light;
-    photon_store store = {.oriented = how->edges, .homed = pass->scene->camera_facing};
+    photon_store store = {
+        .oriented = how->edges, .homed = pass->scene->camera_facing, .numbered = true};
     double start = clock_seconds();
     if (!photon_store_reserve(&store, paths->n_vertices, error))
         return false;
     for (size_t i = 0; i < paths->n_vertices; i++) {
         photon p = vcm_photon(pass, &paths->vertices[i]);
-        p.flux = vcm_payload(i);
+        p.number = i;
         photon_store_put(&store, &p);
     }
     pass->map = photon_map_build(photon_map_chosen((map_choice)how->photon_map, false),

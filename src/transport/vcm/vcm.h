@@ -103,7 +103,7 @@ typedef struct vcm_pass {
     bool camera_facing_ends; /**< light subpaths end at what turns to face rays */
     float camera_per_light; /**< camera samples of a pixel over light subpaths, spp / N */
     light_paths light;
-    photon_map *map; /**< flux of a photon in it: see vcm_payload; NULL: no merging */
+    photon_map *map; /**< of light vertices by number; NULL: no merging */
 } vcm_pass;
 
 /** @brief Where a vertex on what moves lies in the map; others where they are. */
@@ -144,18 +144,6 @@ void vcm_tell_light(const vcm_pass *pass, uint64_t i, photon_listener tell, void
 bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts *counts,
                      GError **error);
 void light_paths_clear(light_paths *paths);
-
-/** @brief The number of a light vertex, as the map of a pass keeps it in place of flux
- * (two numbers below 2²⁴, which floats hold exactly). */
-static inline spectrum vcm_payload(size_t vertex)
-{
-    return (spectrum){(float)(vertex & 0xffffff), (float)(vertex >> 24)};
-}
-
-static inline size_t vcm_payload_vertex(spectrum payload)
-{
-    return (size_t)payload[0] | (size_t)payload[1] << 24;
-}
 
 /** @brief A surface point of a subpath, with what scatters there. */
 typedef struct vcm_vertex {

@@ -276,7 +276,7 @@ static void merge(camera_walk *c, const vcm_vertex *v)
                                    &c->scratch->estimate);
     const photon_store *store = photon_map_store(pass->map);
     for (size_t i = 0; i < hits->n && area > 0.0f; i++) {
-        size_t vertex = vcm_payload_vertex(store->flux[hits->index[i]]);
+        size_t vertex = store->number[hits->index[i]];
         merge_with(c, v, &pass->light.vertices[vertex],
                    kernel_eval(&kappa, hits->distance2[i], r2) / area);
     }
