@@ -14,17 +14,19 @@ import subprocess
 import sys
 
 
-def symbols(path):
-    """The functions that an object file defines, and the names that it needs."""
-    defined, needed = set(), set()
-    lines = subprocess.run(['nm', '--format=posix', path], check=True, text=True,
+def symbols(paths):
+    """By object file: the functions that it defines, and the names that it needs."""
+    defined = {path: set() for path in paths}
+    needed = {path: set() for path in paths}
+    lines = subprocess.run(['nm', '-A', '--format=posix', *paths], check=True, text=True,
                            capture_output=True).stdout.splitlines()
     for line in lines:
-        name, kind = line.split()[:2]
+        path, _, rest = line.partition(': ')
+        name, kind = rest.split()[:2]
         if kind in 'TW':
-            defined.add(name)
+            defined[path].add(name)
         elif kind == 'U':
-            needed.add(name)
+            needed[path].add(name)
     return defined, needed
 
 
@@ -43,13 +45,13 @@ def objects(build):
 
 def calls(files):
     """Who calls whom."""
-    home, needs = {}, {}
+    defined, needed = symbols(list(files.values()))
+    home = {}
     for source, path in files.items():
-        defined, needs[source] = symbols(path)
-        for name in defined:
+        for name in defined[path]:
             home.setdefault(name, source)
-    return {source: {home[n] for n in names if n in home} - {source}
-            for source, names in needs.items()}
+    return {source: {home[n] for n in needed[path] if n in home} - {source}
+            for source, path in files.items()}
 
 
 def circles(graph):

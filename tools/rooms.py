@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+"""What the house is to keep to, counted: files in a folder, and the places in which a
+kind of things has to be named beside its own file and its line of a .def.
+
+Prints both; exits with 1 above MOST_FILES or if a kind is named anywhere else.
+"""
+import os
+import re
+import sys
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+MOST_FILES = 30
+SOURCE = re.compile(r'\.(c|h|cpp)$')
+
+# .def, what its symbols are called, and what lies in the same file or folder
+REGISTRIES = [
+    ('src/material/material.def', 'material_{0}', 'src/material/material_{1}.c'),
+    ('src/texture/texture.def', 'texture_{0}', 'src/texture/texture_{1}.c'),
+    ('src/shape/shape.def', 'shape_{0}', 'src/shape/shape_{1}.c'),
+    ('src/light/light.def', 'light_{0}', 'src/light/light_{1}.c'),
+    ('src/image/codec.def', 'codec_{0}', 'src/image/{1}.c'),
+    ('src/format/format.def', '{0}_reader', 'src/format/{0}/'),
+    ('src/settings/integrator.def', 'transport_{1}', 'src/transport/{1}/'),
+    ('src/settings/map.def', 'photon_map_{1}', 'src/photon/map/map_{1}.c'),
+]
+
+
+# Kinds that others are made of: a mesh by subdivision and readers, an area light of a
+# shape that shines, the algorithms that auto joins.
+PARTS = {'shape_mesh', 'light_area', 'transport_photonmap', 'transport_path'}
+
+
+def sources(*folders):
+    """Paths of source files and their text."""
+    for folder in folders:
+        for at, _, names in os.walk(os.path.join(ROOT, folder)):
+            for name in sorted(names):
+                if SOURCE.search(name) or name == 'meson.build':
+                    path = os.path.join(at, name)
+                    with open(path, encoding='utf-8') as file:
+                        yield os.path.relpath(path, ROOT), file.read()
+
+
+def count_files():
+    """Source files by folder."""
+    counts = {}
+    for path, _ in sources('src', 'gui', 'cli'):
+        if SOURCE.search(path):
+            counts[os.path.dirname(path)] = counts.get(os.path.dirname(path), 0) + 1
+    return counts
+
+
+def kinds(registry):
+    """The words of each line of a .def."""
+    with open(os.path.join(ROOT, registry), encoding='utf-8') as file:
+        for line in file:
+            entry = re.fullmatch(r'[A-Z]+\((\w+)(?:, (\w+))?\)\n', line)
+            if entry:
+                yield entry[1], entry[2] or entry[1]
+
+
+def find_places(registry, symbol, own, texts):
+    """Files that define or name a kind as a value, its own apart."""
+    for words in kinds(registry):
+        kind = symbol.format(*words)
+        if kind in PARTS:
+            continue
+        name = re.compile(rf'&{kind}\b|\b{kind}\.')
+        for path, text in texts:
+            if name.search(text) and not path.startswith(own.format(*words)):
+                yield kind, path
+
+
+def main():
+    wrong = 0
+    for folder, n in sorted(count_files().items(), key=lambda c: (-c[1], c[0]))[:8]:
+        too_many = n > MOST_FILES and folder.startswith('src/')
+        wrong += too_many
+        print(f'{n:4} files in {folder}' + (f', more than {MOST_FILES}' if too_many else ''))
+    texts = [t for t in sources('src', 'gui', 'cli') if not t[0].endswith('meson.build')]
+    for registry, symbol, own in REGISTRIES:
+        places = list(find_places(registry, symbol, own, texts))
+        print(f'{len(list(kinds(registry))):4} kinds in {registry}, '
+              f'{len(places)} named elsewhere')
+        for kind, path in places:
+            print(f'     {kind}: {path}')
+        wrong += len(places)
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == '__main__':
+    main()
