@@ -135,13 +135,21 @@ static bool try_spots(transport_plan *plan, const cancel_flag *cancel, GError **
     return true;
 }
 
+/* Photons a pass that somebody wants, whatever the plan would send: work that was asked
+   for. */
+static double photons_wanted(const settings *how)
+{
+    int64_t own = how->class_photons[PHOTON_CAUSTIC];
+    return (double)(own > 0 ? own : MAX(how->photons, 0));
+}
+
 /* In this order, since each trial asks what those before it have decided. */
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
     path_effort paths;
     if (!transport_plan_find_casters(plan, error))
         return false;
-    plan_ask(plan, 0.0);
+    plan_ask(plan, photons_wanted(&plan->how));
     plan->n_photons[PHOTON_CAUSTIC] = caustics_most(plan);
     plan->shares = plan->n_photons[PHOTON_CAUSTIC] > 0;
     if (plan_is_tiny(plan))
