@@ -86,7 +86,8 @@ static bool nearest_photons(const void *data, vec3 p, photon_hits *hits)
 
 /* The median over the places where the camera looks or, for caustics and in media, where
    photons are. Where there are too few to tell, light that is smooth is faint, and its
-   radius as wide as may be; a caustic may be sharp all the same. */
+   radius as wide as may be; a caustic may be sharp all the same, and where none landed
+   nothing asks for width. */
 static double typical_radius(const radius_rule *rule, bool at_photons)
 {
     float radii[PROBES];
@@ -102,9 +103,9 @@ static double typical_radius(const radius_rule *rule, bool at_photons)
             radii[n++] = radius_by(rule, at, d, &hits);
     }
     photon_hits_clear(&hits);
-    return n > 0        ? (double)median(radii, n)
-           : at_photons ? 0.2 * rule->largest
-                        : rule->largest;
+    bool is_narrow = at_photons || store->n == 0;
+    double unknown = is_narrow ? 0.2 * rule->largest : rule->largest;
+    return n > 0 ? (double)median(radii, n) : unknown;
 }
 
 /* Radii at some of the photons. */
