@@ -23,7 +23,7 @@ typedef struct photon_probe {
     const photon_store *store; /* NULL: of points that are no photons (point_index.h) */
     const size_t *number;      /* of those, their owner's */
     const float *x, *y, *z;    /* of the store or the points */
-    const uint32_t *wi;
+    const uint32_t *wi; /* what one_sided and face look at: of points their normals */
     const uint32_t *normal, *curve; /* NULL if they keep none */
     vec3 p;
     vec3 n;

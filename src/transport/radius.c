@@ -128,7 +128,7 @@ static point_index *index_sight(const transport_plan *plan, GError **error)
     vec3 *points = g_aligned_alloc0(MAX(plan->n_sight, 1), sizeof *points, 16);
     for (size_t i = 0; i < plan->n_sight; i++)
         points[i] = plan->sight[i].p;
-    point_index *index = point_index_build(points, plan->n_sight, 1, error);
+    point_index *index = point_index_build(points, NULL, plan->n_sight, 1, error);
     g_aligned_free(points);
     return index;
 }

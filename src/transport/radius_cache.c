@@ -46,7 +46,7 @@ radius_cache *radius_cache_build(const vec3 *places, size_t n,
 {
     g_autoptr(radius_cache) cache = g_new0(radius_cache, 1);
     cache->radii = g_new0(float, MAX(n, 1));
-    cache->index = point_index_build(places, n, 1, error);
+    cache->index = point_index_build(places, NULL, n, 1, error);
     if (!cache->index)
         return NULL;
     radius_loop loop = {places, source, cache->radii};

@@ -115,13 +115,14 @@ static void test_kept_with_own_radius(void)
     transport_scratch scratch = {0};
     g_assert_true(kind->prepare(&plan, NULL, NULL));
     photonmap_pass *pass = kind->begin_pass(&plan, 0, NULL, &counts, NULL);
-    const photon_store *kept = photon_map_store(pass->irradiance[0]);
+    const irradiance_cache *kept = pass->irradiance[0];
     double off = 0.0, all = 0.0;
     for (size_t i = 0; i < kept->n; i++) {
-        vec3 p = vec3_make(kept->x[i], kept->y[i], kept->z[i]),
-             n = direction_unpack(kept->wi[i]);
+        size_t k = point_index_number(kept->index, i);
+        vec3 p = point_index_position(kept->index, i),
+             n = direction_unpack(kept->normal[k]);
         double asked = (double)spectrum_mean(asked_irradiance(pass, p, n, &scratch));
-        off += fabs((double)spectrum_mean(kept->flux[i]) - asked);
+        off += fabs((double)spectrum_mean(kept->irradiance[k]) - asked);
         all += asked;
     }
     g_test_message("%zu places, off by %g of all", kept->n, off / all);

@@ -9,6 +9,7 @@ enum { PADDING = LANES };
 struct point_index {
     size_t n;
     float *x, *y, *z; /* sorted */
+    uint32_t *normal; /* packed, in that order; NULL: there are none */
     size_t *number;   /* the owner's, in that order */
     kdtree *tree;     /* NULL: there are no points */
 };
@@ -18,8 +19,13 @@ static point_arrays arrays_of(const point_index *index)
     return (point_arrays){index->n, index->x, index->y, index->z};
 }
 
-static bool make_room(point_index *index, GError **error)
+static bool make_room(point_index *index, bool with_normals, GError **error)
 {
+    if (with_normals)
+        index->normal = big_alloc(index->n + PADDING, sizeof *index->normal,
+                                  "points in space", error);
+    if (with_normals && !index->normal)
+        return false;
     float **arrays[] = {&index->x, &index->y, &index->z};
     for (int axis = 0; axis < 3; axis++) {
         *arrays[axis] =
@@ -53,14 +59,16 @@ static bool sort_points(point_index *index, const vec3 *points, unsigned threads
     return index->tree != NULL;
 }
 
-point_index *point_index_build(const vec3 *points, size_t n, unsigned threads,
-                               GError **error)
+point_index *point_index_build(const vec3 *points, const uint32_t *normals, size_t n,
+                               unsigned threads, GError **error)
 {
     g_autoptr(point_index) index = g_new0(point_index, 1);
     index->n = n;
-    if (n > 0 &&
-        (!make_room(index, error) || !sort_points(index, points, threads, error)))
+    if (n > 0 && (!make_room(index, normals != NULL, error) ||
+                  !sort_points(index, points, threads, error)))
         return NULL;
+    for (size_t i = 0; i < n && normals; i++)
+        index->normal[i] = normals[index->number[i]];
     return g_steal_pointer(&index);
 }
 
@@ -72,6 +80,7 @@ void point_index_free(point_index *index)
     big_free(index->x);
     big_free(index->y);
     big_free(index->z);
+    big_free(index->normal);
     big_free(index->number);
     g_free(index);
 }
@@ -79,6 +88,11 @@ void point_index_free(point_index *index)
 size_t point_index_number(const point_index *index, size_t place)
 {
     return index->number[place];
+}
+
+vec3 point_index_position(const point_index *index, size_t place)
+{
+    return vec3_make(index->x[place], index->y[place], index->z[place]);
 }
 
 static photon_probe probe_at(const point_index *index, vec3 p)
@@ -107,18 +121,34 @@ bool point_index_within(const point_index *index, vec3 p, float radius, photon_h
     return !search.refused;
 }
 
-bool point_index_nearest(const point_index *index, vec3 p, size_t k, float radius,
-                         photon_hits *hits)
+static bool find_nearest(const point_index *index, const photon_probe *probe, size_t k,
+                         float radius, photon_hits *hits)
 {
     hits->n = 0;
     size_t wanted = MIN(k, index->n);
+    nearest_set set;
     if (wanted == 0)
         return true;
-    const photon_probe probe = probe_at(index, p);
-    nearest_set set;
-    if (!nearest_begin(&set, &probe, wanted, radius, hits))
+    if (!nearest_begin(&set, probe, wanted, radius, hits))
         return false;
     kdtree_nearest(index->tree, &set);
     name_hits(index, hits);
     return true;
+}
+
+bool point_index_nearest(const point_index *index, vec3 p, size_t k, float radius,
+                         photon_hits *hits)
+{
+    const photon_probe probe = probe_at(index, p);
+    return find_nearest(index, &probe, k, radius, hits);
+}
+
+bool point_index_nearest_facing(const point_index *index, vec3 p, vec3 n, size_t k,
+                                float radius, photon_hits *hits)
+{
+    photon_probe probe = probe_at(index, p);
+    probe.wi = index->normal;
+    probe.n = n;
+    probe.one_sided = true;
+    return find_nearest(index, &probe, k, radius, hits);
 }

@@ -27,8 +27,8 @@ enum { NEAREST_KEPT = 4 };
 typedef struct irradiance_loop {
     const photonmap_pass *pass;
     const photon_store *points;
-    photon_store *out;
-    spectrum *groups; /* of all points, by light groups; NULL: there are none */
+    irradiance_cache *out;
+    vec3 *places; /* of the cache */
     size_t offset;
     int slice;
     bool *failed;
@@ -80,15 +80,11 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
     for (size_t i = begin; i < end && ready; i++) {
         photon p = photon_store_get(loop->points, i);
         size_t at = loop->offset + i;
-        loop->out->x[at] = p.p[0];
-        loop->out->y[at] = p.p[1];
-        loop->out->z[at] = p.p[2];
-        loop->out->wi[at] = loop->points->normal[i];
-        if (n_groups)
-            loop->out->tag[at] = (uint32_t)at;
-        spectrum *groups = n_groups > 0 ? loop->groups + at * n_groups : NULL;
+        loop->places[at] = p.p;
+        loop->out->normal[at] = loop->points->normal[i];
+        spectrum *groups = n_groups > 0 ? loop->out->groups + at * n_groups : NULL;
         const map_place place = {loop->pass, loop->slice, p.p, p.n};
-        loop->out->flux[at] = irradiance_at(&place, &scratch, groups);
+        loop->out->irradiance[at] = irradiance_at(&place, &scratch, groups);
     }
     if (scratch.failed || !ready)
         loop->failed[begin / 256] = true;
@@ -96,14 +92,14 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
 }
 
 static bool add_points(photonmap_pass *pass, int slice, const trace_result *points,
-                       photon_store *out, GError **error)
+                       vec3 *places, irradiance_cache *out, GError **error)
 {
     size_t n = points->photons.n, n_chunks = n / 256 + 1;
     g_autofree bool *failed = g_new0(bool, n_chunks);
     irradiance_loop loop = {.pass = pass,
                             .points = &points->photons,
                             .out = out,
-                            .groups = pass->irradiance_groups[slice],
+                            .places = places,
                             .offset = out->n,
                             .slice = slice,
                             .failed = failed};
@@ -122,29 +118,50 @@ static bool add_points(photonmap_pass *pass, int slice, const trace_result *poin
     return true;
 }
 
-bool irradiance_map_build(photonmap_pass *pass, int slice, const trace_result *points,
-                          size_t n, GError **error)
+void irradiance_cache_free(irradiance_cache *cache)
 {
-    spectrum **groups = &pass->irradiance_groups[slice];
+    if (!cache)
+        return;
+    point_index_free(cache->index);
+    big_free(cache->normal);
+    big_free(cache->irradiance);
+    big_free(cache->groups);
+    g_free(cache);
+}
 
-    size_t total = 0, n_groups = (size_t)pass->scene->n_light_groups;
+static irradiance_cache *cache_with_room(size_t n, size_t n_groups, GError **error)
+{
+    const char *what = "kept irradiance";
+    irradiance_cache *cache = g_new0(irradiance_cache, 1);
+    cache->normal = big_alloc(n, sizeof *cache->normal, what, error);
+    if (cache->normal)
+        cache->irradiance = big_alloc(n, sizeof *cache->irradiance, what, error);
+    if (cache->irradiance && n_groups > 0)
+        cache->groups = big_alloc(n * n_groups, sizeof *cache->groups, what, error);
+    if (cache->irradiance && (cache->groups || n_groups == 0))
+        return cache;
+    irradiance_cache_free(cache);
+    return NULL;
+}
+
+bool irradiance_cache_build(photonmap_pass *pass, int slice, const trace_result *points,
+                            size_t n, GError **error)
+{
+    size_t total = 0;
     for (size_t i = 0; i < n; i++)
         total += points[i].photons.n;
-    photon_store store = {.tagged = n_groups > 0};
-    bool ok = photon_store_reserve(&store, total, error);
-    if (ok && n_groups > 0) {
-        *groups = big_alloc(total * n_groups, sizeof **groups, "light groups", error);
-        ok = *groups != NULL;
-    }
+    irradiance_cache *cache =
+        cache_with_room(total, (size_t)pass->scene->n_light_groups, error);
+    pass->irradiance[slice] = cache;
+    vec3 *places = cache ? big_alloc(total, sizeof *places, "places", error) : NULL;
+    bool ok = places != NULL;
     for (size_t i = 0; i < n && ok; i++)
-        ok = add_points(pass, slice, &points[i], &store, error);
-    if (!ok) {
-        photon_store_clear(&store);
-        return false;
-    }
-    pass->irradiance[slice] =
-        photon_map_build(MAP_KDTREE, &store, 0.0f, (unsigned)pass->how->threads, error);
-    return pass->irradiance[slice] != NULL;
+        ok = add_points(pass, slice, &points[i], places, cache, error);
+    if (ok)
+        cache->index = point_index_build(places, cache->normal, total,
+                                         (unsigned)pass->how->threads, error);
+    big_free(places);
+    return ok && cache->index;
 }
 
 /* What moves is looked up where its photons are kept. */
@@ -179,23 +196,20 @@ static bool kept_irradiance(const map_place *at, estimate_scratch *scratch,
                             spectrum *irradiance, const spectrum **groups)
 {
     const photonmap_pass *pass = at->pass;
-    const photon_filter filter = {.n = at->n, .one_sided = true, .flatten = 1.0f};
     photon_hits *hits = &scratch->hits;
-    const photon_map *kept = pass->irradiance[at->slice];
-    const photon_store *store = photon_map_store(kept);
+    const irradiance_cache *kept = pass->irradiance[at->slice];
     float best = INFINITY, reach = kept_reach(at, hits);
-    if (!photon_map_nearest(kept, at->p, NEAREST_KEPT, reach, &filter, hits))
+    if (!point_index_nearest_facing(kept->index, at->p, at->n, NEAREST_KEPT, reach, hits))
         scratch->failed = true;
     for (size_t i = 0; i < hits->n; i++) {
         size_t k = hits->index[i];
-        bool alike = dot3(direction_unpack(store->wi[k]), at->n) >= NORMAL_AGREEMENT;
+        bool alike = dot3(direction_unpack(kept->normal[k]), at->n) >= NORMAL_AGREEMENT;
         if (!alike || hits->distance2[i] >= best)
             continue;
         best = hits->distance2[i];
-        *irradiance = store->flux[k];
-        if (store->tagged)
-            *groups = pass->irradiance_groups[at->slice] +
-                      (size_t)pass->scene->n_light_groups * store->tag[k];
+        *irradiance = kept->irradiance[k];
+        if (kept->groups)
+            *groups = kept->groups + (size_t)pass->scene->n_light_groups * k;
     }
     return isfinite(best);
 }

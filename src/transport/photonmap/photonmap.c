@@ -194,7 +194,7 @@ static bool make_slice(photonmap_pass *pass, int slice, const cancel_flag *cance
     }
     double start = clock_seconds();
     if (ok && keeps_irradiance(pass))
-        ok = irradiance_map_build(pass, slice, points, N_PHOTON_CLASSES, error);
+        ok = irradiance_cache_build(pass, slice, points, N_PHOTON_CLASSES, error);
     counts->time_build += clock_seconds() - start;
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         trace_result_clear(&points[c]);
@@ -218,8 +218,7 @@ static void end_pass(void *data)
             photon_map_free(pass->maps[i][c]);
             volume_map_free(pass->in_media[i][c]);
         }
-        photon_map_free(pass->irradiance[i]);
-        big_free(pass->irradiance_groups[i]);
+        irradiance_cache_free(pass->irradiance[i]);
     }
     g_aligned_free(pass);
 }

@@ -12,6 +12,18 @@
 
 extern const photon_sender photonmap_photons;
 
+/** @brief Irradiance at places of surfaces. */
+typedef struct irradiance_cache {
+    size_t n;
+    point_index *index;   /**< by places and normals; numbers are those of the arrays */
+    uint32_t *normal;     /**< packed (direction_pack) */
+    spectrum *irradiance; /**< W/m² per nm */
+    spectrum *groups; /**< its parts by light groups, [place * n_light_groups + group];
+                         NULL without groups */
+} irradiance_cache;
+
+void irradiance_cache_free(irradiance_cache *cache);
+
 /** @brief One pass: photons traced, maps built. Const while the camera looks. */
 typedef struct photonmap_pass {
     const transport_plan *plan;
@@ -25,12 +37,8 @@ typedef struct photonmap_pass {
                                                              needed */
     /** Of photons in media; NULL: there are none. */
     volume_map *in_media[MOST_TIME_SLICES][N_PHOTON_CLASSES];
-    /** For final gathering in each slice: "photons" whose wi is a surface normal and
-     * whose flux is the irradiance there; NULL if not asked for. */
-    photon_map *irradiance[MOST_TIME_SLICES];
-    /** [tag * n_light_groups + group], of the photons of those maps; owned; NULL without
-     * groups. */
-    spectrum *irradiance_groups[MOST_TIME_SLICES];
+    irradiance_cache *irradiance[MOST_TIME_SLICES]; /**< of each slice, for final
+                                                       gathering; NULL: not asked for */
     estimate_options estimates[N_PHOTON_CLASSES];
     caustic_share share; /**< if plan->shares */
     bool has_delta_lights;
@@ -72,13 +80,12 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
                       float importance, int64_t events, sampler *random,
                       transport_scratch *scratch);
 
-/** @brief Irradiance at some of the photons of a slice of time, as a map to look the
- * nearest up in (Christensen, "Faster Photon Map Global Illumination", 1999):
- * pass->irradiance and its groups.
+/** @brief Finds irradiance at some of the photons of a slice of time, to look the nearest
+ * up (Christensen, "Faster Photon Map Global Illumination", 1999): pass->irradiance.
  *  @param points photons stored, oriented, of n classes; every fourth photon was set
  * apart for them */
-bool irradiance_map_build(photonmap_pass *pass, int slice, const trace_result *points,
-                          size_t n, GError **error);
+bool irradiance_cache_build(photonmap_pass *pass, int slice, const trace_result *points,
+                            size_t n, GError **error);
 
 /** @brief Chooses plan->radius of each class that is needed. */
 bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,

@@ -37,7 +37,7 @@ static float distance_itself(const void *data, vec3 p, float distance, photon_hi
 static radius_cache *radii_among(const vec3 *points, size_t n, unsigned threads,
                                  GError **error)
 {
-    g_autoptr(point_index) index = point_index_build(points, n, threads, error);
+    g_autoptr(point_index) index = point_index_build(points, NULL, n, threads, error);
     if (!index)
         return NULL;
     size_t n_places = MIN(n, RADIUS_PLACES);
