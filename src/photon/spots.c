@@ -4,6 +4,7 @@
 #include "math/frame.h"
 #include "math/median.h"
 #include "math/warp.h"
+#include "photon/map/point_index.h"
 
 #include <string.h>
 
@@ -18,12 +19,14 @@ enum {
 typedef struct disc {
     vec3 p, n;
     float radius;
+    float power; /* its share of its source's */
 } disc;
 
 struct photon_spots {
-    photon_map *places; /* photons whose flux[0] is the radius, flux[1] the power */
-    disc *discs;        /* the same, unpacked */
-    light_tree *tree;   /* over them */
+    size_t n;
+    disc *discs;        /* MOST_SPOTS at most */
+    point_index *index; /* over their centres */
+    light_tree *tree;   /* over the discs */
     float reach;        /* how far from a spot's centre a ray may land, at most */
 };
 
@@ -35,9 +38,9 @@ static double worth(const photon_store *photons, size_t i)
     return isfinite(flux) && flux > 0.0 ? flux : 0.0;
 }
 
-/* Adds photons at even steps of the sum of flux: flux[0] becomes the least radius,
-   flux[1] how many steps fell on one. */
-static void choose_places(const spot_source *source, size_t most, photon_store *places)
+/* Adds discs of the least radius at photons at even steps of the sum of flux; their power
+   is how many steps fell on one. */
+static void choose_places(const spot_source *source, size_t most, photon_spots *spots)
 {
     const photon_store *from = source->places;
     double total = 0.0, sum = 0.0;
@@ -52,37 +55,41 @@ static void choose_places(const spot_source *source, size_t most, photon_store *
         if (steps == before)
             continue;
         photon p = photon_store_get(from, i);
-        p.flux[0] = source->least;
-        p.flux[1] = (float)(steps - before) / (float)n_steps;
-        photon_store_put(places, &p);
+        float power = (float)(steps - before) / (float)n_steps;
+        spots->discs[spots->n++] = (disc){p.p, p.n, source->least, power};
     }
 }
 
-static bool choose_all(const spot_source *sources, size_t n, photon_store *places,
-                       GError **error)
+/* @return false: nothing is lit */
+static bool choose_all(const spot_source *sources, size_t n, photon_spots *spots)
 {
     size_t n_known = 0;
     for (size_t i = 0; i < n; i++)
         n_known += sources[i].places && sources[i].places->oriented;
-    places->oriented = true;
-    if (n_known == 0 || !photon_store_reserve(places, MOST_SPOTS, error))
-        return false;
     for (size_t i = 0; i < n; i++)
         if (sources[i].places && sources[i].places->oriented)
-            choose_places(&sources[i], MOST_SPOTS / n_known, places);
-    return places->n > 0;
+            choose_places(&sources[i], MOST_SPOTS / n_known, spots);
+    return spots->n > 0;
+}
+
+static bool index_discs(photon_spots *spots, GError **error)
+{
+    vec3 centres[MOST_SPOTS];
+    for (size_t i = 0; i < spots->n; i++)
+        centres[i] = spots->discs[i].p;
+    spots->index = point_index_build(centres, NULL, spots->n, 1, error);
+    return spots->index != NULL;
 }
 
 /* The way to the furthest of the neighbours of each place. */
-static bool measure_ways(const photon_map *map, float ways[MOST_SPOTS])
+static bool measure_ways(const photon_spots *spots, float ways[MOST_SPOTS])
 {
-    const photon_store *places = photon_map_store(map);
     photon_hits hits = {0};
     bool ok = true;
-    for (size_t i = 0; i < places->n && ok; i++) {
+    for (size_t i = 0; i < spots->n && ok; i++) {
         float d2 = 0.0f;
-        vec3 p = photon_store_get(places, i).p;
-        ok = photon_map_nearest(map, p, NEIGHBOURS, INFINITY, NULL, &hits);
+        ok = point_index_nearest(spots->index, spots->discs[i].p, NEIGHBOURS, INFINITY,
+                                 &hits);
         for (size_t k = 0; k < hits.n; k++)
             d2 = maxf(d2, hits.distance2[k]);
         ways[i] = sqrtf(d2);
@@ -91,53 +98,34 @@ static bool measure_ways(const photon_map *map, float ways[MOST_SPOTS])
     return ok;
 }
 
-/* The same places, with their radii. */
+/* @return false: memory is refused or, without an error, all lie in one place */
 static bool set_radii(photon_spots *spots, GError **error)
 {
-    const photon_store *from = photon_map_store(spots->places);
-    photon_store places = {.oriented = true};
     float ways[MOST_SPOTS] = {0}, sorted[MOST_SPOTS], widest = 0.0f;
-    if (!measure_ways(spots->places, ways)) {
+    if (!measure_ways(spots, ways)) {
         error_set(error, ERROR_FAILED, "out of memory: bright spots");
         return false;
     }
-    if (!photon_store_reserve(&places, from->n, error))
-        return false;
     memcpy(sorted, ways, sizeof sorted);
-    float most = WIDEST * median(sorted, from->n);
-    for (size_t i = 0; i < from->n; i++) {
-        photon p = photon_store_get(from, i);
-        p.flux[0] = maxf(minf(ways[i], most), p.flux[0]);
-        widest = maxf(widest, p.flux[0]);
-        photon_store_put(&places, &p);
+    float most = WIDEST * median(sorted, spots->n);
+    for (size_t i = 0; i < spots->n; i++) {
+        disc *d = &spots->discs[i];
+        d->radius = maxf(minf(ways[i], most), d->radius);
+        widest = maxf(widest, d->radius);
     }
-    photon_map_free(spots->places);
-    spots->places = photon_map_build(MAP_KDTREE, &places, 0.0f, 1, error);
     spots->reach = 1.0001f * sqrtf(2.0f) * widest;
-    return spots->places && widest > 0.0f;
-}
-
-static void unpack_discs(photon_spots *spots)
-{
-    const photon_store *places = photon_map_store(spots->places);
-    spots->discs = g_aligned_alloc0(places->n, sizeof *spots->discs, 16);
-    for (size_t i = 0; i < places->n; i++) {
-        photon p = photon_store_get(places, i);
-        spots->discs[i] = (disc){p.p, p.n, p.flux[0]};
-    }
+    return widest > 0.0f;
 }
 
 static void plant_tree(photon_spots *spots)
 {
-    const photon_store *places = photon_map_store(spots->places);
-    size_t n = places->n;
+    size_t n = spots->n;
     light_bound *bounds = g_aligned_alloc0(n, sizeof *bounds, 16);
     for (size_t i = 0; i < n; i++) {
         const disc *d = &spots->discs[i];
         vec3 reach = vec3_make(d->radius, d->radius, d->radius);
         box3 box = {d->p - reach, d->p + reach};
-        bounds[i] =
-            (light_bound){.is_local = true, .box = box, .power = places->flux[i][1]};
+        bounds[i] = (light_bound){.is_local = true, .box = box, .power = d->power};
     }
     spots->tree = light_tree_new(bounds, (int)n);
     g_aligned_free(bounds);
@@ -145,16 +133,11 @@ static void plant_tree(photon_spots *spots)
 
 photon_spots *photon_spots_new(const spot_source *sources, size_t n, GError **error)
 {
-    photon_store places = {0};
     g_autoptr(photon_spots) spots = g_new0(photon_spots, 1);
-    if (!choose_all(sources, n, &places, error)) {
-        photon_store_clear(&places);
+    spots->discs = g_aligned_alloc0(MOST_SPOTS, sizeof *spots->discs, 16);
+    if (!choose_all(sources, n, spots) || !index_discs(spots, error) ||
+        !set_radii(spots, error))
         return NULL;
-    }
-    spots->places = photon_map_build(MAP_KDTREE, &places, 0.0f, 1, error);
-    if (!spots->places || !set_radii(spots, error))
-        return NULL;
-    unpack_discs(spots);
     plant_tree(spots);
     return g_steal_pointer(&spots);
 }
@@ -163,7 +146,7 @@ void photon_spots_free(photon_spots *spots)
 {
     if (!spots)
         return;
-    photon_map_free(spots->places);
+    point_index_free(spots->index);
     light_tree_free(spots->tree);
     g_aligned_free(spots->discs);
     g_free(spots);
@@ -210,7 +193,7 @@ float photon_spots_pdf(const photon_spots *spots, vec3 from, vec3 wi, vec3 lande
                        photon_hits *hits)
 {
     float sum = 0.0f;
-    if (!photon_map_within(spots->places, landed, spots->reach, NULL, hits))
+    if (!point_index_within(spots->index, landed, spots->reach, hits))
         return 0.0f;
     for (size_t i = 0; i < hits->n; i++) {
         float pdf = disc_pdf(&spots->discs[hits->index[i]], from, wi, landed);
