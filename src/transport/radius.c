@@ -123,16 +123,6 @@ static radius_cache *cache_radii(const radius_rule *rule, GError **error)
     return cache;
 }
 
-static point_index *index_sight(const transport_plan *plan, GError **error)
-{
-    vec3 *points = g_aligned_alloc0(MAX(plan->n_sight, 1), sizeof *points, 16);
-    for (size_t i = 0; i < plan->n_sight; i++)
-        points[i] = plan->sight[i].p;
-    point_index *index = point_index_build(points, NULL, plan->n_sight, 1, error);
-    g_aligned_free(points);
-    return index;
-}
-
 /* The photons of the pilot, on surfaces and in media. */
 typedef struct pilot_maps {
     photon_map *on_surfaces, *in_media;
@@ -259,7 +249,7 @@ bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,
     pilot p = {.plan = plan, .w = scene_trial_wavelengths(plan->scene, 0)};
     if (!(plan->how.radius > 0.0)) {
         plan_look(plan);
-        p.sight = index_sight(plan, error);
+        p.sight = visible_index(plan, error);
         ok = p.sight != NULL;
     }
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {

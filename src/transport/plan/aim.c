@@ -44,7 +44,7 @@ typedef struct guide_trial {
 typedef struct trials {
     trace_task task;
     transport_plan *plan;
-    photon_map *visible;      /* visible points; flux[0] is the reach of each */
+    point_index *visible;     /* over plan->sight */
     float most_reach;         /* of all of them, m */
     double pixels_each;       /* that a visible point stands for */
     emission_record *records; /* one per trial, value 0 if it did not arrive */
@@ -66,36 +66,26 @@ static double pixels_each(const transport_plan *plan)
     return (double)film->width * (double)film->height / (double)MAX(plan->n_sight, 1);
 }
 
-static photon_map *visible_map(const transport_plan *plan, GError **error)
+/* How far around a visible point all is in sight, m. */
+static float reach_of(const transport_plan *plan, const visible_point *seen)
 {
-    photon_store store = {0};
-    if (!photon_store_reserve(&store, MAX(plan->n_sight, 1), error))
-        return NULL;
-    for (size_t i = 0; i < plan->n_sight; i++) {
-        const visible_point *seen = &plan->sight[i];
-        float reach = SIGHT_REACH * seen->pixel * sqrtf((float)pixels_each(plan));
-        photon p = {.p = seen->p, .wi = {0, 0, 1}, .flux = spectrum_fill(reach)};
-        photon_store_put(&store, &p);
-    }
-    return photon_map_build(MAP_KDTREE, &store, 0.0f, 1, error);
+    return SIGHT_REACH * seen->pixel * sqrtf((float)pixels_each(plan));
 }
 
-static float most_reach(const photon_map *visible)
+static float most_reach(const transport_plan *plan)
 {
-    const photon_store *points = photon_map_store(visible);
     float most = 0.0f;
-    for (size_t i = 0; i < points->n; i++)
-        most = maxf(most, points->flux[i][0]);
+    for (size_t i = 0; i < plan->n_sight; i++)
+        most = maxf(most, reach_of(plan, &plan->sight[i]));
     return most;
 }
 
 /* Square of the reach of the visible point that p lies by; 0: out of sight. */
 static float sight_at(const trials *all, vec3 p, photon_hits *hits)
 {
-    const photon_map *visible = all->visible;
-    if (!photon_map_nearest(visible, p, 1, all->most_reach, NULL, hits) || hits->n == 0)
+    if (!point_index_nearest(all->visible, p, 1, all->most_reach, hits) || hits->n == 0)
         return 0.0f;
-    float reach = photon_map_store(visible)->flux[hits->index[0]][0];
+    float reach = reach_of(all->plan, &all->plan->sight[hits->index[0]]);
     return hits->distance2[0] < reach * reach ? reach * reach : 0.0f;
 }
 
@@ -357,13 +347,13 @@ bool aim_caustics(transport_plan *plan, aim_result *result, const cancel_flag *c
     if (!transport_plan_find_casters(plan, error))
         return false;
     plan_look(plan);
-    g_autoptr(photon_map) visible = visible_map(plan, error);
+    g_autoptr(point_index) visible = visible_index(plan, error);
     if (!visible)
         return false;
     g_autoptr(emission_guide) guide = guides ? emission_guide_new() : NULL;
     trials all = trials_of(plan, guide, cancel);
     all.visible = visible;
-    all.most_reach = most_reach(visible);
+    all.most_reach = most_reach(plan);
     all.result = result;
     if (!learn(&all, guide, error))
         return false;
