@@ -463,7 +463,7 @@ static bool set_pace(render *r, GError **error)
 /* Says so where the plan has clearly fewer photons than were asked for. */
 static void note_photons(render *r)
 {
-    const settings *how = &r->plan.how;
+    const settings *how = &r->asked;
     double planned = 0.0;
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         planned += (double)r->plan.n_photons[c];
