@@ -327,7 +327,7 @@ static void test_wireframe_out_of_memory(void)
     g_assert_true(g_file_set_contents(path, text->str, -1, NULL));
     g_autoptr(NephScene) mesh = load(path);
     size_t n;
-    g_autofree float *all = neph_scene_wireframe(mesh, MOST, &n);
+    g_free(neph_scene_wireframe(mesh, MOST, &n));
     g_assert_cmpuint(n, ==, 3 * (SIDE * SIDE - SIDE - 1));
     g_assert_true(neph_memory_set_limit("1M", NULL));
     g_assert_null(neph_scene_wireframe(mesh, MOST, &n));

@@ -71,7 +71,7 @@ static void test_warning(void)
     for (size_t i = 0; i < G_N_ELEMENTS(lamps_and_words); i++) {
         g_autoptr(GString) text = g_string_new(NULL);
         const log_sink sink = {keep_warning, text};
-        g_autoptr(view) v = dark_room(lamps_and_words[i][0], &sink);
+        view_free(dark_room(lamps_and_words[i][0], &sink));
         g_assert_cmpstr(text->str, ==, lamps_and_words[i][1]);
     }
 }

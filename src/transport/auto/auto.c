@@ -136,11 +136,11 @@ static bool try_spots(transport_plan *plan, const cancel_flag *cancel, GError **
 }
 
 /* Photons a pass that somebody wants, whatever the plan would send: work that was asked
-   for. */
+   for, as far as trials need it. */
 static double photons_wanted(const settings *how)
 {
     int64_t own = how->class_photons[PHOTON_CAUSTIC];
-    return (double)(own > 0 ? own : MAX(how->photons, 0));
+    return (double)MIN(own > 0 ? own : MAX(how->photons, 0), MOST_PILOTS);
 }
 
 /* In this order, since each trial asks what those before it have decided. */
