@@ -5,14 +5,14 @@
  *   E = Σ κ(d) Φ / ∫∫ κ(s) s ds dθ      over photons on surfaces nearer than r, arrived
  *                                       on the normal's side
  *
- * What counts as near is asked of the renders' own probe, so that it is seen here as
+ * What counts as near is asked of the renders' own query, so that it is seen here as
  * there. Where something moves all light is in the photons of each slice of time, and
  * this is the mean over slices.
  */
 #include "api/photons.h"
 
 #include "photon/kernel.h"
-#include "photon/probe.h"
+#include "photon/map/query.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -27,17 +27,17 @@ static vec3 to_vec3(const double v[3])
     return vec3_make((float)v[0], (float)v[1], (float)v[2]);
 }
 
-static photon_probe probe_at(const NephPhotons *photons, int c, vec3 p, vec3 n)
+static point_query query_at(const NephPhotons *photons, int c, vec3 p, vec3 n)
 {
     const photon_filter filter = {
         .n = n, .one_sided = true, .flatten = (float)photons->traced->plan.how.flatten};
-    return photon_probe_make(&photons->traced->stores[c], p, &filter);
+    return point_query_of(&photons->traced->stores[c], p, &filter);
 }
 
-static bool counts(const photon_probe *probe, size_t i, float r2, float *distance2)
+static bool counts(const point_query *query, size_t i, float r2, float *distance2)
 {
-    *distance2 = probe_distance2(probe, i);
-    return *distance2 < r2 && probe_accepts(probe, i);
+    *distance2 = query_distance2(query, i);
+    return *distance2 < r2 && query_accepts(query, i);
 }
 
 static int by_distance(const void *a, const void *b)
@@ -48,12 +48,12 @@ static int by_distance(const void *a, const void *b)
 
 /* Squared distance to the k-th nearest, or where all are asked for the furthest; r2 if
    fewer lie within. */
-static float nearest_radius2(const photon_probe *probe, size_t k, float r2)
+static float nearest_radius2(const point_query *query, size_t k, float r2)
 {
     g_autoptr(GArray) found = g_array_new(FALSE, FALSE, sizeof(float));
     float distance2;
-    for (size_t i = 0; i < probe->store->n; i++)
-        if (counts(probe, i, r2, &distance2))
+    for (size_t i = 0; i < query->store->n; i++)
+        if (counts(query, i, r2, &distance2))
             g_array_append_val(found, distance2);
     g_array_sort(found, by_distance);
     if (found->len >= k)
@@ -63,20 +63,20 @@ static float nearest_radius2(const photon_probe *probe, size_t k, float r2)
 
 /* Squared radius of a class: the given one, or that which a render would gather in. */
 static float radius2_of(const NephPhotons *photons, int c, double radius,
-                        const photon_probe *probe)
+                        const point_query *query)
 {
     double own = photons->traced->statistics.radius[c];
     const settings *how = &photons->traced->plan.how;
     size_t nearest = (size_t)how->class_nearest[c] * (size_t)photons->traced->n_wholes;
     if (radius > 0.0)
         return square((float)radius);
-    if (nearest == 0 || probe->store->n == 0)
+    if (nearest == 0 || query->store->n == 0)
         return square((float)own);
-    return nearest_radius2(probe, nearest,
+    return nearest_radius2(query, nearest,
                            how->radius > 0.0 ? square((float)own) : INFINITY);
 }
 
-static void estimate_class(const NephPhotons *photons, int c, const photon_probe *probe,
+static void estimate_class(const NephPhotons *photons, int c, const point_query *query,
                            float r2, NephEstimate *out)
 {
     const photon_store *store = &photons->traced->stores[c];
@@ -88,7 +88,7 @@ static void estimate_class(const NephPhotons *photons, int c, const photon_probe
         return;
     out->radius[c] = (double)sqrtf(r2);
     for (size_t i = 0; i < store->n; i++) {
-        if (!counts(probe, i, r2, &distance2))
+        if (!counts(query, i, r2, &distance2))
             continue;
         sum += kernel_eval(&k, distance2, r2) * photon_store_get(store, i).flux;
         out->n[c]++;
@@ -104,8 +104,8 @@ void neph_photons_estimate(const NephPhotons *photons, const double point[3],
 {
     *out = (NephEstimate){0};
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        photon_probe probe = probe_at(photons, c, to_vec3(point), to_vec3(normal));
-        estimate_class(photons, c, &probe, radius2_of(photons, c, radius, &probe), out);
+        point_query query = query_at(photons, c, to_vec3(point), to_vec3(normal));
+        estimate_class(photons, c, &query, radius2_of(photons, c, radius, &query), out);
     }
 }
 
@@ -125,11 +125,11 @@ size_t neph_photons_near(const NephPhotons *photons, const double point[3],
     size_t offset = 0;
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         const photon_store *store = &photons->traced->stores[c];
-        photon_probe probe = probe_at(photons, c, to_vec3(point), to_vec3(normal));
-        float r2 = radius2_of(photons, c, radius, &probe);
+        point_query query = query_at(photons, c, to_vec3(point), to_vec3(normal));
+        float r2 = radius2_of(photons, c, radius, &query);
         for (size_t i = 0; i < store->n; i++) {
             neighbour one = {offset + i, 0.0f};
-            if (counts(&probe, i, r2, &one.distance2))
+            if (counts(&query, i, r2, &one.distance2))
                 g_array_append_val(found, one);
         }
         offset += render_photons_count(photons->traced, (photon_class)c);

@@ -29,7 +29,7 @@ enum { BLOCK = 64 }; /* size: of photons that are weighed at a time */
 typedef struct gather gather;
 
 struct gather {
-    photon_probe probe;
+    point_query query;
     const estimate_options *options;
     const bsdf *b;
     vec3 wo;
@@ -51,7 +51,7 @@ struct gather {
 /* Σ κ Φ */
 static spectrum weigh_plain(const gather *g, size_t begin, size_t end)
 {
-    const spectrum *flux = g->probe.store->flux;
+    const spectrum *flux = g->query.store->flux;
     spectrum even = {0}, odd = {0};
     size_t i = begin;
     for (; i + 2 <= end; i += 2) {
@@ -76,7 +76,7 @@ static float cosine_ratio(const gather *g, vec3 wi)
 /* Σ κ Φ |wi·n| / |wi·n_geom|, of those on the same side of both normals */
 static spectrum weigh_bent(const gather *g, size_t begin, size_t end)
 {
-    const photon_store *s = g->probe.store;
+    const photon_store *s = g->query.store;
     spectrum sum = {0};
     for (size_t i = begin; i < end; i++) {
         vec3 wi = direction_octahedron(s->wi[g->index[i]]);
@@ -93,7 +93,7 @@ static spectrum weigh_bsdf(const gather *g, size_t begin, size_t end)
     const estimate_options *options = g->options;
     spectrum sum = {0};
     for (size_t i = begin; i < end; i++) {
-        const photon_store *store = g->probe.store;
+        const photon_store *store = g->query.store;
         uint32_t packed = store->wi[g->index[i]];
         vec3 wi = direction_unpack(packed);
         bool delta = direction_flags(packed) & PHOTON_FROM_DELTA;
@@ -110,7 +110,7 @@ static void weigh_by_tag(gather *g)
 {
     for (size_t i = 0; i < g->n_block; i++) {
         spectrum part = g->weigh(g, i, i + 1);
-        g->groups[g->probe.store->tag[g->index[i]]] += part;
+        g->groups[g->query.store->tag[g->index[i]]] += part;
         g->sum += part;
     }
 }
@@ -118,7 +118,7 @@ static void weigh_by_tag(gather *g)
 /* Takes photons out of the block that the centre does not see. */
 static void leave_out_unseen(gather *g)
 {
-    const photon_store *s = g->probe.store;
+    const photon_store *s = g->query.store;
     size_t kept = 0;
     for (size_t i = 0; i < g->n_block; i++) {
         size_t k = g->index[i];
@@ -156,16 +156,16 @@ static void prefetch_flux(const photon_store *s, size_t i)
 static void gather_runs(const photon_run *runs, size_t n, void *data)
 {
     gather *g = data;
-    const photon_probe probe = g->probe;
+    const point_query query = g->query;
     const kernel kappa = g->options->kernel;
     const float r2 = g->r2, inv_r2 = g->inv_r2;
     for (const photon_run *run = runs; run < runs + n; run++) {
         for (size_t i = run->begin; i < run->end; i += LANES) {
             floats8 distance2;
-            unsigned bits = probe_block(&probe, i, run->end, r2, &distance2);
+            unsigned bits = query_block(&query, i, run->end, r2, &distance2);
             if (!bits)
                 continue;
-            prefetch_flux(probe.store, i);
+            prefetch_flux(query.store, i);
             floats8 weight = kernel_eval8(&kappa, distance2, inv_r2);
             g->n_block +=
                 pack8(weight, bits, i, g->weight + g->n_block, g->index + g->n_block);
@@ -204,8 +204,8 @@ static bool gather_within(gather *g, const photon_map *map, estimate_scratch *sc
     if (map->store.n == 0)
         return true;
     if (map->kind->runs)
-        map->kind->runs(map, g->probe.p, radius, gather_runs, g);
-    else if (!map->kind->within(map, &g->probe, radius, &scratch->hits))
+        map->kind->runs(map, g->query.p, radius, gather_runs, g);
+    else if (!map->kind->within(map, &g->query, radius, &scratch->hits))
         return false;
     gather_hits(g, &scratch->hits);
     return true;
@@ -224,7 +224,7 @@ static size_t furthest(const photon_hits *hits)
 static bool search_radius(const gather *g, const photon_map *map, size_t k,
                           photon_hits *hits, float *radius)
 {
-    photon_probe any = g->probe;
+    point_query any = g->query;
     any.curve = NULL;
     *radius = g->options->radius;
     if (!g->options->curve)
@@ -245,7 +245,7 @@ static bool gather_nearest(gather *g, const photon_map *map, estimate_scratch *s
     hits->n = 0;
     size_t k = MIN(options->nearest, map->store.n);
     if (k > 0 && (!search_radius(g, map, k, hits, &radius) ||
-                  !map->kind->nearest(map, &g->probe, k, radius, hits)))
+                  !map->kind->nearest(map, &g->query, k, radius, hits)))
         return false;
     set_radius2(g, radius * radius);
     bool all_found = hits->n == options->nearest;
@@ -293,8 +293,8 @@ static bool gather_part(gather *g, const photon_map *map, neighbourhood *hood,
     *area *= neighbourhood_coverage(hood, &within.kernel);
     g->options = &within;
     g->hood = hood;
-    g->probe.flat = true;
-    g->probe.inv_flatten = 1.0f / NEIGHBOURHOOD_FLATTEN;
+    g->query.flat = true;
+    g->query.inv_flatten = 1.0f / NEIGHBOURHOOD_FLATTEN;
     bool done = gather_once(g, map, scratch);
     g->options = options;
     g->hood = NULL;
@@ -318,13 +318,13 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
     bool done = gather_once(g, map, scratch);
     float area = kernel_area(&options->kernel, g->r2);
     neighbourhood hood = {.scene = options->scene,
-                          .p = g->probe.p,
-                          .n = g->probe.n,
+                          .p = g->query.p,
+                          .n = g->query.n,
                           .radius = root_within(g->r2),
                           .time = options->time};
     bool bounded = g->n > 0 && isfinite(hood.radius);
     if (options->curve && bounded)
-        area = flat_curve_area(options->curve, g->probe.p, hood.radius, &options->kernel);
+        area = flat_curve_area(options->curve, g->query.p, hood.radius, &options->kernel);
     else if (options->scene && bounded && !neighbourhood_is_whole(&hood))
         done = gather_part(g, map, &hood, scratch, &area) && done;
     scratch->failed |= !done;
@@ -365,7 +365,7 @@ spectrum photon_estimate(const photon_map *map, vec3 p, const bsdf *b, vec3 wo,
         .curve = flat ? scene_curve_of(flat->scene, flat->hit) : 0,
     };
     gather g;
-    g.probe = photon_probe_make(&map->store, p, &filter);
+    g.query = point_query_of(&map->store, p, &filter);
     g.options = options;
     g.b = b;
     g.wo = wo;
@@ -383,7 +383,7 @@ spectrum photon_irradiance(const photon_map *map, vec3 p, vec3 n_geom,
 {
     photon_filter filter = {.n = n_geom, .one_sided = true, .flatten = options->flatten};
     gather g;
-    g.probe = photon_probe_make(&map->store, p, &filter);
+    g.query = point_query_of(&map->store, p, &filter);
     g.options = options;
     g.weigh = weigh_plain;
     return estimate(&g, map, scratch, info);

@@ -252,8 +252,8 @@ static void test_ways_to_say_it(folder *f, gconstpointer data)
         "render box.pbrt -q -oa.pfm -sspp=2 -j1",
         "render box.pbrt -qoa.pfm -s spp=2 -j 1",
         "render -qj1 -oa.pfm --set spp=2 box.pbrt",
-        "render -q -j1 -o a.pfm --time 1000s --set 'spp = 2 samples/pixel' "
-        "--passes 2 -- box.pbrt",
+        ("render -q -j1 -o a.pfm --time 1000s --set 'spp = 2 samples/pixel' "
+         "--passes 2 -- box.pbrt"),
     };
     g_autofree char *path = g_build_filename(f->path, "a.pfm", NULL);
     g_autofree char *first = NULL;

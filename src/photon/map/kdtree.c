@@ -325,7 +325,7 @@ typedef struct kd_entry {
 } kd_entry;
 
 /* Squared distances from p to eight boxes. Each step rounds monotonely, so none exceeds
- * probe_distance2 of a point in the box. */
+ * query_distance2 of a point in the box. */
 static floats8 box_distances(const kd_group *group, vec3 p)
 {
     floats8 d[3];
@@ -361,7 +361,7 @@ void kdtree_nearest(const kdtree *tree, nearest_set *set)
         if (!(node.distance2 < set->limit))
             continue;
         if (node.level > 0)
-            top = push_sorted(tree, set->probe->p, node, set->limit, stack, top);
+            top = push_sorted(tree, set->query->p, node, set->limit, stack, top);
         else
             nearest_add_run(set, node.node * LEAF, MIN((node.node + 1) * LEAF, tree->n));
     }

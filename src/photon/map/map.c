@@ -52,23 +52,23 @@ bool photon_map_within(const photon_map *map, vec3 p, float radius,
                        const photon_filter *filter, photon_hits *hits)
 {
     hits->n = 0;
-    photon_probe probe = photon_probe_make(&map->store, p, filter);
-    return map->store.n == 0 || map->kind->within(map, &probe, radius, hits);
+    point_query query = point_query_of(&map->store, p, filter);
+    return map->store.n == 0 || map->kind->within(map, &query, radius, hits);
 }
 
 bool photon_map_nearest(const photon_map *map, vec3 p, size_t k, float radius,
                         const photon_filter *filter, photon_hits *hits)
 {
     hits->n = 0;
-    photon_probe probe = photon_probe_make(&map->store, p, filter);
+    point_query query = point_query_of(&map->store, p, filter);
     size_t wanted = MIN(k, map->store.n);
-    return wanted == 0 || map->kind->nearest(map, &probe, wanted, radius, hits);
+    return wanted == 0 || map->kind->nearest(map, &query, wanted, radius, hits);
 }
 
-bool photon_map_within_runs(const photon_map *map, const photon_probe *probe,
-                            float radius, photon_hits *hits)
+bool photon_map_within_runs(const photon_map *map, const point_query *query, float radius,
+                            photon_hits *hits)
 {
-    within_search search = {probe, hits, radius * radius, false};
-    map->kind->runs(map, probe->p, radius, within_runs, &search);
+    within_search search = {query, hits, radius * radius, false};
+    map->kind->runs(map, query->p, radius, within_runs, &search);
     return !search.refused;
 }

@@ -309,20 +309,20 @@ static float grow_radius(float radius, size_t n, size_t k)
 }
 
 /* Searches shells growing outwards until k photons are within the radius searched. */
-static bool grid_nearest(const photon_map *map, const photon_probe *probe, size_t k,
+static bool grid_nearest(const photon_map *map, const point_query *query, size_t k,
                          float radius, photon_hits *hits)
 {
     const grid *g = map->index;
     nearest_set set;
-    if (!nearest_begin(&set, probe, k, radius, hits))
+    if (!nearest_begin(&set, query, k, radius, hits))
         return false;
-    float all = radius_of_all(g, probe->p);
+    float all = radius_of_all(g, query->p);
     float largest = all < radius ? all : radius;
-    float r = guess_radius(map, probe->p, k, largest);
+    float r = guess_radius(map, query->p, k, largest);
     for (;; r = grow_radius(r, hits->n, k)) {
         bool last = !(r < largest);
         nearest_restart(&set, last ? radius : r);
-        grid_runs(map, probe->p, last ? radius : r, nearest_runs, &set);
+        grid_runs(map, query->p, last ? radius : r, nearest_runs, &set);
         if (last || hits->n >= k)
             break;
     }

@@ -30,11 +30,11 @@ static size_t map_kdtree_bytes(const photon_map *map)
     return kdtree_bytes(map->index);
 }
 
-static bool map_kdtree_nearest(const photon_map *map, const photon_probe *probe, size_t k,
+static bool map_kdtree_nearest(const photon_map *map, const point_query *query, size_t k,
                                float radius, photon_hits *hits)
 {
     nearest_set set;
-    if (!nearest_begin(&set, probe, k, radius, hits))
+    if (!nearest_begin(&set, query, k, radius, hits))
         return false;
     kdtree_nearest(map->index, &set);
     return true;

@@ -17,9 +17,9 @@ typedef struct photon_map_kind {
     void (*runs)(const photon_map *map, vec3 p, float radius, photon_run_visitor visit,
                  void *data);
     /* Both add to empty hits, in no order; false when memory is refused. */
-    bool (*within)(const photon_map *map, const photon_probe *probe, float radius,
+    bool (*within)(const photon_map *map, const point_query *query, float radius,
                    photon_hits *hits);
-    bool (*nearest)(const photon_map *map, const photon_probe *probe, size_t k,
+    bool (*nearest)(const photon_map *map, const point_query *query, size_t k,
                     float radius, photon_hits *hits);
 } photon_map_kind;
 
@@ -34,5 +34,5 @@ struct photon_map {
 #undef MAP
 
 /** @brief photon_map_kind.within by way of runs, eight at a time. */
-bool photon_map_within_runs(const photon_map *map, const photon_probe *probe,
-                            float radius, photon_hits *hits);
+bool photon_map_within_runs(const photon_map *map, const point_query *query, float radius,
+                            photon_hits *hits);

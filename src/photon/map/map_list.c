@@ -23,12 +23,12 @@ static size_t list_bytes(const photon_map *map)
     return 0;
 }
 
-static bool list_within(const photon_map *map, const photon_probe *probe, float radius,
+static bool list_within(const photon_map *map, const point_query *query, float radius,
                         photon_hits *hits)
 {
     for (size_t i = 0; i < map->store.n; i++) {
-        float distance2 = probe_distance2(probe, i);
-        if (!(distance2 < radius * radius) || !probe_accepts(probe, i))
+        float distance2 = query_distance2(query, i);
+        if (!(distance2 < radius * radius) || !query_accepts(query, i))
             continue;
         if (!photon_hits_reserve(hits, hits->n + 1))
             return false;
@@ -75,15 +75,15 @@ static void sift_down(const photon_store *s, photon_hits *heap)
     }
 }
 
-static bool list_nearest(const photon_map *map, const photon_probe *probe, size_t k,
+static bool list_nearest(const photon_map *map, const point_query *query, size_t k,
                          float radius, photon_hits *hits)
 {
     const photon_store *s = &map->store;
     if (!photon_hits_reserve(hits, k))
         return false;
     for (size_t i = 0; i < s->n; i++) {
-        float distance2 = probe_distance2(probe, i);
-        if (!(distance2 < radius * radius) || !probe_accepts(probe, i))
+        float distance2 = query_distance2(query, i);
+        if (!(distance2 < radius * radius) || !query_accepts(query, i))
             continue;
         if (hits->n < k) {
             hits->index[hits->n] = i;

@@ -30,11 +30,11 @@ bool nearest_before(const photon_store *s, size_t a, float da, size_t b, float d
     return (order ? order : compare_photons(s, a, b)) < 0;
 }
 
-bool nearest_begin(nearest_set *set, const photon_probe *probe, size_t k, float radius,
+bool nearest_begin(nearest_set *set, const point_query *query, size_t k, float radius,
                    photon_hits *hits)
 {
     size_t full = 2 * k + LANES;
-    *set = (nearest_set){.probe = probe, .hits = hits, .k = k, .full = full};
+    *set = (nearest_set){.query = query, .hits = hits, .k = k, .full = full};
     /* Above the buffer lies room for the copy that quickselect works on. */
     bool ok = photon_hits_reserve(hits, 2 * (full + LANES));
     nearest_restart(set, radius);
@@ -90,26 +90,26 @@ static float select_value(float *a, size_t n, size_t rank)
 
 /* Of those at one distance: photons by all that they are, other points by place and
    number. */
-static int compare_ties(const photon_probe *probe, size_t a, size_t b)
+static int compare_ties(const point_query *query, size_t a, size_t b)
 {
-    if (probe->store)
-        return compare_photons(probe->store, a, b);
-    int order = compare(probe->x[a], probe->x[b]);
-    order = order ? order : compare(probe->y[a], probe->y[b]);
-    order = order ? order : compare(probe->z[a], probe->z[b]);
-    size_t i = probe->number[a], j = probe->number[b];
+    if (query->store)
+        return compare_photons(query->store, a, b);
+    int order = compare(query->x[a], query->x[b]);
+    order = order ? order : compare(query->y[a], query->y[b]);
+    order = order ? order : compare(query->z[a], query->z[b]);
+    size_t i = query->number[a], j = query->number[b];
     return order ? order : (i > j) - (i < j);
 }
 
 /* Hoare's partition of index[low, high); returns where the upper part begins. */
-static size_t partition_ties(const photon_probe *probe, size_t *index, size_t low,
+static size_t partition_ties(const point_query *query, size_t *index, size_t low,
                              size_t high)
 {
     size_t pivot = index[low + (high - low - 1) / 2], i = low, j = high - 1;
     for (;; i++, j--) {
-        while (compare_ties(probe, index[i], pivot) < 0)
+        while (compare_ties(query, index[i], pivot) < 0)
             i++;
-        while (compare_ties(probe, index[j], pivot) > 0)
+        while (compare_ties(query, index[j], pivot) > 0)
             j--;
         if (i >= j)
             return j + 1;
@@ -120,11 +120,11 @@ static size_t partition_ties(const photon_probe *probe, size_t *index, size_t lo
 }
 
 /* Moves the k first of index[0, n) to its front. */
-static void select_ties(const photon_probe *probe, size_t *index, size_t n, size_t k)
+static void select_ties(const point_query *query, size_t *index, size_t n, size_t k)
 {
     size_t low = 0, high = n;
     while (high - low > 1 && k > low && k < high) {
-        size_t split = partition_ties(probe, index, low, high);
+        size_t split = partition_ties(query, index, low, high);
         if (k < split)
             high = split;
         else
@@ -163,7 +163,7 @@ void nearest_cut(nearest_set *set)
     size_t nearer = keep_nearer(hits, kth, ties);
     size_t wanted = set->k - nearer;
     if (hits->n > set->k)
-        select_ties(set->probe, ties, hits->n - nearer, wanted);
+        select_ties(set->query, ties, hits->n - nearer, wanted);
     for (size_t i = 0; i < wanted; i++) {
         hits->index[nearer + i] = ties[i];
         hits->distance2[nearer + i] = kth;
@@ -177,7 +177,7 @@ void nearest_add_run(nearest_set *set, size_t begin, size_t end)
     photon_hits *hits = set->hits;
     for (size_t i = begin; i < end; i += LANES) {
         floats8 distance2;
-        unsigned bits = probe_block(set->probe, i, end, set->limit, &distance2);
+        unsigned bits = query_block(set->query, i, end, set->limit, &distance2);
         if (!bits)
             continue;
         hits->n +=

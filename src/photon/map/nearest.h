@@ -11,7 +11,7 @@
 #include "photon/map/runs.h"
 
 typedef struct nearest_set {
-    const photon_probe *probe;
+    const point_query *query;
     photon_hits *hits;
     size_t k;
     size_t full; /**< cut back when more than this are held */
@@ -19,7 +19,7 @@ typedef struct nearest_set {
 } nearest_set;
 
 /** @brief An empty set of at most k photons within radius; false if memory is refused. */
-bool nearest_begin(nearest_set *set, const photon_probe *probe, size_t k, float radius,
+bool nearest_begin(nearest_set *set, const point_query *query, size_t k, float radius,
                    photon_hits *hits);
 /** @brief Empties the set and sets a new radius. */
 void nearest_restart(nearest_set *set, float radius);

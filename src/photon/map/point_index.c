@@ -95,9 +95,9 @@ vec3 point_index_position(const point_index *index, size_t place)
     return vec3_make(index->x[place], index->y[place], index->z[place]);
 }
 
-static photon_probe probe_at(const point_index *index, vec3 p)
+static point_query query_at(const point_index *index, vec3 p)
 {
-    return (photon_probe){
+    return (point_query){
         .number = index->number, .x = index->x, .y = index->y, .z = index->z, .p = p};
 }
 
@@ -114,14 +114,14 @@ bool point_index_within(const point_index *index, vec3 p, float radius, photon_h
     if (!index->tree)
         return true;
     const point_arrays points = arrays_of(index);
-    const photon_probe probe = probe_at(index, p);
-    within_search search = {&probe, hits, radius * radius, false};
+    const point_query query = query_at(index, p);
+    within_search search = {&query, hits, radius * radius, false};
     kdtree_runs(index->tree, &points, p, radius, within_runs, &search);
     name_hits(index, hits);
     return !search.refused;
 }
 
-static bool find_nearest(const point_index *index, const photon_probe *probe, size_t k,
+static bool find_nearest(const point_index *index, const point_query *query, size_t k,
                          float radius, photon_hits *hits)
 {
     hits->n = 0;
@@ -129,7 +129,7 @@ static bool find_nearest(const point_index *index, const photon_probe *probe, si
     nearest_set set;
     if (wanted == 0)
         return true;
-    if (!nearest_begin(&set, probe, wanted, radius, hits))
+    if (!nearest_begin(&set, query, wanted, radius, hits))
         return false;
     kdtree_nearest(index->tree, &set);
     name_hits(index, hits);
@@ -139,16 +139,16 @@ static bool find_nearest(const point_index *index, const photon_probe *probe, si
 bool point_index_nearest(const point_index *index, vec3 p, size_t k, float radius,
                          photon_hits *hits)
 {
-    const photon_probe probe = probe_at(index, p);
-    return find_nearest(index, &probe, k, radius, hits);
+    const point_query query = query_at(index, p);
+    return find_nearest(index, &query, k, radius, hits);
 }
 
 bool point_index_nearest_facing(const point_index *index, vec3 p, vec3 n, size_t k,
                                 float radius, photon_hits *hits)
 {
-    photon_probe probe = probe_at(index, p);
-    probe.wi = index->normal;
-    probe.n = n;
-    probe.one_sided = true;
-    return find_nearest(index, &probe, k, radius, hits);
+    point_query query = query_at(index, p);
+    query.wi = index->normal;
+    query.n = n;
+    query.one_sided = true;
+    return find_nearest(index, &query, k, radius, hits);
 }

@@ -31,10 +31,10 @@ bool photon_hits_reserve(photon_hits *hits, size_t capacity)
 static void within_run(size_t begin, size_t end, within_search *search)
 {
     photon_hits *hits = search->hits;
-    const photon_probe probe = *search->probe;
+    const point_query query = *search->query;
     for (size_t i = begin; i < end; i += LANES) {
         floats8 distance2;
-        unsigned bits = probe_block(&probe, i, end, search->radius2, &distance2);
+        unsigned bits = query_block(&query, i, end, search->radius2, &distance2);
         if (!bits)
             continue;
         if (search->refused || !photon_hits_reserve(hits, hits->n + LANES)) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "photon/map/map.h"
-#include "photon/probe.h"
+#include "photon/map/query.h"
 
 /** @brief Positions of n points; borrowed. The arrays go on behind them for at least one
  * SIMD block, so that eight may be loaded from any. */
@@ -72,7 +72,7 @@ bool photon_hits_reserve(photon_hits *hits, size_t capacity);
 
 /** @brief A search for all points within a radius, by runs. */
 typedef struct within_search {
-    const photon_probe *probe;
+    const point_query *query;
     photon_hits *hits;
     float radius2;
     bool refused; /**< memory was */

@@ -1,0 +1,151 @@
+/*
+ * The query: what each photon is tested with, prepared once a search. The scalar form
+ * is what "found" means; the form for eight gives the same bits.
+ *
+ *   distance2   (dx² + dy²) + dz², or (d·n / flatten)² where that is larger
+ *   accepted    where photons keep curves: it is on the same one, or on none
+ *               where photons keep normals: the photon's surface is not turned by more
+ *               than 60 degrees, so that walls at a corner are told apart
+ *               one-sided: the photon's direction lies on the side of n
+ *               of one face: its direction and its flag say that its own surface lies
+ *               alike, or it lies in the plane, |d·n|² < 1e-5 |d|² (so that triangles of
+ *               a sheet may be wound as they like)
+ *
+ * Rounding is monotone at each step, so |dx| < r holds in floats for every photon within
+ * r: a structure that looks at all x in [p - r, p + r] misses none.
+ */
+#pragma once
+
+#include "photon/direction.h"
+#include "photon/map/map.h"
+
+typedef struct point_query {
+    const photon_store *store; /* NULL: of points that are no photons (point_index.h) */
+    const size_t *number;      /* of those, their owner's */
+    const float *x, *y, *z;    /* of the store or the points */
+    const uint32_t *wi; /* what one_sided and face look at: of points their normals */
+    const uint32_t *normal, *curve; /* NULL if they keep none */
+    vec3 p;
+    vec3 n;
+    bool one_sided, flat;
+    int face;
+    uint32_t on_curve;
+    float inv_flatten;
+} point_query;
+
+static inline point_query point_query_of(const photon_store *store, vec3 p,
+                                         const photon_filter *filter)
+{
+    point_query query = {.store = store, .p = p};
+    query.x = store->x;
+    query.y = store->y;
+    query.z = store->z;
+    query.wi = store->wi;
+    if (filter) {
+        bool on_curve = filter->curve != 0;
+        query.normal = on_curve ? NULL : store->normal;
+        query.curve = store->home;
+        query.on_curve = filter->curve;
+        query.n = filter->n;
+        query.one_sided = filter->one_sided;
+        query.face = on_curve ? 0 : filter->face;
+        query.flat = !on_curve && filter->flatten < 1.0f;
+        query.inv_flatten = 1.0f / fmaxf(filter->flatten, 1e-3f);
+    }
+    return query;
+}
+
+/** @brief Squared distance to photon i. */
+static inline float query_distance2(const point_query *query, size_t i)
+{
+    const photon_store *s = query->store;
+    float x = s->x[i] - query->p[0], y = s->y[i] - query->p[1], z = s->z[i] - query->p[2];
+    float d2 = fused(z, z, fused(y, y, x * x));
+    if (!query->flat)
+        return d2;
+    float dot = fused(z, query->n[2], fused(y, query->n[1], x * query->n[0]));
+    float height = dot * query->inv_flatten;
+    float height2 = height * height;
+    return height2 > d2 ? height2 : d2;
+}
+
+/** @brief Squared sine of the elevation over the plane within which any face is the same.
+ */
+#define SAME_PLANE 1e-5f
+
+/** @brief True if photon i lies on the query's face, or in its plane. */
+static inline bool query_is_face(const point_query *query, size_t i)
+{
+    const photon_store *s = query->store;
+    bool above = direction_dot(query->wi[i], query->n) > 0.0f;
+    bool behind = direction_flags(query->wi[i]) & PHOTON_BEHIND;
+    if (above == (behind == (query->face < 0)))
+        return true;
+    float x = s->x[i] - query->p[0], y = s->y[i] - query->p[1], z = s->z[i] - query->p[2];
+    float dot = fused(z, query->n[2], fused(y, query->n[1], x * query->n[0]));
+    return dot * dot <= SAME_PLANE * fused(z, z, fused(y, y, x * x));
+}
+
+/** @brief Squared cosine of the angle from which on surfaces are not the same. */
+#define SAME_SURFACE 0.25f
+
+/** @brief True if the surface of photon i is not turned away from the query's. */
+static inline bool query_is_alike(const point_query *query, size_t i)
+{
+    vec3 o = direction_octahedron(query->normal[i]);
+    float dot = direction_dot(query->normal[i], query->n);
+    return dot * dot > SAME_SURFACE * fused(o[2], o[2], fused(o[1], o[1], o[0] * o[0]));
+}
+
+static inline bool query_accepts(const point_query *query, size_t i)
+{
+    if (query->curve && query->curve[i] != query->on_curve)
+        return false;
+    if (query->normal && !query_is_alike(query, i))
+        return false;
+    if (query->face && !query_is_face(query, i))
+        return false;
+    return !query->one_sided || direction_dot(query->wi[i], query->n) > 0.0f;
+}
+
+/** @brief query_distance2 of photons i .. i + 7. */
+static inline floats8 query_distance2_8(const point_query *query, size_t i)
+{
+    floats8 x = load8(query->x + i) - query->p[0], y = load8(query->y + i) - query->p[1],
+            z = load8(query->z + i) - query->p[2];
+    floats8 d2 = fused8(z, z, fused8(y, y, x * x));
+    if (!query->flat)
+        return d2;
+    floats8 nx = fill8(query->n[0]), ny = fill8(query->n[1]), nz = fill8(query->n[2]);
+    floats8 height = fused8(z, nz, fused8(y, ny, x * nx)) * query->inv_flatten;
+    return max8(height * height, d2);
+}
+
+/** @brief Bits of those photons of i .. min(i + 8, end) - 1 that are accepted and nearer
+ * than limit; *distance2 of all. */
+static inline unsigned query_block(const point_query *query, size_t i, size_t end,
+                                   float limit, floats8 *distance2)
+{
+    *distance2 = query_distance2_8(query, i);
+    unsigned bits = bits8(*distance2 < limit);
+    if (end - i < LANES)
+        bits &= (1u << (end - i)) - 1u;
+    if (bits && query->one_sided) {
+        directions8 wi = directions8_load(query->wi + i);
+        bits &= bits8(directions8_dot(wi, query->n) > 0.0f);
+    }
+    if (bits && query->normal) {
+        directions8 n = directions8_load(query->normal + i);
+        floats8 dot = directions8_dot(n, query->n);
+        floats8 length2 = fused8(n.z, n.z, fused8(n.y, n.y, n.x * n.x));
+        bits &= bits8(dot * dot > SAME_SURFACE * length2);
+    }
+    for (unsigned left = query->curve || query->face ? bits : 0u; left;
+         left &= left - 1u) {
+        size_t lane = (size_t)__builtin_ctz(left);
+        bool alike = !query->curve || query->curve[i + lane] == query->on_curve;
+        if (!alike || (query->face && !query_is_face(query, i + lane)))
+            bits &= ~(1u << lane);
+    }
+    return bits;
+}
