@@ -123,10 +123,6 @@ static inline bool vcm_ends_light(const vcm_pass *pass, const surface_hit *hit)
  */
 bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **error);
 
-/** @brief Vertices of a light subpath per square metre around p, on average, by the
- * plan's vertex_radii; 0: too few to tell. @param hits scratch */
-float vcm_density_at(const transport_plan *plan, vec3 p, photon_hits *hits);
-
 /** @brief Of a vertex that chance has led to: one over one more than the light
  * vertices that merging finds there. @param hits scratch */
 float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, photon_hits *hits);

@@ -7,20 +7,8 @@
 #include "transport/plan/work.h"
 #include "transport/vcm/vcm.h"
 
-#include <float.h>
-
 /* id: a pass that no render reaches. */
 #define PILOT_PASS 0xfffffffeu
-
-float vcm_density_at(const transport_plan *plan, vec3 p, photon_hits *hits)
-{
-    float radius = radius_cache_at(plan->vertex_radii, p, 0.0f, hits);
-    if (!(radius > 0.0f))
-        return 0.0f;
-    float density =
-        RADIUS_NEAREST / (PI_F * square(radius) * (float)plan->n_vertex_paths);
-    return isfinite(density) ? density : FLT_MAX;
-}
 
 static bool nearest(const void *vertices, vec3 p, photon_hits *hits)
 {

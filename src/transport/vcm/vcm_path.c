@@ -1,6 +1,8 @@
 /* What light and camera subpaths have in common. */
 #include "transport/vcm/vcm.h"
 
+#include <float.h>
+
 lobe_pair vcm_scatter(const vcm_vertex *v, vec3 wi, transport_mode mode)
 {
     static const unsigned classes[2] = {LOBE_DIFFUSE, LOBE_GLOSSY};
@@ -89,11 +91,23 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
     return cosine > 0.0f && !spectrum_is_black(walk->at.throughput);
 }
 
+/* Vertices of a light subpath per square metre around p, on average, by the plan's
+   vertex_radii; 0: too few to tell. */
+static float density_at(const transport_plan *plan, vec3 p, photon_hits *hits)
+{
+    float radius = radius_cache_at(plan->vertex_radii, p, 0.0f, hits);
+    if (!(radius > 0.0f))
+        return 0.0f;
+    float density =
+        RADIUS_NEAREST / (PI_F * square(radius) * (float)plan->n_vertex_paths);
+    return isfinite(density) ? density : FLT_MAX;
+}
+
 float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, photon_hits *hits)
 {
     if (!pass->plan->vertex_radii)
         return 1.0f;
     vec3 p = scene_hit_place(pass->scene, hit);
-    float within = pass->ratios.merge * vcm_density_at(pass->plan, p, hits);
+    float within = pass->ratios.merge * density_at(pass->plan, p, hits);
     return 1.0f / (1.0f + fminf(within, 1e6f));
 }

@@ -75,7 +75,8 @@ static void import(out *o, given_files *files, const char *model)
     struct aiFileIO io = given_files_io(files);
     const struct aiScene *scene = aiImportFileEx(model, STEPS, &io);
     if (!scene)
-        fail(o, aiGetErrorString());
+        fail(o, aiGetErrorString()); /* does not return */
+    /* cppcheck-suppress nullPointerRedundantCheck */
     if (!scene->mRootNode || scene->mNumMeshes == 0)
         out_fail(o, STREAM_DAMAGED, "expected a mesh, found none");
     tell_scene(o, scene);
