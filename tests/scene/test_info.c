@@ -1,7 +1,7 @@
 /*
  * info: what is warned of, and what is not.
  */
-#include "api/describe.h"
+#include "api/describe/describe.h"
 #include "json_check.h"
 #include "nephroid/nephroid.h"
 #include "scene_text.h"

@@ -1,7 +1,7 @@
 /*
  * What a scene's settings are, where they are not the defaults.
  */
-#include "api/describe.h"
+#include "api/describe/describe.h"
 
 #include <string.h>
 

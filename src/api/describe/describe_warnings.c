@@ -4,7 +4,7 @@
  * skies seen from behind their portal or through fog that hides them, lamps that are not
  * in the medium one sees them through, scenes of strange size.
  */
-#include "api/describe.h"
+#include "api/describe/describe.h"
 
 #include "scene/advance.h"
 #include "scene/scene_media.h"

@@ -1,4 +1,4 @@
-#include "api/describe.h"
+#include "api/describe/describe.h"
 
 #include "base/memory.h"
 
