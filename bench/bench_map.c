@@ -5,10 +5,10 @@
  *
  *   bench_map [photons, default 1000000] [queries, default 20000]
  */
+#include "bsdf/bsdf_models.h"
 #include "math/sampler.h"
 #include "math/warp.h"
 #include "photon/estimate.h"
-#include "bsdf/bsdf_models.h"
 
 #include <glib.h>
 #include <stdio.h>
@@ -229,7 +229,7 @@ int main(int argc, char **argv)
 {
     bench b = {.n_photons = argc > 1 ? (size_t)atof(argv[1]) : 1000000,
                .n_queries = argc > 2 ? (size_t)atof(argv[2]) : 20000};
-    b.wall = (bsdf){.lane = ALL_LANES};
+    b.wall = (bsdf){.wavelength = ALL_WAVELENGTHS};
     bsdf_make_diffuse(&b.wall, spectrum_fill(0.5f));
     make_photons(&b);
     make_queries(&b);

@@ -60,7 +60,7 @@ static void prober_init(prober *p, const material *m, double incidence, int offs
     p->w = wavelengths_at(((float)offset + 0.5f) / OFFSETS);
     p->white = curve_eval(d65, &p->w) / curve_photometric(d65);
     p->light = direction_at(-incidence);
-    material_bsdf(m, &hit, &p->w, ALL_LANES, &options, &p->bsdf);
+    material_bsdf(m, &hit, &p->w, ALL_WAVELENGTHS, &options, &p->bsdf);
 }
 
 static void add_color(const prober *p, spectrum value, float share, float rgb[3])

@@ -128,7 +128,8 @@ bool bsdf_sample_direction(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigne
 {
     local_direction o, i;
     bool photon = mode == TRANSPORT_IMPORTANCE;
-    out->lane = b->lane; /* a model sets the rest, these only if it changes them */
+    out->wavelength =
+        b->wavelength; /* a model sets the rest, these only if it changes them */
     out->eta = 1.0f;
     if (b->is_phase)
         return b->ops->sample(b, wo, u_lobe, u, lobes, mode, out);
@@ -166,7 +167,8 @@ unsigned bsdf_choose_class(const bsdf *b, vec3 wo, vec3 wi, transport_mode mode,
 void bsdf_settle_class(const bsdf *b, vec3 wo, transport_mode mode, float u,
                        bsdf_sample *drawn)
 {
-    bool is_dispersed = drawn->lane != b->lane; /* the weight has one lane of f */
+    bool is_dispersed =
+        drawn->wavelength != b->wavelength; /* the weight has one wavelength of f */
     spectrum f;
     if (!bsdf_has_both(b) || (drawn->lobe & LOBE_SPECULAR) || is_dispersed)
         return;

@@ -41,7 +41,7 @@ typedef enum lobe_flags {
 
 typedef enum transport_mode { TRANSPORT_RADIANCE, TRANSPORT_IMPORTANCE } transport_mode;
 
-enum { ALL_LANES = -1, BSDF_DATA_SIZE = 320 };
+enum { ALL_WAVELENGTHS = -1, BSDF_DATA_SIZE = 320 };
 
 struct bsdf_ops;
 
@@ -51,7 +51,7 @@ typedef struct bsdf {
     frame shading; /**< n is the shading normal, s along dpdu */
     vec3 n_geom;
     unsigned lobes;  /**< the classes and sides present */
-    int lane;        /**< the one lane a dispersed path keeps, or ALL_LANES */
+    int wavelength;  /**< the one wavelength a dispersed path keeps, or ALL_WAVELENGTHS */
     bool is_phase;   /**< a phase function: of a point in a medium, which has no surface;
                         it acts in world space, and its cosines are one */
     bool lambertian; /**< the DIFFUSE lobes are rho/pi, reflection only, both sides alike
@@ -63,14 +63,14 @@ typedef struct bsdf {
 /** @brief One sampled direction. */
 typedef struct bsdf_sample {
     vec3 wi;
-    spectrum
-        weight; /**< f |cos| / pdf with all corrections for the mode; multiply the path's
-                     throughput by it. A dispersed sample has one lane, times eight. */
-    float pdf;  /**< pdf_solid_angle of wi (all sampled lobes); probability if specular */
+    spectrum weight; /**< f |cos| / pdf with all corrections for the mode; multiply the
+                        path's throughput by it. A dispersed sample has one wavelength,
+                        times eight. */
+    float pdf; /**< pdf_solid_angle of wi (all sampled lobes); probability if specular */
     unsigned
-        lobe;  /**< the class and side that was sampled, e.g. SPECULAR | TRANSMISSION */
-    int lane;  /**< the lane kept from here on, or ALL_LANES */
-    float eta; /**< η of the far side over this side if transmitted, else 1 */
+        lobe; /**< the class and side that was sampled, e.g. SPECULAR | TRANSMISSION */
+    int wavelength; /**< the wavelength kept from here on, or ALL_WAVELENGTHS */
+    float eta;      /**< η of the far side over this side if transmitted, else 1 */
 } bsdf_sample;
 
 /** @brief f(wo, wi), sr⁻¹, of the lobes chosen by mask (classes and sides; specular ones
@@ -126,7 +126,7 @@ spectrum bsdf_albedo(const bsdf *b, vec3 wo, unsigned lobes);
 /** @brief Henyey and Greenstein's phase function ("Diffuse radiation in the Galaxy",
  * 1941) of light that a medium scatters: a whole bsdf, of which nothing need be set.
  * @param g mean cosine, -1 < g < 1 */
-void bsdf_make_phase(bsdf *b, float g, int lane);
+void bsdf_make_phase(bsdf *b, float g, int wavelength);
 
 /* ---- For materials: the same in the local frame, n = +z ---- */
 

@@ -28,9 +28,9 @@ typedef struct coated {
         albedo; /* of the base for light that reached it: ρ times series and escape */
     spectrum eta;
     ggx roughness;
-    bool grey_eta; /* eta is the same in all lanes */
+    bool grey_eta; /* eta is the same in all wavelengths */
     const coat_table *table;
-    coat_response coat; /* in lane 0 */
+    coat_response coat; /* in wavelength 0 */
 } coated;
 
 _Static_assert(sizeof(coated) <= BSDF_DATA_SIZE, "a coated base must fit");
@@ -54,12 +54,12 @@ static unsigned coat_lobe(const coated *c)
 
 typedef float (*coat_function)(const coat_response *c, float mu);
 
-static spectrum over_lanes(const coated *c, coat_function f, vec3 w)
+static spectrum over_wavelengths(const coated *c, coat_function f, vec3 w)
 {
     if (c->grey_eta)
         return spectrum_fill(f(&c->coat, w[2]));
     spectrum out;
-    for (int i = 0; i < N_LANES; i++) {
+    for (int i = 0; i < N_WAVELENGTHS; i++) {
         const coat_response at = coat_find(c->table, c->roughness.alpha_x, c->eta[i]);
         out[i] = f(&at, w[2]);
     }
@@ -71,7 +71,7 @@ static choice wanted_of(const coated *c, vec3 o, unsigned lobes)
     choice out = {.coat = lobe_wanted(lobes, coat_lobe(c)),
                   .base = lobe_wanted(lobes, BASE)};
     if (out.base)
-        out.in = over_lanes(c, coat_crossing, o);
+        out.in = over_wavelengths(c, coat_crossing, o);
     return out;
 }
 
@@ -82,8 +82,8 @@ static choice choose(const bsdf *b, vec3 o, unsigned lobes)
     out.p_coat = out.coat ? 1.0f : 0.0f;
     if (!out.coat || !out.base)
         return out;
-    float coat = lane_mean(b, over_lanes(c, coat_reflected, o));
-    float base = lane_mean(b, c->albedo * out.in);
+    float coat = wavelength_mean(b, over_wavelengths(c, coat_reflected, o));
+    float base = wavelength_mean(b, c->albedo * out.in);
     if (base > 0.0f)
         out.p_coat = coat / (coat + base);
     return out;
@@ -116,9 +116,9 @@ static spectrum eval_above(const coated *c, const choice *wanted, const facets *
 {
     spectrum f = {0};
     if (has_facets(c, wanted))
-        f += fresnel_dielectric_lanes(met->cosine, c->eta) * met->density;
+        f += fresnel_dielectric_wavelengths(met->cosine, c->eta) * met->density;
     if (wanted->base)
-        f += c->base * wanted->in * over_lanes(c, coat_crossing, i);
+        f += c->base * wanted->in * over_wavelengths(c, coat_crossing, i);
     return f;
 }
 
@@ -169,7 +169,7 @@ static void mirror(const coated *c, const choice *wanted, vec3 o, bsdf_sample *o
 {
     out->wi = vec3_make(-o[0], -o[1], o[2]);
     out->pdf = wanted->p_coat;
-    out->weight = fresnel_dielectric_lanes(o[2], c->eta) / out->pdf;
+    out->weight = fresnel_dielectric_wavelengths(o[2], c->eta) / out->pdf;
     out->lobe = LOBE_SPECULAR | LOBE_REFLECTION;
 }
 
@@ -207,9 +207,9 @@ static spectrum coated_albedo(const bsdf *b, vec3 wo, unsigned lobes)
     vec3 o = flip_z(wo, wo[2] < 0.0f);
     spectrum sum = {0};
     if (lobe_wanted(lobes, coat_lobe(c)))
-        sum += over_lanes(c, coat_reflected, o);
+        sum += over_wavelengths(c, coat_reflected, o);
     if (lobe_wanted(lobes, BASE))
-        sum += c->albedo * over_lanes(c, coat_crossing, o);
+        sum += c->albedo * over_wavelengths(c, coat_crossing, o);
     return sum;
 }
 
@@ -228,9 +228,9 @@ static spectrum series(spectrum x, int n)
     return sum;
 }
 
-static bool same_in_all_lanes(spectrum s)
+static bool same_in_all_wavelengths(spectrum s)
 {
-    for (int i = 1; i < N_LANES; i++)
+    for (int i = 1; i < N_WAVELENGTHS; i++)
         if (fabsf(s[i] - s[0]) > 1e-6f * s[0])
             return false;
     return true;
@@ -249,12 +249,12 @@ void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, float alpha,
     coated *c = (void *)b->data;
     *c = (coated){.eta = eta,
                   .roughness = ggx_make(alpha, alpha),
-                  .grey_eta = same_in_all_lanes(eta),
+                  .grey_eta = same_in_all_wavelengths(eta),
                   .table = table,
                   .coat = coat_find(table, alpha, eta[0])};
     spectrum internal = spectrum_fill(coat_internal(&c->coat));
     spectrum escape = spectrum_fill(coat_escape(&c->coat));
-    for (int i = 1; i < N_LANES && !c->grey_eta; i++) {
+    for (int i = 1; i < N_WAVELENGTHS && !c->grey_eta; i++) {
         const coat_response at = coat_find(table, alpha, eta[i]);
         internal[i] = coat_internal(&at);
         escape[i] = coat_escape(&at);

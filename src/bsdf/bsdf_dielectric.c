@@ -1,11 +1,12 @@
 /*
- * The smooth boundary between two dielectrics. Where the index differs between lanes, a
- * reflected ray keeps them all, each with its own Fresnel weight; a refracted one goes
- * the way of one lane, chosen at random, and keeps only that.
+ * The smooth boundary between two dielectrics. Where the index differs between
+ * wavelengths, a reflected ray keeps them all, each with its own Fresnel weight; a
+ * refracted one goes the way of one wavelength, chosen at random, and keeps only that.
  *
  * Choices are made in this order, so that weights are as even as they can be: first the
- * lane, uniformly, then reflection with that lane's Fresnel reflectance. The probability
- * of reflection is then the mean over lanes, and a refracted lane weighs exactly eight.
+ * wavelength, uniformly, then reflection with that wavelength's Fresnel reflectance. The
+ * probability of reflection is then the mean over wavelengths, and a refracted wavelength
+ * weighs exactly eight.
  */
 #include "bsdf/bsdf_dielectric.h"
 
@@ -20,21 +21,21 @@ spectrum dielectric_eta(const bsdf *b, vec3 wo)
     return wo[2] < 0.0f ? 1.0f / d->eta : d->eta;
 }
 
-int dielectric_pick_lane(const bsdf *b, float *u)
+int dielectric_pick_wavelength(const bsdf *b, float *u)
 {
-    if (b->lane != ALL_LANES)
-        return b->lane;
+    if (b->wavelength != ALL_WAVELENGTHS)
+        return b->wavelength;
     if (!data_of(b)->disperses)
         return 0;
-    float x = *u * N_LANES;
-    int lane = (int)x;
-    *u = x - (float)lane;
-    return lane;
+    float x = *u * N_WAVELENGTHS;
+    int wavelength = (int)x;
+    *u = x - (float)wavelength;
+    return wavelength;
 }
 
-static bool splits_lanes(const bsdf *b)
+static bool splits_wavelengths(const bsdf *b)
 {
-    return b->lane == ALL_LANES && data_of(b)->disperses;
+    return b->wavelength == ALL_WAVELENGTHS && data_of(b)->disperses;
 }
 
 /* Without loss there is only total reflection. */
@@ -44,10 +45,10 @@ static float reflectance(const bsdf *b, float cos_o, float eta)
     return data_of(b)->lossless && r < 1.0f ? 0.0f : r;
 }
 
-static spectrum reflectance_lanes(const bsdf *b, float cos_o, spectrum eta)
+static spectrum reflectance_wavelengths(const bsdf *b, float cos_o, spectrum eta)
 {
     spectrum out;
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         out[i] = reflectance(b, cos_o, eta[i]);
     return out;
 }
@@ -56,14 +57,14 @@ static bool sample_reflection(const bsdf *b, vec3 wo, spectrum r, bool certain,
                               bsdf_sample *out)
 {
     out->wi = vec3_make(-wo[0], -wo[1], wo[2]);
-    out->pdf = certain ? 1.0f : lane_mean(b, r);
+    out->pdf = certain ? 1.0f : wavelength_mean(b, r);
     out->weight = r / out->pdf;
     out->lobe = LOBE_SPECULAR | LOBE_REFLECTION;
     return true;
 }
 
-static bool sample_refraction(const bsdf *b, vec3 wo, float eta, int lane, float pdf,
-                              bsdf_sample *out)
+static bool sample_refraction(const bsdf *b, vec3 wo, float eta, int wavelength,
+                              float pdf, bsdf_sample *out)
 {
     vec3 m = vec3_make(0.0f, 0.0f, copysignf(1.0f, wo[2]));
     if (!refract3(wo, m, eta, &out->wi))
@@ -71,10 +72,10 @@ static bool sample_refraction(const bsdf *b, vec3 wo, float eta, int lane, float
     out->pdf = pdf;
     out->eta = eta;
     out->lobe = LOBE_SPECULAR | LOBE_TRANSMISSION;
-    if (splits_lanes(b)) {
-        out->weight = spectrum_lane(out->weight * N_LANES, lane);
-        out->pdf = pdf / N_LANES;
-        out->lane = lane;
+    if (splits_wavelengths(b)) {
+        out->weight = spectrum_wavelength(out->weight * N_WAVELENGTHS, wavelength);
+        out->pdf = pdf / N_WAVELENGTHS;
+        out->wavelength = wavelength;
     }
     return true;
 }
@@ -89,22 +90,23 @@ static bool smooth_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned
         return false;
     spectrum eta = dielectric_eta(b, wo);
     float cos_o = fabsf(wo[2]);
-    int lane = dielectric_pick_lane(b, &u_lobe);
-    float r = reflectance(b, cos_o, eta[lane]);
+    int wavelength = dielectric_pick_wavelength(b, &u_lobe);
+    float r = reflectance(b, cos_o, eta[wavelength]);
     if (reflects && (!transmits || u_lobe < r))
-        return sample_reflection(b, wo, reflectance_lanes(b, cos_o, eta), !transmits,
-                                 out);
+        return sample_reflection(b, wo, reflectance_wavelengths(b, cos_o, eta),
+                                 !transmits, out);
     float pdf = reflects ? 1.0f - r : 1.0f;
-    float scale = mode == TRANSPORT_RADIANCE ? 1.0f / square(eta[lane]) : 1.0f;
+    float scale = mode == TRANSPORT_RADIANCE ? 1.0f / square(eta[wavelength]) : 1.0f;
     if (!(r < 1.0f))
         return false;
     out->weight = data_of(b)->tint * ((1.0f - r) / pdf * scale);
-    return sample_refraction(b, wo, eta[lane], lane, pdf, out);
+    return sample_refraction(b, wo, eta[wavelength], wavelength, pdf, out);
 }
 
 static spectrum smooth_albedo(const bsdf *b, vec3 wo, unsigned lobes)
 {
-    spectrum r = reflectance_lanes(b, fabsf(wo[2]), dielectric_eta(b, wo)), sum = {0};
+    spectrum r = reflectance_wavelengths(b, fabsf(wo[2]), dielectric_eta(b, wo)),
+             sum = {0};
     if (lobe_wanted(lobes, LOBE_SPECULAR | LOBE_REFLECTION))
         sum += r;
     if (lobe_wanted(lobes, LOBE_SPECULAR | LOBE_TRANSMISSION))
@@ -123,7 +125,7 @@ const bsdf_ops dielectric_smooth_ops = {
 /* Facets of an index this close to one bend light less than floats can tell. */
 static bool bends_nothing(spectrum eta)
 {
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         if (fabsf(eta[i] - 1.0f) > 1e-3f)
             return false;
     return true;

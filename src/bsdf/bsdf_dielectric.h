@@ -21,9 +21,9 @@ extern const bsdf_ops dielectric_smooth_ops, dielectric_rough_ops;
 /** @brief Index of the far side over that on wo's side. */
 spectrum dielectric_eta(const bsdf *b, vec3 wo);
 
-/** @brief The lane that decides: the one kept, else a random one where they differ; *u
- * stays uniform. */
-int dielectric_pick_lane(const bsdf *b, float *u);
+/** @brief The wavelength that decides: the one kept, else a random one where they differ;
+ * *u stays uniform. */
+int dielectric_pick_wavelength(const bsdf *b, float *u);
 
 /**
  * @brief f of refraction by rough facets, flux being kept: radiance is smaller by eta².

@@ -2,11 +2,12 @@
  * The rough boundary between two dielectrics: GGX facets, each a smooth boundary.
  * Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007.
  *
- * Where the index differs between lanes, a sampled direction is one that any lane may
- * have led to; its density is the mean of the eight lanes' densities, and all lanes keep
- * their value there (the balance heuristic over lanes: Wilkie et al., "Hero Wavelength
- * Spectral Sampling", 2014). A wide lobe so keeps its colours together, a narrow one
- * comes to one lane with weight eight by itself.
+ * Where the index differs between wavelengths, a sampled direction is one that any
+ * wavelength may have led to; its density is the mean of the eight wavelengths'
+ * densities, and all wavelengths keep their value there (the balance heuristic over
+ * wavelengths: Wilkie et al., "Hero Wavelength Spectral Sampling", 2014). A wide lobe so
+ * keeps its colours together, a narrow one comes to one wavelength with weight eight by
+ * itself.
  */
 #include "bsdf/bsdf_dielectric.h"
 
@@ -14,9 +15,9 @@
 typedef struct rough_pair {
     const dielectric *d;
     vec3 wo, wi;
-    spectrum eta;             /* far over near */
-    int first_lane, end_lane; /* to be looked at */
-    bool reflects, transmits; /* wanted */
+    spectrum eta;                         /* far over near */
+    int first_wavelength, end_wavelength; /* to be looked at */
+    bool reflects, transmits;             /* wanted */
     bool radiance;
 } rough_pair;
 
@@ -40,12 +41,12 @@ static scattering reflection(const rough_pair *p)
     float chosen = 0.0f, pdf;
     vec3 m = normalize3(p->wo + p->wi);
     float f = facet_reflection(p, m, &pdf), cos_m = dot3(p->wo, m);
-    for (int i = p->first_lane; i < p->end_lane; i++) {
+    for (int i = p->first_wavelength; i < p->end_wavelength; i++) {
         float r = fresnel_dielectric(cos_m, p->eta[i]);
         out.f[i] = r * f;
         chosen += r;
     }
-    chosen /= (float)(p->end_lane - p->first_lane);
+    chosen /= (float)(p->end_wavelength - p->first_wavelength);
     out.pdf = p->transmits ? pdf * chosen : pdf;
     return out;
 }
@@ -68,7 +69,7 @@ float dielectric_refraction(ggx g, vec3 wo, vec3 wi, float eta, float *passes, f
 static scattering transmission(const rough_pair *p)
 {
     scattering out = {0};
-    for (int i = p->first_lane; i < p->end_lane; i++) {
+    for (int i = p->first_wavelength; i < p->end_wavelength; i++) {
         float pdf, passes;
         out.f[i] = dielectric_refraction(p->d->roughness, p->wo, p->wi, p->eta[i],
                                          &passes, &pdf);
@@ -76,26 +77,27 @@ static scattering transmission(const rough_pair *p)
             out.f[i] /= square(p->eta[i]);
         out.pdf += p->reflects ? pdf * passes : pdf;
     }
-    out.pdf /= (float)(p->end_lane - p->first_lane);
+    out.pdf /= (float)(p->end_wavelength - p->first_wavelength);
     return out;
 }
 
-/* What all lanes share stands in the first looked at; the tint is each lane's own. */
+/* What all wavelengths share stands in the first looked at; the tint is each wavelength's
+ * own. */
 static scattering scatter(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
                           transport_mode mode)
 {
     unsigned kind = b->lobes & ~(unsigned)LOBE_ANY_SIDE;
     bool flip = wo[2] < 0.0f;
     const dielectric *d = (const void *)b->data;
-    bool per_lane = b->lane == ALL_LANES && d->disperses;
-    int lane = b->lane == ALL_LANES ? 0 : b->lane;
+    bool per_wavelength = b->wavelength == ALL_WAVELENGTHS && d->disperses;
+    int wavelength = b->wavelength == ALL_WAVELENGTHS ? 0 : b->wavelength;
     rough_pair p = {
         .d = d,
         .wo = flip_z(wo, flip),
         .wi = flip_z(wi, flip),
         .eta = dielectric_eta(b, wo),
-        .first_lane = lane,
-        .end_lane = per_lane ? N_LANES : lane + 1,
+        .first_wavelength = wavelength,
+        .end_wavelength = per_wavelength ? N_WAVELENGTHS : wavelength + 1,
         .reflects = lobe_wanted(lobes, kind | LOBE_REFLECTION),
         .transmits = lobe_wanted(lobes, kind | LOBE_TRANSMISSION),
         .radiance = mode == TRANSPORT_RADIANCE,
@@ -104,8 +106,8 @@ static scattering scatter(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
     if (same_side ? !p.reflects : !p.transmits)
         return (scattering){0};
     scattering s = same_side ? reflection(&p) : transmission(&p);
-    if (!per_lane)
-        s.f = spectrum_fill(s.f[lane]);
+    if (!per_wavelength)
+        s.f = spectrum_fill(s.f[wavelength]);
     if (!same_side)
         s.f *= d->tint;
     return s;
@@ -138,8 +140,8 @@ static bool rough_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned 
     if (!reflects && !transmits)
         return false;
     const dielectric *d = (const void *)b->data;
-    int lane = dielectric_pick_lane(b, &u_lobe);
-    float eta = dielectric_eta(b, wo)[lane];
+    int wavelength = dielectric_pick_wavelength(b, &u_lobe);
+    float eta = dielectric_eta(b, wo)[wavelength];
     vec3 o = flip_z(wo, wo[2] < 0.0f), m = ggx_sample_visible(d->roughness, o, u), i;
     bool mirror =
         reflects && (!transmits || u_lobe < fresnel_dielectric(dot3(o, m), eta));
@@ -180,7 +182,7 @@ static spectrum rough_albedo(const bsdf *b, vec3 wo, unsigned lobes)
     const dielectric *d = (const void *)b->data;
     spectrum eta = dielectric_eta(b, wo), reflected = {0}, passed = {0};
     vec3 o = flip_z(wo, wo[2] < 0.0f);
-    int n = d->disperses ? N_LANES : 1;
+    int n = d->disperses ? N_WAVELENGTHS : 1;
     for (int i = 0; i < n; i++) {
         float r, t;
         facet_shares(d->roughness, o, eta[i], &r, &t);

@@ -33,8 +33,8 @@ static spectrum veil_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
 static float p_back(const bsdf *b, unsigned lobes)
 {
     const veil *v = data_of(b);
-    float r = lobe_wanted(lobes, BACK) ? lane_mean(b, v->r) : 0.0f;
-    float t = lobe_wanted(lobes, THROUGH) ? lane_mean(b, v->t) : 0.0f;
+    float r = lobe_wanted(lobes, BACK) ? wavelength_mean(b, v->r) : 0.0f;
+    float t = lobe_wanted(lobes, THROUGH) ? wavelength_mean(b, v->t) : 0.0f;
     return r + t > 0.0f ? r / (r + t) : -1.0f;
 }
 
@@ -87,7 +87,7 @@ void bsdf_make_diffuse_transmission(bsdf *b, spectrum r, spectrum t)
         .albedo = veil_albedo,
     };
     spectrum sum = r + t;
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         if (sum[i] > 1.0f) {
             r[i] /= sum[i];
             t[i] /= sum[i];

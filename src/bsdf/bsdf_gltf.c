@@ -52,7 +52,8 @@ typedef struct gltf_data {
     table_row facets, coat;
     float mean_e; /* E̅ of what is not metal */
     float escape; /* share of matt light that the coat lets out */
-    float mean_f0, mean_diffuse, mean_through, mean_leaf; /* over the lanes in use */
+    float mean_f0, mean_diffuse, mean_through,
+        mean_leaf; /* over the wavelengths in use */
     float turn_cos, turn_sin;
 } gltf_data;
 
@@ -230,7 +231,7 @@ static choice choose(const gltf_data *d, unsigned lobes)
     return out;
 }
 
-/* Layers are sampled by their albedo, in the mean over the lanes in use. */
+/* Layers are sampled by their albedo, in the mean over the wavelengths in use. */
 static void weigh(const gltf_data *d, const facing *f, choice *c)
 {
     float matt = (1.0f - f->taken) * f->coat * d->escape, coat2 = square(f->coat);
@@ -450,10 +451,10 @@ void bsdf_make_gltf(bsdf *b, const gltf_surface *surface)
     *d = (gltf_data){.s = *surface,
                      .facets = row_of(surface->roughness),
                      .coat = row_of(surface->coat_roughness),
-                     .mean_f0 = lane_mean(b, surface->f0),
-                     .mean_diffuse = lane_mean(b, surface->diffuse),
-                     .mean_through = lane_mean(b, surface->through),
-                     .mean_leaf = lane_mean(b, surface->leaf),
+                     .mean_f0 = wavelength_mean(b, surface->f0),
+                     .mean_diffuse = wavelength_mean(b, surface->diffuse),
+                     .mean_through = wavelength_mean(b, surface->through),
+                     .mean_leaf = wavelength_mean(b, surface->leaf),
                      .escape = 1.0f,
                      .turn_cos = 1.0f};
     facet_shares e = mean_shares(d->facets);

@@ -17,7 +17,7 @@
  * in slopes of half vectors, and the cosine. Densities are exact, and it is only weights
  * that the walks make noisy.
  *
- * Directions are bent by the mean index of the lanes.
+ * Directions are bent by the mean index of the wavelengths.
  */
 #include "bsdf/bsdf_layered.h"
 #include "bsdf/fresnel.h"
@@ -112,10 +112,10 @@ static shares choose(const bsdf *b, vec3 o, unsigned lobes)
     float cosine, in = crossing(c, o, &cosine);
     float face = fresnel_dielectric(o[2], c->l.eta), lost = 1.0f - face - in;
     s.p[FACE] = face;
-    s.p[CLEAR] = lane_mean(b, by_way_of_metal(c, o)) + 0.02f;
-    s.p[CLOUDY] = 0.02f + lost * 0.5f * lane_mean(b, c->l.albedo);
+    s.p[CLEAR] = wavelength_mean(b, by_way_of_metal(c, o)) + 0.02f;
+    s.p[CLOUDY] = 0.02f + lost * 0.5f * wavelength_mean(b, c->l.albedo);
     if (!c->l.is_metal)
-        s.p[CLOUDY] += 0.5f * in * lane_mean(b, c->l.rho);
+        s.p[CLOUDY] += 0.5f * in * wavelength_mean(b, c->l.rho);
     float sum = 0.0f;
     for (int k = 0; k < N_LOBES; k++)
         sum += s.p[k] = s.wanted[k] ? s.p[k] : 0.0f;

@@ -2,7 +2,7 @@
  * The scattering models, apart from the materials that read their parameters.
  *
  * Each function fills ops, lobes, lambertian, rho and data of a bsdf whose frame, n_geom
- * and lane are set already.
+ * and wavelength are set already.
  */
 #pragma once
 
@@ -33,10 +33,11 @@ static inline unsigned ggx_glass_class(ggx g)
     return ggx_is_smooth(g) ? LOBE_SPECULAR : LOBE_GLOSSY;
 }
 
-/** @brief The value that decides in random choices: of the lane kept, or the mean. */
-static inline float lane_mean(const bsdf *b, spectrum s)
+/** @brief The value that decides in random choices: of the wavelength kept, or the mean.
+ */
+static inline float wavelength_mean(const bsdf *b, spectrum s)
 {
-    return b->lane == ALL_LANES ? spectrum_mean(s) : s[b->lane];
+    return b->wavelength == ALL_WAVELENGTHS ? spectrum_mean(s) : s[b->wavelength];
 }
 
 /** @brief w mirrored to z >= 0 if `flip`. */
@@ -63,7 +64,7 @@ void bsdf_make_conductor(bsdf *b, spectrum eta, spectrum k, ggx roughness);
 
 /** @brief A boundary between dielectrics, smooth or rough.
  *  @param eta index below the surface over that above
- *  @param disperses eta differs between lanes: a refracted ray keeps one of them */
+ *  @param disperses eta differs between wavelengths: a refracted ray keeps one of them */
 void bsdf_make_dielectric(bsdf *b, spectrum eta, bool disperses, ggx roughness);
 
 /** @brief The same, with the light that passes multiplied by a tint in 0..1. */

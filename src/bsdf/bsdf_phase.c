@@ -71,7 +71,7 @@ static spectrum phase_albedo(const bsdf *b, vec3 wo, unsigned lobes)
     return spectrum_fill(lobe_wanted(lobes, PHASE_LOBE) ? 1.0f : 0.0f);
 }
 
-void bsdf_make_phase(bsdf *b, float g, int lane)
+void bsdf_make_phase(bsdf *b, float g, int wavelength)
 {
     static const bsdf_ops ops = {
         .name = "phase",
@@ -82,7 +82,7 @@ void bsdf_make_phase(bsdf *b, float g, int lane)
     };
     b->ops = &ops;
     b->lobes = PHASE_LOBE;
-    b->lane = lane;
+    b->wavelength = wavelength;
     b->is_phase = true;
     b->lambertian = false;
     b->n_geom = (vec3){0};

@@ -40,7 +40,7 @@ static float highlight_chance(const bsdf *b, unsigned lobes)
     bool shine = lobe_wanted(lobes, shine_lobe(p)), matt = lobe_wanted(lobes, MATT);
     if (!shine || !matt)
         return shine ? 1.0f : matt ? 0.0f : -1.0f;
-    float s = lane_mean(b, p->specular), d = lane_mean(b, p->diffuse);
+    float s = wavelength_mean(b, p->specular), d = wavelength_mean(b, p->diffuse);
     return s + d > 0.0f ? s / (s + d) : 0.0f;
 }
 
@@ -149,7 +149,7 @@ void bsdf_make_phong(bsdf *b, spectrum reflectance, spectrum specular, float exp
     float n = exponent;
     *p = (phong){.specular = specular, .exponent = n};
     p->factor = (n + 2.0f) * (n + 4.0f) / (8.0f * PI_F * (n + exp2f(-0.5f * n)));
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         p->diffuse[i] = minf(reflectance[i], 1.0f - specular[i]);
     b->ops = &ops;
     b->lobes = shine_lobe(p) | MATT;

@@ -15,7 +15,7 @@ _Static_assert(sizeof(plate) <= BSDF_DATA_SIZE, "a plate must fit");
 static spectrum plate_reflectance(const bsdf *b, vec3 wo)
 {
     const plate *p = (const void *)b->data;
-    spectrum r = fresnel_dielectric_lanes(fabsf(wo[2]), p->eta);
+    spectrum r = fresnel_dielectric_wavelengths(fabsf(wo[2]), p->eta);
     return 2.0f * r / (1.0f + r);
 }
 
@@ -28,7 +28,7 @@ static bool plate_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned 
     if (!reflects && !transmits)
         return false;
     spectrum r = plate_reflectance(b, wo);
-    float p = !transmits ? 1.0f : !reflects ? 0.0f : lane_mean(b, r);
+    float p = !transmits ? 1.0f : !reflects ? 0.0f : wavelength_mean(b, r);
     bool mirror = u_lobe < p;
     out->wi = mirror ? vec3_make(-wo[0], -wo[1], wo[2]) : -wo;
     out->pdf = mirror ? p : 1.0f - p;

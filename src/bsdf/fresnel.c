@@ -1,9 +1,9 @@
 #include "bsdf/fresnel.h"
 
-spectrum fresnel_dielectric_lanes(float cos_o, spectrum eta)
+spectrum fresnel_dielectric_wavelengths(float cos_o, spectrum eta)
 {
     spectrum out;
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         out[i] = fresnel_dielectric(cos_o, eta[i]);
     return out;
 }

@@ -24,7 +24,7 @@ static inline float fresnel_dielectric(float cos_o, float eta)
 }
 
 /** @brief The same at eight wavelengths. */
-spectrum fresnel_dielectric_lanes(float cos_o, spectrum eta);
+spectrum fresnel_dielectric_wavelengths(float cos_o, spectrum eta);
 
 /** @brief Reflectance of a metal with complex index eta + i k. */
 spectrum fresnel_conductor(float cos_o, spectrum eta, spectrum k);

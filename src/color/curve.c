@@ -161,7 +161,7 @@ static float at_table(const curve *c, float nm)
 static spectrum eval_table(const curve *c, const wavelengths *w)
 {
     spectrum s;
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         s[i] = at_table(c, w->lambda[i]);
     return s;
 }

@@ -17,10 +17,10 @@ float grid_at(const float grid[GRID_N], float nm)
 
 spectrum grid_eval(const float grid[GRID_N], spectrum lambda)
 {
-    typedef int lanes __attribute__((vector_size(32)));
+    typedef int wavelengths __attribute__((vector_size(32)));
     spectrum x = lambda - spectrum_fill((float)GRID_FIRST), low, high;
-    lanes cell = __builtin_convertvector(x, lanes);
-    for (int i = 0; i < N_LANES; i++) {
+    wavelengths cell = __builtin_convertvector(x, wavelengths);
+    for (int i = 0; i < N_WAVELENGTHS; i++) {
         low[i] = grid[cell[i]];
         high[i] = grid[cell[i] + 1];
     }

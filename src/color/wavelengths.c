@@ -35,9 +35,9 @@ wavelengths wavelengths_for_pass(uint64_t seed, uint32_t pass)
 wavelengths wavelengths_at(float offset)
 {
     const observer *o = observer_get();
-    const float range = LAMBDA_MAX - LAMBDA_MIN, stratum = range / N_LANES;
+    const float range = LAMBDA_MAX - LAMBDA_MIN, stratum = range / N_WAVELENGTHS;
     wavelengths w;
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         w.lambda[i] = LAMBDA_MIN + ((float)i + offset) * stratum;
     for (int i = 0; i < 3; i++)
         w.xyz[i] = range * grid_eval(o->folded[i], w.lambda);
@@ -80,8 +80,8 @@ wavelengths wavelengths_drawn(const wavelength_density *d, float offset)
     spectrum part;
     if (!d)
         return wavelengths_at(offset);
-    for (int i = 0; i < N_LANES; i++) {
-        float u = ((float)i + offset) / N_LANES;
+    for (int i = 0; i < N_WAVELENGTHS; i++) {
+        float u = ((float)i + offset) / N_WAVELENGTHS;
         int at = cell_at(d, u);
         part[i] = d->cumulative[at + 1] - d->cumulative[at];
         float t = (u - d->cumulative[at]) / part[i];

@@ -18,8 +18,8 @@
 typedef struct wavelengths {
     spectrum lambda;
     /** Matching functions folded to the range (tails beyond it are kept in the scale) and
-     *  multiplied by LAMBDA_MAX - LAMBDA_MIN: XYZ is the mean over lanes of xyz[i] L. A
-     *  surface that sends D65 with photometric integral 1 has Y = 1 on average over
+     *  multiplied by LAMBDA_MAX - LAMBDA_MIN: XYZ is the mean over wavelengths of xyz[i]
+     * L. A surface that sends D65 with photometric integral 1 has Y = 1 on average over
      * passes. */
     spectrum xyz[3];
 } wavelengths;
@@ -35,7 +35,7 @@ wavelengths wavelengths_at(float offset);
 
 enum {
     WAVELENGTH_CELLS = 1360, /**< of LAMBDA_MIN to LAMBDA_MAX: a quarter of a nm each */
-    CELLS_PER_STRATUM = WAVELENGTH_CELLS / N_LANES,
+    CELLS_PER_STRATUM = WAVELENGTH_CELLS / N_WAVELENGTHS,
 };
 
 /** @brief How densely wavelengths are drawn where they are not drawn evenly: constant
@@ -52,5 +52,5 @@ wavelength_density wavelength_density_of(const double weights[WAVELENGTH_CELLS])
  * @param d NULL: evenly, as wavelengths_at */
 wavelengths wavelengths_drawn(const wavelength_density *d, float offset);
 
-/** @brief XYZ of spectral radiance L (mean over lanes of xyz * L). */
+/** @brief XYZ of spectral radiance L (mean over wavelengths of xyz * L). */
 void spectrum_to_xyz(const wavelengths *w, spectrum radiance, float xyz[3]);

@@ -1,5 +1,6 @@
 /*
- * A soft sky and a view that frames the scene, for files without lights or camera.
+ * A soft environment and a view that frames the scene, for files without lights or
+ * camera.
  *
  * The view comes from the front, a little from the side and above, as a photographer
  * stands before a still life, as near as all of it is seen.
@@ -17,7 +18,7 @@
 
 #define DEFAULT_FOV 35.0 /* degrees, of the shorter side */
 
-enum { DEFAULT_WIDTH = 960, DEFAULT_HEIGHT = 720, SKY_ROWS = 64 };
+enum { DEFAULT_WIDTH = 960, DEFAULT_HEIGHT = 720, ENVIRONMENT_ROWS = 64 };
 
 static params *list(const char *path)
 {
@@ -44,7 +45,7 @@ static transform upright(vec3 up)
 
 /* Radiance from a direction: a bright haze over a dark ground, bluer further up, and a
  * soft sun (a cloud before it) behind the camera's left shoulder. */
-static void sky_color(vec3 d, vec3 up, vec3 sun, float rgb[3])
+static void environment_color(vec3 d, vec3 up, vec3 sun, float rgb[3])
 {
     static const float ground[3] = {0.22f, 0.21f, 0.2f}, haze[3] = {0.95f, 0.97f, 1.0f},
                        zenith[3] = {0.3f, 0.42f, 0.62f}, glow[3] = {14.0f, 12.8f, 11.0f};
@@ -58,20 +59,20 @@ static void sky_color(vec3 d, vec3 up, vec3 sun, float rgb[3])
 
 /* A PFM file, whose rows go up from the lower one. Row 0 of the map is +z, columns go
  * round from +x. */
-static GBytes *sky_picture(const transform *to_world, vec3 up, vec3 sun)
+static GBytes *environment_picture(const transform *to_world, vec3 up, vec3 sun)
 {
     g_autofree char *header =
-        g_strdup_printf("PF\n%d %d\n%s\n", 2 * SKY_ROWS, SKY_ROWS,
+        g_strdup_printf("PF\n%d %d\n%s\n", 2 * ENVIRONMENT_ROWS, ENVIRONMENT_ROWS,
                         G_BYTE_ORDER == G_LITTLE_ENDIAN ? "-1.0" : "1.0");
     GByteArray *bytes = g_byte_array_new();
     g_byte_array_append(bytes, (const guint8 *)header, (guint)strlen(header));
-    for (int y = SKY_ROWS - 1; y >= 0; y--)
-        for (int x = 0; x < 2 * SKY_ROWS; x++) {
-            float theta = PI_F * ((float)y + 0.5f) / SKY_ROWS, rgb[3];
-            float phi = PI_F * ((float)x + 0.5f) / SKY_ROWS;
+    for (int y = ENVIRONMENT_ROWS - 1; y >= 0; y--)
+        for (int x = 0; x < 2 * ENVIRONMENT_ROWS; x++) {
+            float theta = PI_F * ((float)y + 0.5f) / ENVIRONMENT_ROWS, rgb[3];
+            float phi = PI_F * ((float)x + 0.5f) / ENVIRONMENT_ROWS;
             vec3 d =
                 vec3_make(sinf(theta) * cosf(phi), sinf(theta) * sinf(phi), cosf(theta));
-            sky_color(transform_vector(to_world, d), up, sun, rgb);
+            environment_color(transform_vector(to_world, d), up, sun, rgb);
             g_byte_array_append(bytes, (const guint8 *)rgb, sizeof rgb);
         }
     return g_byte_array_free_to_bytes(bytes);
@@ -86,12 +87,13 @@ static vec3 standpoint(vec3 up, float right, float above)
     return normalize3(cross3(side, up) + right * side + above * up);
 }
 
-static bool add_sky(scene_builder *to, const char *path, vec3 up, GError **error)
+static bool add_environment(scene_builder *to, const char *path, vec3 up, GError **error)
 {
     transform to_world = upright(up);
     g_autofree char *name = g_strdup_printf("%s.sky.pfm", path);
     g_autofree char *absolute = g_canonicalize_filename(name, NULL);
-    g_autoptr(GBytes) picture = sky_picture(&to_world, up, standpoint(up, -0.8f, 1.1f));
+    g_autoptr(GBytes) picture =
+        environment_picture(&to_world, up, standpoint(up, -0.8f, 1.1f));
     g_autoptr(params) p = list(path);
     build_context_add_file(&to->build, absolute, picture);
     give_text(p, PARAM_STRING, "filename", absolute);
@@ -166,7 +168,8 @@ static bool add_view(scene_builder *to, const char *path, vec3 up, GError **erro
 
 /* ---- Whether there is light ---- */
 
-/* Of a white sky's light, as much as surfaces that shine must send out to be lamps. */
+/* Of a white environment's light, as much as surfaces that shine must send out to be
+ * lights. */
 #define LEAST_GLOW 0.01
 
 /* Luminance times area times steradian: of white surfaces of radiance 1, pi times their
@@ -194,9 +197,9 @@ static bool is_lit(const scene_builder *to, bool glow_is_look)
             return true;
         glow += luminous_power(l);
     }
-    /* A sky of radiance 1 sends pi through each square metre of a sphere. */
-    double sky = G_PI * 4.0 * G_PI * radius * radius;
-    return !glow_is_look && glow > 0.0 && glow >= LEAST_GLOW * sky;
+    /* A environment of radiance 1 sends pi through each square metre of a sphere. */
+    double environment = G_PI * 4.0 * G_PI * radius * radius;
+    return !glow_is_look && glow > 0.0 && glow >= LEAST_GLOW * environment;
 }
 
 bool scene_complete(scene_builder *to, const char *path, vec3 up, bool glow_is_look,
@@ -207,7 +210,7 @@ bool scene_complete(scene_builder *to, const char *path, vec3 up, bool glow_is_l
                  "expected something with a surface, found nothing");
         return false;
     }
-    bool done = (is_lit(to, glow_is_look) || add_sky(to, path, up, error)) &&
+    bool done = (is_lit(to, glow_is_look) || add_environment(to, path, up, error)) &&
                 (to->has_camera || add_view(to, path, up, error));
     to->film.is_unexposed = true;
     return done;

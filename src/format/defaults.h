@@ -5,12 +5,12 @@
 
 #include "scene/builder.h"
 
-/** @brief Gives a scene that has no light a soft sky, and one without a camera a view
- * that frames it, each with a note; and a film if the file had none. Its formats do not
- * say how the picture is exposed (film_settings.is_unexposed).
+/** @brief Gives a scene that has no light a soft environment, and one without a camera a
+ * view that frames it, each with a note; and a film if the file had none. Its formats do
+ * not say how the picture is exposed (film_settings.is_unexposed).
  *
- * A scene is lit by a lamp, or by surfaces that shine if they send out a hundredth at
- * least of what a white sky would send into a sphere around it.
+ * A scene is lit by a light, or by surfaces that shine if they send out a hundredth at
+ * least of what a white environment would send into a sphere around it.
  * @param up the direction that is up in the file, unit
  * @param glow_is_look surfaces that shine are meant to be seen, not to light anything
  * @return false with ERROR_INPUT naming the file if there is nothing to look at */

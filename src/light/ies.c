@@ -73,7 +73,7 @@ static const char *find_line(const char *text, const char *word)
     return NULL;
 }
 
-/* Past the TILT line; a table of factors for tilted lamps gives that of an upright one.
+/* Past the TILT line; a table of factors for tilted lights gives that of an upright one.
  */
 static bool read_tilt(ies_reader *r, double *factor)
 {
@@ -106,7 +106,7 @@ static bool read_tilt(ies_reader *r, double *factor)
 /* Counts and factors; *scale is what values are multiplied with. */
 static bool read_head(ies_reader *r, ies_profile *out, double *scale)
 {
-    double tilt, multiplier, type, ballast, lamp;
+    double tilt, multiplier, type, ballast, light;
     if (!read_tilt(r, &tilt) || !skip_numbers(r, 2, "lamps and lumens a lamp") ||
         !next_number(r, "a multiplier", &multiplier) ||
         !next_count(r, "a number of vertical angles", &out->n_vertical) ||
@@ -114,10 +114,10 @@ static bool read_head(ies_reader *r, ies_profile *out, double *scale)
         !next_number(r, "a photometric type", &type) ||
         !skip_numbers(r, 4, "units, width, length and height") ||
         !next_number(r, "a ballast factor", &ballast) ||
-        !next_number(r, "a ballast-lamp factor", &lamp) ||
+        !next_number(r, "a ballast-lamp factor", &light) ||
         !skip_numbers(r, 1, "input watts"))
         return false;
-    *scale = tilt * multiplier * ballast * lamp;
+    *scale = tilt * multiplier * ballast * light;
     out->type = find_type(type);
     if (out->type)
         return true;

@@ -53,7 +53,7 @@ static spectrum shines(const area_light *l, const surface_hit *hit, const wavele
 }
 
 /* L at a place drawn on the shape, less what a cut-out takes of it; alpha 0 everywhere
- * makes a lamp that is not seen but shines (pbrt-v4). */
+ * makes a light that is not seen but shines (pbrt-v4). */
 static spectrum shines_from(const area_light *l, const shape_sample *at,
                             const wavelengths *w)
 {

@@ -3,21 +3,21 @@
  * sampling and for photons alike; photons start on a disk that covers the scene, so
  * Φ = π R² ∫ L dω.
  *
- * With a portal, a rectangle in the world, the sky is only seen through it, from the side
- * that n = (p3 - p0) x (p1 - p0) points away from, as in pbrt-v4. Points are then lit
- * from places uniform on the portal, and photons pass it: Φ = A ∫ L cosθ dω.
+ * With a portal, a rectangle in the world, the environment is only seen through it, from
+ * the side that n = (p3 - p0) x (p1 - p0) points away from, as in pbrt-v4. Points are
+ * then lit from places uniform on the portal, and photons pass it: Φ = A ∫ L cosθ dω.
  */
 #include "light/light_kinds.h"
 #include "params/build_context.h"
 #include "texture/sphere_map.h"
 
 /* Without one, area is 0. */
-typedef struct sky_portal {
+typedef struct environment_portal {
     vec3 corner, u, v, n; /* p0, p1 - p0, p3 - p0 */
     float area;
-} sky_portal;
+} environment_portal;
 
-typedef struct image_sky {
+typedef struct image_environment {
     sphere_map map;
     frame axes; /* of the picture, in the world; may be left-handed */
     float scale;
@@ -25,12 +25,12 @@ typedef struct image_sky {
     curve *passing;   /* Φ through the portal; NULL without one */
     float irradiance; /* the largest on a plane, as a share of the total */
     light_disk disk;
-    sky_portal portal;
-} image_sky;
+    environment_portal portal;
+} image_environment;
 
-static void free_sky(void *self)
+static void free_environment(void *self)
 {
-    image_sky *l = self;
+    image_environment *l = self;
     sphere_map_clear(&l->map);
     curve_unref(l->total);
     curve_unref(l->passing);
@@ -39,7 +39,7 @@ static void free_sky(void *self)
 
 /* ---- The portal ---- */
 
-static bool read_portal(sky_portal *portal, const params *p, GError **error)
+static bool read_portal(environment_portal *portal, const params *p, GError **error)
 {
     const param *q = params_find(p, "portal");
     if (!q)
@@ -65,7 +65,7 @@ static bool read_portal(sky_portal *portal, const params *p, GError **error)
 }
 
 /* Whether the ray from p along d goes out through it; *distance to there. */
-static bool through(const sky_portal *portal, vec3 p, vec3 d, float *distance)
+static bool through(const environment_portal *portal, vec3 p, vec3 d, float *distance)
 {
     float cosine = dot3(d, portal->n);
     if (!(cosine > 0.0f))
@@ -77,7 +77,7 @@ static bool through(const sky_portal *portal, vec3 p, vec3 d, float *distance)
     return *distance > 0.0f && u >= 0.0f && u <= 1.0f && v >= 0.0f && v <= 1.0f;
 }
 
-static vec3 portal_point(const sky_portal *portal, vec2 u)
+static vec3 portal_point(const environment_portal *portal, vec2 u)
 {
     return portal->corner + u.x * portal->u + u.y * portal->v;
 }
@@ -85,17 +85,17 @@ static vec3 portal_point(const sky_portal *portal, vec2 u)
 /* ---- Making ---- */
 
 /* What is summed over the picture. */
-typedef struct sky_sum {
-    const image_sky *light;
+typedef struct environment_sum {
+    const image_environment *light;
     emission_sum emission;
     double illuminance;     /* on a plane that looks up, of luminance */
     double on_planes[3][2]; /* on planes that look along the axes, of R, G and B's mean */
     emission_sum passing;   /* ∫ L cosθ dω of the portal */
-} sky_sum;
+} environment_sum;
 
 static void add_part(void *data, vec3 d, const float rgb[3], float solid_angle)
 {
-    sky_sum *sum = data;
+    environment_sum *sum = data;
     const color_space *space = sum->light->map.pic->space;
     float xyz[3], mean = (rgb[0] + rgb[1] + rgb[2]) * (1.0f / 3.0f);
     emission_sum_add(&sum->emission, space, rgb, (double)solid_angle);
@@ -109,7 +109,8 @@ static void add_part(void *data, vec3 d, const float rgb[3], float solid_angle)
 }
 
 /* pbrt-v4: the picture is scaled so that a plane that looks to +z has the illuminance. */
-static bool read_scale(image_sky *l, const sky_sum *sum, const params *p, GError **error)
+static bool read_scale(image_environment *l, const environment_sum *sum, const params *p,
+                       GError **error)
 {
     emitter white;
     if (!emitter_init(&white, p, NULL, l->map.pic->space, error))
@@ -126,9 +127,9 @@ static bool read_scale(image_sky *l, const sky_sum *sum, const params *p, GError
     return done;
 }
 
-static bool sum_up(image_sky *l, const params *p, GError **error)
+static bool sum_up(image_environment *l, const params *p, GError **error)
 {
-    sky_sum sum = {.light = l};
+    environment_sum sum = {.light = l};
     sphere_map_parts(&l->map, add_part, &sum);
     if (!read_scale(l, &sum, p, error))
         return false;
@@ -141,8 +142,8 @@ static bool sum_up(image_sky *l, const params *p, GError **error)
     return true;
 }
 
-static bool read_picture(image_sky *l, const build_context *context, const params *p,
-                         GError **error)
+static bool read_picture(image_environment *l, const build_context *context,
+                         const params *p, GError **error)
 {
     if (params_has(p, "L")) {
         error_at(error, params_find(p, "L")->place,
@@ -170,37 +171,37 @@ static void *create(const build_context *context, const params *p,
                     const transform *to_world, const shape *on, GError **error)
 {
     (void)on;
-    image_sky *l = g_new0(image_sky, 1);
+    image_environment *l = g_new0(image_environment, 1);
     if (light_axes(&l->axes, to_world, p, error) && read_portal(&l->portal, p, error) &&
         read_picture(l, context, p, error) && sum_up(l, p, error))
         return l;
-    free_sky(l);
+    free_environment(l);
     return NULL;
 }
 
 static void prepare(void *self, vec3 center, float radius)
 {
-    ((image_sky *)self)->disk = (light_disk){center, radius};
+    ((image_environment *)self)->disk = (light_disk){center, radius};
 }
 
 /* ---- Asking ---- */
 
 static spectrum power(const void *self, const wavelengths *w)
 {
-    const image_sky *l = self;
+    const image_environment *l = self;
     return l->passing ? curve_eval(l->passing, w)
                       : light_disk_area(&l->disk) * curve_eval(l->total, w);
 }
 
 static light_bound bound(const void *self, const wavelengths *w)
 {
-    const image_sky *l = self;
+    const image_environment *l = self;
     return (light_bound){.irradiance =
                              l->irradiance * spectrum_mean(curve_eval(l->total, w))};
 }
 
 /* Radiance from local direction d. */
-static spectrum radiance_from(const image_sky *l, vec3 d, const wavelengths *w)
+static spectrum radiance_from(const image_environment *l, vec3 d, const wavelengths *w)
 {
     float rgb[3];
     sphere_map_rgb(&l->map, d, rgb);
@@ -208,8 +209,8 @@ static spectrum radiance_from(const image_sky *l, vec3 d, const wavelengths *w)
 }
 
 /* A direction in the world from where light comes; *radiance from there. */
-static vec3 draw(const image_sky *l, const wavelengths *w, vec2 u, spectrum *radiance,
-                 float *pdf)
+static vec3 draw(const image_environment *l, const wavelengths *w, vec2 u,
+                 spectrum *radiance, float *pdf)
 {
     vec3 local = sphere_map_sample(&l->map, u, pdf);
     *radiance = radiance_from(l, local, w);
@@ -217,13 +218,13 @@ static vec3 draw(const image_sky *l, const wavelengths *w, vec2 u, spectrum *rad
 }
 
 /* Density of starting places across a direction. */
-static float position_pdf(const image_sky *l, vec3 direction)
+static float position_pdf(const image_environment *l, vec3 direction)
 {
     return l->passing ? 1.0f / (l->portal.area * fabsf(dot3(direction, l->portal.n)))
                       : 1.0f / light_disk_area(&l->disk);
 }
 
-static light_emission leave(const image_sky *l, vec3 origin, vec3 direction,
+static light_emission leave(const image_environment *l, vec3 origin, vec3 direction,
                             float pdf_direction, spectrum flux)
 {
     return (light_emission){
@@ -238,7 +239,7 @@ static bool emit(const void *self, const wavelengths *w, float u_primitive,
                  vec2 u_position, vec2 u_direction, light_emission *out)
 {
     (void)u_primitive;
-    const image_sky *l = self;
+    const image_environment *l = self;
     spectrum radiance;
     float pdf;
     vec3 direction = -draw(l, w, u_direction, &radiance, &pdf);
@@ -254,7 +255,7 @@ static bool emit(const void *self, const wavelengths *w, float u_primitive,
 /* A photon's line passes the portal from outside. */
 static bool admits(const void *self, const ray *r)
 {
-    const image_sky *l = self;
+    const image_environment *l = self;
     float distance;
     return !l->passing ||
            through(&l->portal, r->origin + 4.0f * l->disk.radius * r->direction,
@@ -265,7 +266,7 @@ static void emit_pdf(const void *self, vec3 p, vec3 n, vec3 direction,
                      float *pdf_position, float *pdf_direction)
 {
     (void)n;
-    const image_sky *l = self;
+    const image_environment *l = self;
     float distance;
     *pdf_position = position_pdf(l, direction);
     *pdf_direction = sphere_map_pdf(&l->map, frame_to_local(&l->axes, -direction));
@@ -278,7 +279,7 @@ static bool emit_toward(const void *self, const wavelengths *w, float u_primitiv
                         vec3 target, light_emission *out)
 {
     (void)u_primitive;
-    const image_sky *l = self;
+    const image_environment *l = self;
     spectrum radiance;
     float pdf;
     vec3 direction = -draw(l, w, u, &radiance, &pdf);
@@ -288,7 +289,7 @@ static bool emit_toward(const void *self, const wavelengths *w, float u_primitiv
 }
 
 /* Density at ref of a direction that leaves through the portal at a distance. */
-static float portal_pdf(const sky_portal *portal, vec3 wi, float distance)
+static float portal_pdf(const environment_portal *portal, vec3 wi, float distance)
 {
     return square(distance) / (portal->area * dot3(wi, portal->n));
 }
@@ -297,7 +298,7 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
                    vec2 u, light_sample *out)
 {
     (void)u_primitive;
-    const image_sky *l = self;
+    const image_environment *l = self;
     *out = (light_sample){.distance = INFINITY};
     if (l->passing) {
         vec3 to = portal_point(&l->portal, u) - ref;
@@ -316,7 +317,7 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
 static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
 {
     (void)hit;
-    const image_sky *l = self;
+    const image_environment *l = self;
     float distance;
     if (!l->passing)
         return sphere_map_pdf(&l->map, frame_to_local(&l->axes, wi));
@@ -326,21 +327,21 @@ static float pdf(const void *self, vec3 ref, vec3 wi, const surface_hit *hit)
 
 static spectrum environment(const void *self, vec3 p, vec3 d, const wavelengths *w)
 {
-    const image_sky *l = self;
+    const image_environment *l = self;
     float distance;
     if (l->passing && !through(&l->portal, p, d, &distance))
         return spectrum_fill(0.0f);
     return radiance_from(l, frame_to_local(&l->axes, d), w);
 }
 
-const light_kind light_image_sky = {
+const light_kind light_image_environment = {
     .name = "infinite",
     .parameters = "L filename scale illuminance portal",
     .is_meant = has_filename,
     .is_environment = true,
     .is_parallel = true,
     .create = create,
-    .free = free_sky,
+    .free = free_environment,
     .prepare = prepare,
     .power = power,
     .bound = bound,

@@ -4,14 +4,14 @@
    as pure as a colour space has them. */
 #define SMOOTH 8.0
 
-/* The lamp's power at the middle of every cell. @return the mean */
+/* The light's power at the middle of every cell. @return the mean */
 static double measure(const light *l, double power[WAVELENGTH_CELLS])
 {
     double sum = 0.0;
     for (int k = 0; k < CELLS_PER_STRATUM; k++) {
         const wavelengths w = wavelengths_at(((float)k + 0.5f) / CELLS_PER_STRATUM);
         spectrum here = l->kind->power(l->self, &w);
-        for (int i = 0; i < N_LANES; i++) {
+        for (int i = 0; i < N_WAVELENGTHS; i++) {
             power[i * CELLS_PER_STRATUM + k] = (double)here[i];
             sum += (double)here[i];
         }
@@ -31,7 +31,7 @@ static void add_lines(const double power[WAVELENGTH_CELLS], double mean,
     lines->n += any;
 }
 
-/* The eighth part of all cells, one in each stratum, that tells most of the lamp. */
+/* The eighth part of all cells, one in each stratum, that tells most of the light. */
 static int brightest_offset(const double power[WAVELENGTH_CELLS], double *mean)
 {
     int best = CELLS_PER_STRATUM / 2;
@@ -39,10 +39,10 @@ static int brightest_offset(const double power[WAVELENGTH_CELLS], double *mean)
     for (int n = 0; n < CELLS_PER_STRATUM; n++) {
         int k = (CELLS_PER_STRATUM / 2 + n) % CELLS_PER_STRATUM;
         double sum = 0.0;
-        for (int i = 0; i < N_LANES; i++)
+        for (int i = 0; i < N_WAVELENGTHS; i++)
             sum += power[i * CELLS_PER_STRATUM + k];
-        if (sum / N_LANES > *mean) {
-            *mean = sum / N_LANES;
+        if (sum / N_WAVELENGTHS > *mean) {
+            *mean = sum / N_WAVELENGTHS;
             best = k;
         }
     }
@@ -71,7 +71,7 @@ light_strength light_measure(const light *l, light_lines *lines)
     return (light_strength){.power = (float)mean, .bound = measure_bound(l, power, mean)};
 }
 
-/* Half of all wavelengths, at most, go to lines: a lamp without any is still seen well.
+/* Half of all wavelengths, at most, go to lines: a light without any is still seen well.
  */
 wavelength_density *light_lines_density(const light_lines *lines)
 {

@@ -1,31 +1,32 @@
 /*
- * How strong a lamp is over all wavelengths, and where its spectrum has lines.
+ * How strong a light is over all wavelengths, and where its spectrum has lines.
  *
  * Eight wavelengths tell enough of daylight or a filament. A laser, sodium or mercury
  * shines at a few nanometres only, which most passes would miss: to the few that do not,
- * the lamp would be dozens of times too bright. So lamps are measured at every quarter of
- * a nanometre, and where one sends much more than on average, more wavelengths are drawn.
+ * the light would be dozens of times too bright. So lights are measured at every quarter
+ * of a nanometre, and where one sends much more than on average, more wavelengths are
+ * drawn.
  */
 #pragma once
 
 #include "light/light.h"
 
-/** @brief What the lines of all lamps add up to. */
+/** @brief What the lines of all lights add up to. */
 typedef struct light_lines {
-    double excess[WAVELENGTH_CELLS]; /**< over a smooth spectrum, of lamps of mean 1 */
-    int n;                           /**< lamps that have lines */
+    double excess[WAVELENGTH_CELLS]; /**< over a smooth spectrum, of lights of mean 1 */
+    int n;                           /**< lights that have lines */
 } light_lines;
 
-/** @brief A lamp's strength, as means over wavelengths. */
+/** @brief A light's strength, as means over wavelengths. */
 typedef struct light_strength {
     float power; /**< W per nm */
     light_bound bound;
 } light_strength;
 
-/** @brief Measures a lamp that has been told the scene. @param lines the lamp's are
+/** @brief Measures a light that has been told the scene. @param lines the light's are
  * added; NULL: nobody asks */
 light_strength light_measure(const light *l, light_lines *lines);
 
-/** @brief How densely wavelengths are to be drawn. @return NULL: evenly, no lamp has
+/** @brief How densely wavelengths are to be drawn. @return NULL: evenly, no light has
  * lines; freed by g_free */
 wavelength_density *light_lines_density(const light_lines *lines);

@@ -12,12 +12,12 @@ static float wavelength_of(int i)
 void emission_sum_add(emission_sum *sum, const color_space *space, const float rgb[3],
                       double weight)
 {
-    for (int i = 0; i < EMISSION_SUM_N; i += N_LANES) {
+    for (int i = 0; i < EMISSION_SUM_N; i += N_WAVELENGTHS) {
         wavelengths w;
-        for (int k = 0; k < N_LANES; k++)
+        for (int k = 0; k < N_WAVELENGTHS; k++)
             w.lambda[k] = wavelength_of(i + k);
         spectrum value = rgb_eval(space, rgb, CURVE_EMISSION, &w);
-        for (int k = 0; k < N_LANES; k++)
+        for (int k = 0; k < N_WAVELENGTHS; k++)
             sum->values[i + k] += weight * (double)value[k];
     }
 }

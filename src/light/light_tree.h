@@ -1,7 +1,7 @@
 /*
  * Which light to sample at a point: in proportion to about how much each sends there, so
- * that a small lamp nearby is not forgotten beside a wide sky, and many lamps cost
- * little.
+ * that a small light nearby is not forgotten beside a wide environment, and many lights
+ * cost little.
  *
  *   environment and distant lights ── a short list, each with its irradiance
  *   all others ── a binary tree over their places; a node is worth Φ / (4π max(d², r²)),

@@ -57,12 +57,12 @@ void material_free(material *m)
 }
 
 void material_bsdf(const material *m, const surface_hit *hit, const wavelengths *w,
-                   int lane, const bsdf_options *options, bsdf *out)
+                   int wavelength, const bsdf_options *options, bsdf *out)
 {
     out->shading =
         m->bump ? bump_frame(m->bump, hit) : frame_from_tangent(hit->n, hit->dpdu);
     out->n_geom = hit->n_geom;
-    out->lane = lane;
+    out->wavelength = wavelength;
     out->is_phase = false;
     m->kind->make_bsdf(m->self, hit, w, options, out);
 }

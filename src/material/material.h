@@ -20,8 +20,8 @@ typedef struct material_kind {
     const char *parameters; /**< those it reads, with spaces between */
     void *(*create)(const build_context *context, const params *p, GError **error);
     void (*free)(void *self);
-    /** Fills ops, lobes, lambertian, rho, data; the frame, n_geom and lane are filled
-     * already. */
+    /** Fills ops, lobes, lambertian, rho, data; the frame, n_geom and wavelength are
+     * filled already. */
     void (*make_bsdf)(const void *self, const surface_hit *hit, const wavelengths *w,
                       const bsdf_options *options, bsdf *out);
     /** Lobe classes and sides that may occur anywhere on it: SPECULAR or GLOSSY ones cast
@@ -50,9 +50,9 @@ material *material_new(const build_context *context, const char *kind, const par
 void material_free(material *m);
 
 /** @brief The bsdf of a material at a hit.
- *  @param lane ALL_LANES, or the lane a dispersed path has kept */
+ *  @param wavelength ALL_WAVELENGTHS, or the wavelength a dispersed path has kept */
 void material_bsdf(const material *m, const surface_hit *hit, const wavelengths *w,
-                   int lane, const bsdf_options *options, bsdf *out);
+                   int wavelength, const bsdf_options *options, bsdf *out);
 
 /** @brief True if its surfaces bound a body that refracts. */
 bool material_encloses(const material *m);

@@ -29,7 +29,7 @@ spectrum medium_transmittance(const medium *m, float t, const wavelengths *w)
         out = left_after(medium_extinction(m, w), t);
     if (m->color) {
         spectrum color = curve_eval(m->color, w);
-        for (int i = 0; i < N_LANES; i++)
+        for (int i = 0; i < N_WAVELENGTHS; i++)
             out[i] *= powf(color[i], t / m->distance);
     }
     return out;

@@ -20,7 +20,8 @@ typedef struct free_paths {
 static spectrum shares(spectrum carried)
 {
     float sum = spectrum_sum(carried);
-    return sum > 0.0f && isfinite(sum) ? carried / sum : spectrum_fill(1.0f / N_LANES);
+    return sum > 0.0f && isfinite(sum) ? carried / sum
+                                       : spectrum_fill(1.0f / N_WAVELENGTHS);
 }
 
 static free_paths free_paths_of(const medium *m, const wavelengths *w, spectrum carried,
@@ -32,39 +33,39 @@ static free_paths free_paths_of(const medium *m, const wavelengths *w, spectrum 
         .p = shares(carried),
         .t_max = t_max,
     };
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         f.ends[i] = -expm1f(-f.sigma_t[i] * minf(t_max, FLT_MAX));
     return f;
 }
 
 /* Which wavelength's density t is drawn from. What is left of u is uniform again. */
-static int choose_lane(spectrum p, float *u)
+static int choose_wavelength(spectrum p, float *u)
 {
-    int lane = 0;
-    while (lane < N_LANES - 1 && !(*u < p[lane]))
-        *u -= p[lane++];
-    *u = clampf(*u / maxf(p[lane], FLT_MIN), 0.0f, 0x1.fffffep-1f);
-    return lane;
+    int wavelength = 0;
+    while (wavelength < N_WAVELENGTHS - 1 && !(*u < p[wavelength]))
+        *u -= p[wavelength++];
+    *u = clampf(*u / maxf(p[wavelength], FLT_MIN), 0.0f, 0x1.fffffep-1f);
+    return wavelength;
 }
 
-/* All of them, and those that end within: a clear lane has none. */
+/* All of them, and those that end within: a clear wavelength has none. */
 static float draw_free(const free_paths *f, float u)
 {
-    int lane = choose_lane(f->p, &u);
-    float sigma_t = f->sigma_t[lane];
+    int wavelength = choose_wavelength(f->p, &u);
+    float sigma_t = f->sigma_t[wavelength];
     return sigma_t > 0.0f ? -log1pf(-u) / sigma_t : INFINITY;
 }
 
 static float draw_within(const free_paths *f, float u)
 {
-    int lane = choose_lane(f->p, &u);
-    float sigma_t = f->sigma_t[lane];
-    return sigma_t > 0.0f ? -log1pf(-u * f->ends[lane]) / sigma_t : 0.0f;
+    int wavelength = choose_wavelength(f->p, &u);
+    float sigma_t = f->sigma_t[wavelength];
+    return sigma_t > 0.0f ? -log1pf(-u * f->ends[wavelength]) / sigma_t : 0.0f;
 }
 
-static void leave_clear_lanes_out(free_paths *f)
+static void leave_clear_wavelengths_out(free_paths *f)
 {
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         f->p[i] = f->ends[i] > 0.0f ? f->p[i] : 0.0f;
     f->p = shares(f->p);
 }
@@ -78,7 +79,7 @@ static float density_free(const free_paths *f, spectrum left, float t)
 static float density_within(const free_paths *f, spectrum left)
 {
     spectrum density;
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         density[i] = f->ends[i] > 0.0f ? f->sigma_t[i] * left[i] / f->ends[i] : 0.0f;
     return spectrum_sum(f->p * density);
 }
@@ -113,7 +114,7 @@ medium_sample medium_sample_within(const medium *m, const wavelengths *w,
                                    spectrum carried, float t_max, float u)
 {
     free_paths f = free_paths_of(m, w, carried, t_max);
-    leave_clear_lanes_out(&f);
+    leave_clear_wavelengths_out(&f);
     float t = draw_within(&f, u);
     spectrum left = left_after(f.sigma_t, t);
     return only_within(&f, left, t, density_within(&f, left));
@@ -176,7 +177,7 @@ medium_sample medium_sample_within_near(const medium *m, const wavelengths *w,
 {
     const float near = NEAR_SHARE;
     free_paths f = free_paths_of(m, w, carried, t_max);
-    leave_clear_lanes_out(&f);
+    leave_clear_wavelengths_out(&f);
     float t = u < near ? draw_near(pivot, t_max, u / near)
                        : draw_within(&f, (u - near) / (1.0f - near));
     spectrum left = left_after(f.sigma_t, t);

@@ -5,11 +5,11 @@
  * weighted throughput never exceeds its sum before (Wilkie et al., "Hero Wavelength
  * Spectral Sampling", 2014, for distances).
  *
- * Light from a lamp in the medium falls off with the squared distance from it, and points
- * near it would be found too seldom. Where one is known, a part of the points is drawn in
- * proportion to that, equally by the angle under which the lamp sees the ray (Kulla &
- * Fajardo, "Importance Sampling Techniques for Path Tracing in Participating Media",
- * 2012), and weighed by the density of both together.
+ * Light from a light in the medium falls off with the squared distance from it, and
+ * points near it would be found too seldom. Where one is known, a part of the points is
+ * drawn in proportion to that, equally by the angle under which the light sees the ray
+ * (Kulla & Fajardo, "Importance Sampling Techniques for Path Tracing in Participating
+ * Media", 2012), and weighed by the density of both together.
  */
 #pragma once
 

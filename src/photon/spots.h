@@ -1,5 +1,5 @@
 /*
- * Bright spots: where photons landed, as lamps to sample.
+ * Bright spots: where photons landed, as lights to sample.
  *
  *        from
  *         \  \

@@ -48,14 +48,14 @@ size_t volume_map_bytes(const volume_map *map)
 }
 
 /* e^(-σt t), in one go where all wavelengths have the same σt. */
-static spectrum weakened(spectrum sigma_t, bool is_grey, float t)
+static spectrum transmittance_over(spectrum sigma_t, bool is_grey, float t)
 {
     return is_grey ? spectrum_fill(expf(-sigma_t[0] * t)) : left_after(sigma_t, t);
 }
 
 static bool all_alike(spectrum s)
 {
-    for (int i = 1; i < N_LANES; i++)
+    for (int i = 1; i < N_WAVELENGTHS; i++)
         if (s[i] < s[0] || s[i] > s[0])
             return false;
     return true;
@@ -83,7 +83,7 @@ spectrum volume_map_radiance(const volume_map *map, const volume_query *query,
             m->g, -dot3(r.direction, direction_unpack(store->wi[at->index])));
         float weight = phase * kernel_eval(&query->kernel, at->distance2, r2) /
                        kernel_area(&query->kernel, r2);
-        spectrum part = weakened(sigma_t, is_grey, at->t) *
+        spectrum part = transmittance_over(sigma_t, is_grey, at->t) *
                         medium_transmittance(query->solid, at->t, query->w) * weight *
                         store->flux[at->index];
         sum += part;

@@ -97,7 +97,7 @@ float film_add(film_sum *sum, const film_pass *pass, const radiance_sample *samp
 void film_put(film *f, int x, int y, const film_sum *sum);
 /** @brief The same for what the light groups gave: Σ of weighed radiance, n_groups. */
 void film_put_groups(film *f, const film_pass *pass, int x, int y, const spectrum *sums);
-/** @brief Adds what the pass brought from the lamps to pixels that are all put, splat by
+/** @brief Adds what the pass brought from the lights to pixels that are all put, splat by
  * splat in their order, by the pixel filter. */
 void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
                      splat_list splats);
@@ -108,8 +108,8 @@ void film_end_pass(film *f, unsigned threads);
  * @brief The relative error of the picture, estimated from the scatter of its passes:
  * √ of the mean over pixels of Var / (Y² + (m/10)²).
  *
- * Y is the pixel's luminance and m the mean one, lamps in sight counting no more than the
- * mean does. INFINITY before there are two passes.
+ * Y is the pixel's luminance and m the mean one, lights in sight counting no more than
+ * the mean does. INFINITY before there are two passes.
  */
 double film_noise(const film *f);
 

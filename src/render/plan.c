@@ -9,13 +9,13 @@ render_plan render_plan_of(const transport_plan *plan)
         .radius_is_set = plan->how.radius > 0.0,
         .guided = plan->guide && plan->n_photons[PHOTON_CAUSTIC] > 0,
         .p_spots = (double)plan->p_spots,
-        .p_blurred = plan->shares ? (double)plan->p_blurred : 1.0,
+        .p_blurred = plan->uses_mis ? (double)plan->p_blurred : 1.0,
         .time_slices = scene_time_slices(plan->scene, &plan->how),
         .work = plan->work,
         .planning = plan->planning,
         .n_trials = plan->n_trials,
     };
-    if (plan->shares && plan->n_photons[PHOTON_CAUSTIC] > 0)
+    if (plan->uses_mis && plan->n_photons[PHOTON_CAUSTIC] > 0)
         out.discs = (double)caustic_discs(plan, plan->radius[PHOTON_CAUSTIC]);
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         out.photons[c] = plan->n_photons[c];

@@ -13,7 +13,7 @@ typedef struct render_plan {
     bool radius_is_set;                 /**< by the settings; else measured */
     bool guided;  /**< caustic photons are started where they arrive */
     double discs; /**< m²: caustics are shared by photons' discs π r² N over the samples
-                     that see them (caustic_share); 0: photons or paths have them all */
+                     that see them (caustic_mis); 0: photons or paths have them all */
     double p_spots;   /**< of looking at bright spots from a surface */
     double p_blurred; /**< of a gather of caustics that is seen by way of a diffuse bounce
                        */

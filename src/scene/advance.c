@@ -56,12 +56,12 @@ scene_event scene_advance(const scene_traveller *who, path_segment *path,
 }
 
 bool scene_scatterer(const scene *s, const surface_hit *hit, const wavelengths *w,
-                     int lane, const bsdf_options *options, bsdf *out)
+                     int wavelength, const bsdf_options *options, bsdf *out)
 {
     if (hit->shape != NO_INDEX)
-        return scene_bsdf(s, hit, w, lane, options, out);
+        return scene_bsdf(s, hit, w, wavelength, options, out);
     const medium *m = scene_medium(s, hit->media.participating);
-    bsdf_make_phase(out, m->g, lane);
+    bsdf_make_phase(out, m->g, wavelength);
     return true;
 }
 

@@ -27,7 +27,7 @@ typedef enum scene_event {
 typedef struct path_segment {
     ray ray;
     spectrum throughput; /**< of a photon: its flux, W nm⁻¹ */
-    int lane;            /**< the wavelength that is left of it, or ALL_LANES */
+    int wavelength;      /**< the wavelength that is left of it, or ALL_WAVELENGTHS */
     const view *eye;     /**< it has not scattered on its way from there: shapes that the
                             camera does not see let it pass. NULL: it has, or never was */
 } path_segment;
@@ -35,7 +35,7 @@ typedef struct path_segment {
 /** @brief A path that starts at the eye. */
 static inline path_segment path_segment_from_eye(const view *eye, const ray *r)
 {
-    return (path_segment){*r, spectrum_fill(1.0f), ALL_LANES, eye};
+    return (path_segment){*r, spectrum_fill(1.0f), ALL_WAVELENGTHS, eye};
 }
 
 /** @brief Who travels. Functions may be NULL. */
@@ -62,7 +62,7 @@ scene_event scene_advance(const scene_traveller *who, path_segment *path,
 
 /** @brief What scatters there. @return false where nothing does */
 bool scene_scatterer(const scene *s, const surface_hit *hit, const wavelengths *w,
-                     int lane, const bsdf_options *options, bsdf *out);
+                     int wavelength, const bsdf_options *options, bsdf *out);
 
 /** @brief Takes a ray behind the next surface on it, cut-outs taken as solid; t_max
  * shrinks by the way made. @return false: it meets none */

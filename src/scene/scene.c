@@ -87,11 +87,11 @@ unsigned scene_lobes_around(const scene *s, const surface_hit *hit, const bsdf *
     return b->lobes | material_possible_lobes(s->materials->pdata[hit->material]);
 }
 
-bool scene_bsdf(const scene *s, const surface_hit *hit, const wavelengths *w, int lane,
-                const bsdf_options *options, bsdf *out)
+bool scene_bsdf(const scene *s, const surface_hit *hit, const wavelengths *w,
+                int wavelength, const bsdf_options *options, bsdf *out)
 {
     if (hit->material == NO_INDEX)
         return false;
-    material_bsdf(s->materials->pdata[hit->material], hit, w, lane, options, out);
+    material_bsdf(s->materials->pdata[hit->material], hit, w, wavelength, options, out);
     return true;
 }

@@ -49,7 +49,7 @@ typedef struct scene {
         light_power;        /**< over lights, by power: which one a photon starts from */
     light_tree *light_tree; /**< which one a point is lit by */
     wavelength_density *lines; /**< how wavelengths are drawn; NULL: evenly, since no
-                                  lamp has a spectrum of lines */
+                                  light has a spectrum of lines */
     char **light_groups;       /**< names; those of lights without one: "default" */
     int n_light_groups;        /**< 0: no light names one */
     int *environments;         /**< indices of lights that are environments */
@@ -65,7 +65,7 @@ typedef struct scene {
 
 /** @brief Those of a pass. */
 wavelengths scene_wavelengths(const scene *s, const settings *how, uint32_t pass);
-/** @brief Those of a trial before the first pass: the same for all trials, unless lamps
+/** @brief Those of a trial before the first pass: the same for all trials, unless lights
  * have lines that they might miss. */
 wavelengths scene_trial_wavelengths(const scene *s, uint32_t trial);
 
@@ -214,7 +214,7 @@ static inline const light *scene_light(const scene *s, int i)
     return s->lights->pdata[i];
 }
 
-/** @brief The participating medium that light leaves a lamp into, as in a medium_stack.
+/** @brief The participating medium around a light, as in a medium_stack.
  * @param n normal there, as light_emission has it */
 static inline uint32_t scene_light_medium(const scene *s, int i, vec3 n, vec3 direction)
 {
@@ -222,7 +222,7 @@ static inline uint32_t scene_light_medium(const scene *s, int i, vec3 n, vec3 di
     return dot3(direction, n) < 0.0f ? around->inside : around->outside;
 }
 
-/** @brief Puts a ray that light takes from lamp i into the media there. One that comes
+/** @brief Puts a ray that light takes from light i into the media there. One that comes
  * from beyond the scene is moved to where the medium around it begins, if there is one.
  * @param n as above */
 void scene_leave_light(const scene *s, int i, vec3 n, ray *r);
@@ -237,15 +237,15 @@ static inline int scene_light_group(const scene *s, int i)
  * shine. */
 spectrum scene_emitted(const scene *s, const surface_hit *hit, vec3 wo,
                        const wavelengths *w);
-/** @brief True if some light is one that no ray meets: such as a point, or a lamp of
+/** @brief True if some light is one that no ray meets: such as a point, or a light of
  * alpha 0. What it sends through glass or by mirrors only photons find. */
 bool scene_has_delta_lights(const scene *s);
 /** @brief Lobe classes and sides of the surface at the hit or beside it: a mixture is one
  * material here and another a hair away, where the eye may gather what landed here. */
 unsigned scene_lobes_around(const scene *s, const surface_hit *hit, const bsdf *b);
 /** @brief The bsdf at a hit. @return false if the hit has no material (an interface). */
-bool scene_bsdf(const scene *s, const surface_hit *hit, const wavelengths *w, int lane,
-                const bsdf_options *options, bsdf *out);
+bool scene_bsdf(const scene *s, const surface_hit *hit, const wavelengths *w,
+                int wavelength, const bsdf_options *options, bsdf *out);
 /** @brief A direction from ref to light i. @return false if none reaches ref that way. */
 bool scene_sample_one_light(const scene *s, int i, const wavelengths *w, vec3 ref,
                             float u_primitive, vec2 u, light_sample *out);

@@ -2,7 +2,7 @@
  * The solids of a scene. Only where something absorbs are they followed at all: then
  * clear glass is one too, since it displaces what it stands in.
  *
- * Whether a camera or a lamp is inside a solid is found by leaving: a ray to the
+ * Whether a camera or a light is inside a solid is found by leaving: a ray to the
  * outside crosses its surface from behind once more often than from the front.
  */
 #include "scene/scene_solids.h"
@@ -141,7 +141,7 @@ medium_stack scene_solids_at(const scene *s, vec3 p)
     return most;
 }
 
-/* Where a lamp's photons start; of lamps that are not beyond the scene. */
+/* Where a light's photons start; of lights that are not beyond the scene. */
 static medium_stack solids_of_light(const scene *s, const light *l)
 {
     const wavelengths w = wavelengths_at(0.5f);

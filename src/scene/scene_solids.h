@@ -6,5 +6,5 @@
 #include "scene/scene.h"
 
 /** @brief Tells the shapes of a scene with its acceleration structure what they bound,
- * and finds the solids that the lamps are in. */
+ * and finds the solids that the lights are in. */
 void scene_find_solids(scene *s);

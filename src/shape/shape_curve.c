@@ -8,7 +8,7 @@
  * around. "flat" curves turn to every ray, so a place seen from two sides is not the same
  * place: light tracing and camera rays differ by about a width there
  * (surface_hit.camera_facing). As in pbrt, rays that leave a flat curve start two widths
- * above it, and no curve can be a lamp.
+ * above it, and no curve can be a light.
  *
  * Places for aimed photons are drawn on the tube, of flat curves too: uniform along and
  * around, exact where the curve is straight.

@@ -1,7 +1,7 @@
 /*
  * Triangle meshes, in world space.
  *
- * Which side is outside decides where a lamp shines and what is inside glass; pbrt's
+ * Which side is outside decides where a light shines and what is inside glass; pbrt's
  * rules are kept:
  *   without normals  cross(p1 - p0, p2 - p0), turned round if ReverseOrientation is on or
  *                    the transform mirrors, but not both

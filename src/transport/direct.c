@@ -47,24 +47,24 @@ static spectrum weighed_lobe(const direct_query *query, const light_sample *to_l
 
 /* What photons leave of the light that a glossy lobe sends. */
 static float glossy_share(const direct_query *query, const light_sample *to_light,
-                          int lamp, bool each)
+                          int source, bool each)
 {
     const scene *s = query->scene;
     const bool far = isinf(to_light->distance);
     const vec3 here = query->hit->p, wi = to_light->wi;
     caustic_end end = {
-        .light = lamp,
+        .light = source,
         .p = far ? here : here + wi * to_light->distance,
         .n = to_light->n,
         .direction = -wi,
         .distance = to_light->distance,
         .pdf_lights = to_light->pdf,
         .pdf_scatter =
-            bsdf_pdf(query->all_lanes, query->wo, wi, LOBE_ALL, TRANSPORT_RADIANCE),
+            bsdf_pdf(query->all_wavelengths, query->wo, wi, LOBE_ALL, TRANSPORT_RADIANCE),
     };
     if (each)
-        end.pdf_lights *= light_tree_probability(s->light_tree, here, lamp);
-    return 1.0f - caustic_share_of(query->share, &end);
+        end.pdf_lights *= light_tree_probability(s->light_tree, here, source);
+    return 1.0f - caustic_mis_weight(query->mis, &end);
 }
 
 /* What a light sample gives. @return false if that is nothing. */
@@ -75,7 +75,7 @@ static bool radiance_of(const direct_query *query, const light_sample *to_light,
     float pdf = -1.0f;
     spectrum diffuse = weighed_lobe(query, to_light, delta, LOBE_DIFFUSE, &pdf);
     spectrum glossy = weighed_lobe(query, to_light, delta, LOBE_GLOSSY, &pdf);
-    if (query->share && !spectrum_is_black(glossy))
+    if (query->mis && !spectrum_is_black(glossy))
         glossy *= glossy_share(query, to_light, found->light, each);
     if (spectrum_is_black(diffuse + glossy))
         return false;
@@ -121,14 +121,14 @@ bool direct_pivot(const scene *s, const wavelengths *w, const ray *r, float leng
                   sampler *random, medium_pivot *out)
 {
     light_sample to_light;
-    int lamp;
+    int source;
     const light_numbers u = sampler_light(random);
     float u_way = sampler_1d(random);
     medium_sample any = medium_sample_within(scene_medium(s, r->media.participating), w,
                                              spectrum_fill(1.0f), length, u_way);
     vec3 from = r->origin + any.t * r->direction;
     if (!any.scatters ||
-        !scene_sample_light(s, w, from, u.light, u.primitive, u.place, &lamp,
+        !scene_sample_light(s, w, from, u.light, u.primitive, u.place, &source,
                             &to_light) ||
         !isfinite(to_light.distance))
         return false;

@@ -7,7 +7,7 @@
 
 #include "math/sampler.h"
 #include "medium/medium_sample.h"
-#include "photon/share.h"
+#include "photon/caustic_mis.h"
 #include "scene/advance.h"
 
 /** @brief What to evaluate at a surface, and how its lobes find light otherwise. */
@@ -25,8 +25,9 @@ typedef struct direct_query {
     bool by_side;      /**< the path takes each side apart ... */
     float p_side[2];   /**< ... with this probability: reflection, transmission */
     /** Of what glossy lobes send, photons carry this share; NULL: none of it. */
-    const caustic_share *share;
-    const bsdf *all_lanes; /**< for the share: the bsdf, whatever lane the path keeps */
+    const caustic_mis *mis;
+    const bsdf *all_wavelengths; /**< for the share: the bsdf, whatever wavelength the
+                                    path keeps */
 } direct_query;
 
 /** @brief Up to so many lights are few. */
@@ -38,13 +39,13 @@ typedef struct direct_radiance {
     int light; /**< that it came from */
 } direct_radiance;
 
-/** @brief Light that comes straight from lamps, by a sample of one or of each.
+/** @brief Light that comes straight from lights, by a sample of one or of each.
  *  @param shadow_rays_traced is increased
  *  @return how many lights gave something; found holds that many */
 int direct_light(const direct_query *query, sampler *random,
                  direct_radiance found[FEW_LIGHTS], uint64_t *shadow_rays_traced);
 
-/** @brief A place on a lamp that may light a ray through a medium: one to draw points
+/** @brief A place on a light that may light a ray through a medium: one to draw points
  * near (medium_sample.h). @param length m: how far the medium reaches
  *  @return false: there is none, or it is beyond the scene */
 bool direct_pivot(const scene *s, const wavelengths *w, const ray *r, float length,

@@ -165,7 +165,7 @@ static bool send_pilot(const pilot *p, photon_class c, const cancel_flag *cancel
         .photon_class = c,
         .casters = plan->casters,
         .guide = plan->guide,
-        .share = plan->shares ? &plan->share : NULL,
+        .mis = plan->uses_mis ? &plan->mis : NULL,
         .n_photons = n_pilots(plan, c),
         .cancel = cancel,
     };

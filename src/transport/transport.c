@@ -74,7 +74,7 @@ void transport_plan_clear(transport_plan *plan)
     plan->n_sight = 0;
     g_clear_pointer(&plan->vertex_radii, radius_cache_free);
     photon_store_clear(&plan->lit);
-    plan->share = (caustic_share){0};
+    plan->mis = (caustic_mis){0};
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         g_clear_pointer(&plan->radius_cache[c], radius_cache_free);
         g_clear_pointer(&plan->radius_cache_in_media[c], radius_cache_free);

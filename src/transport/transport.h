@@ -12,8 +12,8 @@
 
 #include "base/parallel.h"
 #include "math/sampler.h"
+#include "photon/caustic_mis.h"
 #include "photon/estimate.h"
-#include "photon/share.h"
 #include "photon/trace/trace.h"
 #include "scene/view.h"
 #include "transport/radius_cache.h"
@@ -24,33 +24,33 @@ typedef enum radiance_layer {
     LAYER_INDIRECT, /**< by at least one diffuse bounce before the seen surface */
     LAYER_CAUSTIC,  /**< light → specular or glossy → seen surface → eye */
     LAYER_SPECULAR, /**< all that is seen by way of a specular or glossy bounce */
-    LAYER_EMISSION, /**< lamps and sky seen directly */
+    LAYER_EMISSION, /**< lights and environment seen directly */
     N_LAYERS
 } radiance_layer;
 
 /** @brief What one camera ray found. */
 typedef struct radiance_sample {
     spectrum layers[N_LAYERS]; /**< radiance */
-    spectrum *groups;          /**< the same light, apart by the group of the lamp it came
-                                  from: the caller's, zeroed; NULL: not asked for */
-    spectrum albedo;           /**< of the first surface */
-    vec3 normal;               /**< shading normal of the first surface, toward the eye */
-    float depth;               /**< distance to it, m; 0: none */
-    vec3 p, n_geom;            /**< of it; the true normal toward the eye too */
-    vec2 uv;                   /**< of it */
+    spectrum *groups; /**< the same light, apart by the group of the light it came
+                         from: the caller's, zeroed; NULL: not asked for */
+    spectrum albedo;  /**< of the first surface */
+    vec3 normal;      /**< shading normal of the first surface, toward the eye */
+    float depth;      /**< distance to it, m; 0: none */
+    vec3 p, n_geom;   /**< of it; the true normal toward the eye too */
+    vec2 uv;          /**< of it */
 } radiance_sample;
 
 /** @brief Notes the first surface, seen from a point in direction -wo. */
 void radiance_sample_note(radiance_sample *out, const surface_hit *hit, const bsdf *b,
                           vec3 wo, vec3 from);
 
-/** @brief Light that a pass found on its way from the lamps, at a place of the film. */
+/** @brief Light that a pass found on its way from the lights, at a place of the film. */
 typedef struct splat {
     spectrum value; /**< a pass' splats on an area of the film, in pixels, sum up to the
                        integral of radiance over it */
     vec2 raster;
     radiance_layer layer;
-    int group; /**< of the lamp it came from: scene_light_group */
+    int group; /**< of the light it came from: scene_light_group */
 } splat;
 
 /** @brief The splats of a pass, in an order that does not depend on threads. Borrowed. */
@@ -139,8 +139,8 @@ typedef struct transport_plan {
     radius_cache *vertex_radii;
     size_t n_vertex_paths; /**< light subpaths that these are of */
     emission_guide *guide; /**< owned; NULL: none was learned */
-    bool shares;           /**< photons share caustics with paths from the eye */
-    caustic_share share;   /**< what they share before radii are known, for trials */
+    bool uses_mis;         /**< photons share caustics with paths from the eye */
+    caustic_mis mis;       /**< what they share before radii are known, for trials */
     float *boost;          /**< share.boost; owned */
     photon_store lit;      /**< places that light sampling found lit (path_effort_measure)
                             */

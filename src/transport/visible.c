@@ -40,7 +40,7 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
         if (scene_advance(&who, &path, &hit) != EVENT_SURFACE)
             return false;
         way += length3(hit.p - start);
-        scene_bsdf(from->scene, &hit, &from->w, ALL_LANES, &from->options, &b);
+        scene_bsdf(from->scene, &hit, &from->w, ALL_WAVELENGTHS, &from->options, &b);
         if (b.lobes & LOBE_DIFFUSE) {
             float area = camera_pixel_area(&from->view->camera, way);
             *out = (visible_point){hit.p, sqrtf(area)};

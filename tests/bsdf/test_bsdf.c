@@ -23,9 +23,9 @@ static const unsigned MASKS[] = {
 };
 
 /* The model in a skew frame; tilt: angle between shading and geometric normal. */
-static bsdf make(const model *m, float tilt, int lane)
+static bsdf make(const model *m, float tilt, int wavelength)
 {
-    bsdf b = {.lane = lane};
+    bsdf b = {.wavelength = wavelength};
     vec3 n = normalize3(vec3_make(0.3f, -0.5f, 0.8f));
     b.shading = frame_from_tangent(n, vec3_make(1.0f, 0.4f, 0.2f));
     vec3 side = normalize3(b.shading.s + 0.5f * b.shading.t);
@@ -76,7 +76,7 @@ static bool has_density(const bsdf *b, unsigned mask)
 
 static void check_chi2(const model *m, float degrees, unsigned mask, float tilt)
 {
-    drawing d = {.b = make(m, tilt, ALL_LANES), .mask = mask};
+    drawing d = {.b = make(m, tilt, ALL_WAVELENGTHS), .mask = mask};
     if (!has_density(&d.b, mask))
         return;
     d.wo = world(&d.b, degrees, 0.7f);
@@ -89,7 +89,7 @@ static void check_chi2(const model *m, float degrees, unsigned mask, float tilt)
 /* Whether an earlier mask asks this model for the same lobes. */
 static bool asked_already(const model *m, size_t k)
 {
-    bsdf b = make(m, 0.0f, ALL_LANES);
+    bsdf b = make(m, 0.0f, ALL_WAVELENGTHS);
     for (size_t i = 0; i < k; i++)
         if ((MASKS[i] & b.lobes) == (MASKS[k] & b.lobes))
             return true;
@@ -123,7 +123,7 @@ static bool check_draw(const drawing *d, const bsdf_sample *s, const char *name)
     spectrum f = bsdf_eval(&d->b, d->wo, s->wi, d->mask, d->mode);
     spectrum weight = f * (fabsf(dot3(s->wi, d->b.shading.n)) / pdf);
     float error = fabsf(pdf / s->pdf - 1.0f);
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         error = fmaxf(error,
                       fabsf(weight[i] - s->weight[i]) / (spectrum_max(s->weight) + 0.1f));
     /* Near grazing the directions themselves are rounded. */
@@ -138,12 +138,14 @@ static bool check_draw(const drawing *d, const bsdf_sample *s, const char *name)
     return false;
 }
 
-static void check_draws(const model *m, int lane, unsigned mask, transport_mode mode)
+static void check_draws(const model *m, int wavelength, unsigned mask,
+                        transport_mode mode)
 {
     int n_apart = 0;
     for (uint64_t i = 0; i < 400; i++) {
         sampler s = sampler_make(hash_mix(5, mask), i);
-        drawing d = {.b = make(m, i % 3 ? 0.0f : 0.4f, lane), .mask = mask, .mode = mode};
+        drawing d = {
+            .b = make(m, i % 3 ? 0.0f : 0.4f, wavelength), .mask = mask, .mode = mode};
         float degrees = 180.0f * sampler_1d(&s);
         d.wo = world(&d.b, degrees, 6.0f * sampler_1d(&s));
         bsdf_sample out;
@@ -159,7 +161,7 @@ static void test_weights(void)
 {
     for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++)
         for (size_t k = 0; k < G_N_ELEMENTS(MASKS); k++) {
-            check_draws(&MODELS[m], ALL_LANES, MASKS[k], TRANSPORT_RADIANCE);
+            check_draws(&MODELS[m], ALL_WAVELENGTHS, MASKS[k], TRANSPORT_RADIANCE);
             check_draws(&MODELS[m], 3, MASKS[k], TRANSPORT_IMPORTANCE);
         }
 }
@@ -173,7 +175,7 @@ static vec3 random_direction(sampler *s)
 
 static void assert_near(spectrum a, spectrum b, float relative, const char *name)
 {
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         if (!(fabsf(a[i] - b[i]) <= relative * (fabsf(a[i]) + fabsf(b[i])) + 5e-6f))
             g_error("%s: lane %d: %g against %g", name, i, (double)a[i], (double)b[i]);
 }
@@ -185,7 +187,7 @@ static void test_adjoint(void)
     for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++)
         for (uint64_t i = 0; i < 2000; i++) {
             sampler s = sampler_make(77, i);
-            bsdf b = make(&MODELS[m], i & 1 ? 0.5f : 0.0f, ALL_LANES);
+            bsdf b = make(&MODELS[m], i & 1 ? 0.5f : 0.0f, ALL_WAVELENGTHS);
             vec3 from = random_direction(&s), to = random_direction(&s), n = b.shading.n;
             if (fabsf(dot3(from, b.n_geom)) < 2e-3f)
                 continue;
@@ -203,7 +205,7 @@ static void test_reciprocity(void)
     for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++)
         for (uint64_t i = 0; i < 2000; i++) {
             sampler s = sampler_make(78, i);
-            bsdf b = make(&MODELS[m], 0.0f, ALL_LANES);
+            bsdf b = make(&MODELS[m], 0.0f, ALL_WAVELENGTHS);
             vec3 x = random_direction(&s), y = random_direction(&s);
             spectrum there = bsdf_eval(&b, x, y, LOBE_ALL, TRANSPORT_RADIANCE);
             spectrum back = bsdf_eval(&b, y, x, LOBE_ALL, TRANSPORT_RADIANCE);
@@ -261,7 +263,7 @@ static void test_energy(void)
 {
     for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++)
         for (int k = 0; k < 8; k++) {
-            drawing d = {.b = make(&MODELS[m], 0.0f, ALL_LANES),
+            drawing d = {.b = make(&MODELS[m], 0.0f, ALL_WAVELENGTHS),
                          .mask = LOBE_ALL,
                          .mode = TRANSPORT_IMPORTANCE};
             d.wo = world(&d.b, (float[]){2, 30, 45, 70, 85, 100, 140, 170}[k], 0.2f);
@@ -278,7 +280,7 @@ static void test_energy(void)
                         : g_str_has_prefix(name, "rough") ? 0.01f
                                                           : 0.06f;
             spectrum albedo = mean_albedo(&d);
-            for (int i = 0; i < N_LANES; i++)
+            for (int i = 0; i < N_WAVELENGTHS; i++)
                 g_assert_cmpfloat(fabsf(albedo[i] - mean[i]), <, slack + off);
         }
 }
@@ -288,7 +290,7 @@ static void test_sides_apart(void)
 {
     for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++)
         for (int k = 0; k < 4; k++) {
-            drawing d = {.b = make(&MODELS[m], 0.0f, ALL_LANES)};
+            drawing d = {.b = make(&MODELS[m], 0.0f, ALL_WAVELENGTHS)};
             d.wo = world(&d.b, (float[]){20, 60, 110, 165}[k], 0.2f);
             float errors[3];
             spectrum sum = {0};
@@ -300,7 +302,7 @@ static void test_sides_apart(void)
             d.mask = LOBE_ALL;
             spectrum all = mean_weight(&d, 10000, &errors[2]);
             float slack = 5.5f * (errors[0] + errors[1] + errors[2]) + 1e-4f;
-            for (int i = 0; i < N_LANES; i++)
+            for (int i = 0; i < N_WAVELENGTHS; i++)
                 g_assert_cmpfloat(fabsf(sum[i] - all[i]), <, slack);
         }
 }
@@ -334,7 +336,7 @@ static void test_classes_apart(void)
     static const unsigned classes[2] = {LOBE_DIFFUSE, LOBE_GLOSSY};
     for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++)
         for (int k = 0; k < 4; k++) {
-            drawing d = {.b = make(&MODELS[m], k & 1 ? 0.3f : 0.0f, ALL_LANES),
+            drawing d = {.b = make(&MODELS[m], k & 1 ? 0.3f : 0.0f, ALL_WAVELENGTHS),
                          .mode = k & 2 ? TRANSPORT_IMPORTANCE : TRANSPORT_RADIANCE};
             if (!bsdf_has_both(&d.b))
                 continue;
@@ -346,7 +348,7 @@ static void test_classes_apart(void)
                 d.mask = classes[c] | LOBE_ANY_SIDE;
                 spectrum alone = mean_weight(&d, 20000, &error);
                 float slack = 5.5f * (errors[c] + error) + 1e-4f;
-                for (int i = 0; i < N_LANES; i++)
+                for (int i = 0; i < N_WAVELENGTHS; i++)
                     g_assert_cmpfloat(fabsf(by_class[c][i] - alone[i]), <, slack);
             }
         }
@@ -357,7 +359,7 @@ static void test_dispersion(void)
 {
     model flint = {"flint", make_flint, 1.0};
     for (int side = 0; side < 2; side++) {
-        bsdf b = make(&flint, 0.0f, ALL_LANES);
+        bsdf b = make(&flint, 0.0f, ALL_WAVELENGTHS);
         vec3 wo = world(&b, side ? 150.0f : 40.0f, 0.1f);
         spectrum refracted = {0}, tangent = {0};
         enum { N = 1 << 14 };
@@ -368,15 +370,15 @@ static void test_dispersion(void)
             g_assert_true(bsdf_sample_direction(&b, wo, u_lobe, sampler_2d(&s), LOBE_ALL,
                                                 TRANSPORT_IMPORTANCE, &out));
             if (out.lobe & LOBE_REFLECTION) {
-                g_assert_cmpint(out.lane, ==, ALL_LANES);
+                g_assert_cmpint(out.wavelength, ==, ALL_WAVELENGTHS);
                 continue;
             }
-            g_assert_cmpint(out.lane, >=, 0);
-            g_assert_cmpfloat(spectrum_sum(out.weight), ==, out.weight[out.lane]);
+            g_assert_cmpint(out.wavelength, >=, 0);
+            g_assert_cmpfloat(spectrum_sum(out.weight), ==, out.weight[out.wavelength]);
             refracted += out.weight / N;
             tangent += out.weight * length3(cross3(out.wi, b.shading.n)) / N;
         }
-        for (int i = 0; i < N_LANES; i++) {
+        for (int i = 0; i < N_WAVELENGTHS; i++) {
             float eta = side ? 1.0f / FLINT[i] : FLINT[i];
             float cos_o = fabsf(dot3(wo, b.shading.n));
             float t = 1.0f - fresnel_dielectric(cos_o, eta);
@@ -391,7 +393,7 @@ static void test_dispersion(void)
 static void test_rough_dispersion(void)
 {
     model flint = {"rough flint", make_rough_flint, 1.0};
-    bsdf all = make(&flint, 0.0f, ALL_LANES);
+    bsdf all = make(&flint, 0.0f, ALL_WAVELENGTHS);
     vec3 wo = world(&all, 50.0f, 0.3f);
     for (uint64_t i = 0; i < 500; i++) {
         sampler s = sampler_make(19, i);
@@ -402,11 +404,13 @@ static void test_rough_dispersion(void)
             continue;
         spectrum f = bsdf_eval(&all, wo, out.wi, LOBE_ALL, TRANSPORT_RADIANCE);
         float pdf = 0.0f;
-        for (int lane = 0; lane < N_LANES; lane++) {
-            bsdf one = make(&flint, 0.0f, lane);
+        for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++) {
+            bsdf one = make(&flint, 0.0f, wavelength);
             spectrum g = bsdf_eval(&one, wo, out.wi, LOBE_ALL, TRANSPORT_RADIANCE);
-            g_assert_cmpfloat(fabsf(g[lane] - f[lane]), <=, 1e-5f * g[lane]);
-            pdf += bsdf_pdf(&one, wo, out.wi, LOBE_ALL, TRANSPORT_RADIANCE) / N_LANES;
+            g_assert_cmpfloat(fabsf(g[wavelength] - f[wavelength]), <=,
+                              1e-5f * g[wavelength]);
+            pdf +=
+                bsdf_pdf(&one, wo, out.wi, LOBE_ALL, TRANSPORT_RADIANCE) / N_WAVELENGTHS;
         }
         g_assert_cmpfloat(fabsf(pdf / out.pdf - 1.0f), <, 1e-3f);
     }
@@ -416,7 +420,7 @@ static void test_rough_dispersion(void)
 static void test_modes(void)
 {
     model glass = {"glass", make_glass, 1.0};
-    bsdf b = make(&glass, 0.0f, ALL_LANES);
+    bsdf b = make(&glass, 0.0f, ALL_WAVELENGTHS);
     for (int side = 0; side < 2; side++) {
         vec3 wo = world(&b, side ? 160.0f : 20.0f, 0.0f);
         float eta = side ? 1.0f / 1.5f : 1.5f;
@@ -444,7 +448,7 @@ static void test_disagreeing_normals(void)
     for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++)
         for (uint64_t i = 0; i < 3000; i++) {
             sampler s = sampler_make(99, i);
-            bsdf b = make(&MODELS[m], 0.6f, ALL_LANES);
+            bsdf b = make(&MODELS[m], 0.6f, ALL_WAVELENGTHS);
             vec3 wo = random_direction(&s), wi = random_direction(&s);
             bool lit = dot3(wi, b.n_geom) * dot3(wi, b.shading.n) > 0.0f;
             unsigned wide = LOBE_DIFFUSE | LOBE_ANY_SIDE;
@@ -465,7 +469,7 @@ static void test_folded_energy(void)
     for (size_t m = 0; m < G_N_ELEMENTS(MODELS); m++)
         for (uint64_t i = 0; i < 40; i++) {
             sampler s = sampler_make(98, i);
-            drawing d = {.b = make(&MODELS[m], 0.5f, ALL_LANES),
+            drawing d = {.b = make(&MODELS[m], 0.5f, ALL_WAVELENGTHS),
                          .mask = LOBE_ALL,
                          .mode = TRANSPORT_RADIANCE};
             d.wo = random_direction(&s);
@@ -510,7 +514,7 @@ static void test_phong_energy(void)
     frame up = frame_from_normal(vec3_make(0, 0, 1));
     for (int k = 0; k < 5; k++) {
         float n = (float[]){0, 3, 20, 300, 10000}[k];
-        bsdf b = {.lane = ALL_LANES, .shading = up, .n_geom = up.n};
+        bsdf b = {.wavelength = ALL_WAVELENGTHS, .shading = up, .n_geom = up.n};
         bsdf_make_phong(&b, spectrum_fill(0.5f), spectrum_fill(1.0f), n);
         for (int i = 0; i < 10; i++) {
             float z = 1.0f - (float)i / 10.0f;

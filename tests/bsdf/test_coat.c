@@ -93,13 +93,13 @@ static void check_layers(float alpha, float eta, float rho, float thickness, int
     enum { N = 200000 };
     const ggx g = ggx_make(alpha, alpha);
     frame up = frame_from_normal(vec3_make(0, 0, 1));
-    layers l = {.coat = {.lane = ALL_LANES, .shading = up, .n_geom = up.n},
+    layers l = {.coat = {.wavelength = ALL_WAVELENGTHS, .shading = up, .n_geom = up.n},
                 .rho = rho,
                 .thickness = thickness,
                 .bounces = bounces};
     bsdf_make_dielectric(&l.coat, spectrum_fill(eta), false, g);
     coat_table *table = coat_table_new(&(coat_range){alpha, alpha, eta, eta, thickness});
-    bsdf b = {.lane = ALL_LANES, .shading = up, .n_geom = up.n};
+    bsdf b = {.wavelength = ALL_WAVELENGTHS, .shading = up, .n_geom = up.n};
     bsdf_make_coated(&b, spectrum_fill(rho), spectrum_fill(eta), alpha, table, bounces);
     for (int angle = 0; angle < 2; angle++) {
         vec3 from = normalize3(vec3_make(angle ? 2.0f : 0.3f, 0.1f, 1.0f));
@@ -220,7 +220,7 @@ static void check_walks(const char *name, const coat_layers *l)
 {
     enum { N = 80000 };
     frame up = frame_from_normal(vec3_make(0, 0, 1));
-    const bsdf empty = {.lane = ALL_LANES, .shading = up, .n_geom = up.n};
+    const bsdf empty = {.wavelength = ALL_WAVELENGTHS, .shading = up, .n_geom = up.n};
     twin t = {.face = empty, .base = empty, .l = l};
     bsdf b = empty;
     bsdf_make_layered(&b, l);
@@ -311,7 +311,7 @@ static void test_coat_furnace(void)
 {
     coat_table *table = coat_table_new(&(coat_range){0, 0, 1.5f, 1.5f, 0});
     frame up = frame_from_normal(vec3_make(0, 0, 1));
-    bsdf b = {.lane = ALL_LANES, .shading = up, .n_geom = up.n};
+    bsdf b = {.wavelength = ALL_WAVELENGTHS, .shading = up, .n_geom = up.n};
     bsdf_make_coated(&b, spectrum_fill(1.0f), spectrum_fill(1.5f), 0.0f, table, 1000);
     for (int i = 1; i < 20; i++) {
         float z = (float)i / 20.0f;

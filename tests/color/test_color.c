@@ -103,7 +103,7 @@ static void test_wavelengths_are_stratified(void)
         unsigned char hit[8 * 16] = {0};
         for (uint32_t pass = 0; pass < 16; pass++) {
             wavelengths w = wavelengths_for_pass(seed, pass);
-            for (int i = 0; i < N_LANES; i++) {
+            for (int i = 0; i < N_WAVELENGTHS; i++) {
                 float u = (w.lambda[i] - LAMBDA_MIN) / (LAMBDA_MAX - LAMBDA_MIN);
                 g_assert_true(u >= 0.0f && u < 1.0f && (int)(u * 8.0f) == i);
                 hit[(int)(u * 128.0f)]++;
@@ -233,8 +233,8 @@ static void test_grey_is_flat(void)
         g_assert_true(curve_is_constant(albedo) && curve_is_constant(eta));
         spectrum s[3] = {curve_eval(albedo, &w), curve_eval(eta, &w), smooth_eval(c, &w)};
         for (int k = 0; k < 3; k++)
-            for (int lane = 0; lane < N_LANES; lane++)
-                g_assert_cmpfloat(fabsf(s[k][lane] - value), <, 2e-7f);
+            for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++)
+                g_assert_cmpfloat(fabsf(s[k][wavelength] - value), <, 2e-7f);
     }
 }
 
@@ -339,7 +339,7 @@ static void test_odd_texels_stay_finite(void)
         float c[3];
         smooth_from_rgb(color_space_at(i / n / n / n), rgb, c);
         spectrum s = smooth_eval(c, &w);
-        for (int k = 0; k < N_LANES; k++)
+        for (int k = 0; k < N_WAVELENGTHS; k++)
             g_assert_true(s[k] >= 0.0f && s[k] <= 1.0f);
     }
 }

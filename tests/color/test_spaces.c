@@ -13,7 +13,7 @@ static const float leaf[3] = {0.2f, 0.5f, 0.1f};
 
 static void assert_same(spectrum a, spectrum b, float tolerance)
 {
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         g_assert_cmpfloat(fabsf(a[i] - b[i]), <, tolerance);
 }
 
@@ -51,8 +51,8 @@ static void test_directive(void)
             surface_hit hit = {.n = {0, 0, 1, 0}, .n_geom = {0, 0, 1, 0}};
             hit.dpdu = vec3_make(1, 0, 0);
             bsdf b;
-            material_bsdf(s->materials->pdata[on->material], &hit, &w, ALL_LANES, &plain,
-                          &b);
+            material_bsdf(s->materials->pdata[on->material], &hit, &w, ALL_WAVELENGTHS,
+                          &plain, &b);
             rho[k] = b.rho;
         }
         assert_same(rho[0], curve_in(spaces[i], CURVE_ALBEDO, &w), 1e-5f);

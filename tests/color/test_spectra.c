@@ -25,7 +25,7 @@ static void test_tables(void)
     g_assert_true(curve_is_constant(flat) && !curve_is_constant(part));
     wavelengths w = wavelengths_at(0.77f);
     spectrum s = curve_eval(odd, &w);
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         g_assert_cmpfloat(fabsf(s[i] - curve_at(odd, w.lambda[i])), <, 1e-6f);
     /* a line narrower than a nanometre keeps its area */
     const observer *o = observer_get();

@@ -82,7 +82,7 @@ static bsdf bsdf_at(const material *m, float u)
                        .dpdv = {0, 1, 0},
                        .uv = {u, 0.5f}};
     bsdf b;
-    material_bsdf(m, &hit, &w, ALL_LANES, &plain, &b);
+    material_bsdf(m, &hit, &w, ALL_WAVELENGTHS, &plain, &b);
     return b;
 }
 

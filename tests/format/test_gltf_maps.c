@@ -111,7 +111,7 @@ static bsdf bsdf_at(const scene *s, const surface_hit *hit, const wavelengths *w
 {
     bsdf b;
     const bsdf_options options = {0};
-    g_assert_true(scene_bsdf(s, hit, w, ALL_LANES, &options, &b));
+    g_assert_true(scene_bsdf(s, hit, w, ALL_WAVELENGTHS, &options, &b));
     return b;
 }
 

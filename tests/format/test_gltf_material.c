@@ -292,8 +292,8 @@ static void test_single_sided(void)
                 bsdf b;
                 g_assert_true(scene_intersect(s, &r, &hit));
                 g_assert_cmpfloat(fabsf(hit.t - 0.1f), <, 0.02f);
-                material_bsdf(s->materials->pdata[hit.material], &hit, &w, ALL_LANES,
-                              &plain, &b);
+                material_bsdf(s->materials->pdata[hit.material], &hit, &w,
+                              ALL_WAVELENGTHS, &plain, &b);
                 albedo[side] = (double)spectrum_mean(
                     bsdf_albedo(&b, vec3_make(0, 0, side ? -1 : 1), LOBE_ALL));
             }
@@ -319,7 +319,7 @@ static void test_unlit(void)
     const light *l = scene_light(s, 0), *one = scene_light(glows, 0);
     spectrum half = l->kind->radiance(l->self, &hit, slanted, &w);
     spectrum whole = one->kind->radiance(one->self, &hit, slanted, &w);
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         g_assert_cmpfloat(fabsf(half[i] / whole[i] - 0.5f), <, 0.01f);
 }
 

@@ -95,7 +95,7 @@ static void count_greys(const scene *s, int n_points, const float greys[], unsig
         hit.p = vec3_make((float)g_rand_double(random), (float)g_rand_double(random),
                           (float)g_rand_double(random));
         bsdf b;
-        material_bsdf(m, &hit, &w, ALL_LANES, &plain, &b);
+        material_bsdf(m, &hit, &w, ALL_WAVELENGTHS, &plain, &b);
         for (unsigned i = 0; i < n; i++)
             if (fabsf(b.rho[0] - greys[i]) < 1e-3f)
                 shares[i] += 1.0 / n_points;

@@ -365,7 +365,7 @@ static void test_power_and_scale(void)
     light *l = make("goniometric", p, NULL);
     const wavelengths w = wavelengths_at(0.5f);
     spectrum x = l->kind->power(l->self, &w);
-    g_assert_cmpfloat(x[N_LANES - 2], >, 5 * x[2]);
+    g_assert_cmpfloat(x[N_WAVELENGTHS - 2], >, 5 * x[2]);
     light_free(l);
 }
 

@@ -31,7 +31,7 @@ static double by_passes(const wavelength_density *d, const curve *c, uint32_t pa
         wavelengths w = wavelengths_drawn(d, wavelength_offset(3, pass));
         spectrum s;
         float xyz[3];
-        for (int i = 0; i < N_LANES; i++)
+        for (int i = 0; i < N_WAVELENGTHS; i++)
             s[i] = c ? curve_at(c, w.lambda[i]) : (float)smooth_at(w.lambda[i]);
         spectrum_to_xyz(&w, s, xyz);
         sum += (double)xyz[1] / passes;
@@ -65,8 +65,8 @@ static void test_drawn_wavelengths_ascend(void)
     for (uint32_t pass = 0; pass < 64; pass++) {
         wavelengths w = wavelengths_drawn(&d, wavelength_offset(9, pass));
         g_assert_cmpfloat(w.lambda[0], >=, LAMBDA_MIN);
-        g_assert_cmpfloat(w.lambda[N_LANES - 1], <=, LAMBDA_MAX);
-        for (int i = 1; i < N_LANES; i++)
+        g_assert_cmpfloat(w.lambda[N_WAVELENGTHS - 1], <=, LAMBDA_MAX);
+        for (int i = 1; i < N_WAVELENGTHS; i++)
             g_assert_cmpfloat(w.lambda[i], >, w.lambda[i - 1]);
     }
     wavelengths even = wavelengths_drawn(NULL, 0.3f), at = wavelengths_at(0.3f);

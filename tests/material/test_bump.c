@@ -59,7 +59,7 @@ static bsdf bsdf_at(const build_context *context, params *p, const surface_hit *
     const wavelengths w = wavelengths_at(0.5f);
     const bsdf_options plain = {0};
     bsdf b;
-    material_bsdf(m, hit, &w, ALL_LANES, &plain, &b);
+    material_bsdf(m, hit, &w, ALL_WAVELENGTHS, &plain, &b);
     material_free(m);
     params_free(p);
     return b;

@@ -55,7 +55,7 @@ static bsdf at(const material *m, const bsdf_options *options)
 {
     wavelengths w = wavelengths_at(0.5f);
     bsdf b;
-    material_bsdf(m, &flat, &w, ALL_LANES, options, &b);
+    material_bsdf(m, &flat, &w, ALL_WAVELENGTHS, options, &b);
     return b;
 }
 
@@ -150,11 +150,11 @@ static void test_classes(void)
     g_assert_cmpuint(class_of("dielectric", 1.0f), ==, LOBE_GLOSSY);
 }
 
-static float normal_reflectance(params *p, int lane)
+static float normal_reflectance(params *p, int wavelength)
 {
     material *m = make("conductor", p);
     bsdf b = at(m, &plain);
-    float r = bsdf_albedo(&b, vec3_make(0, 0, 1), LOBE_ALL)[lane];
+    float r = bsdf_albedo(&b, vec3_make(0, 0, 1), LOBE_ALL)[wavelength];
     material_free(m);
     return r;
 }
@@ -186,7 +186,7 @@ static void test_dispersion_by_eta(void)
     vec3 wo = normalize3(vec3_make(1, 0, 1));
     g_assert_true(bsdf_sample_direction(&b, wo, 0.9f, (vec2){0.5f, 0.5f}, LOBE_ALL,
                                         TRANSPORT_RADIANCE, &s));
-    g_assert_cmpint(s.lane, ==, ALL_LANES);
+    g_assert_cmpint(s.wavelength, ==, ALL_WAVELENGTHS);
     g_assert_cmpfloat(fabsf(s.eta - 1.7f), <, 1e-6f);
     material_free(m);
     p = list();
@@ -195,7 +195,7 @@ static void test_dispersion_by_eta(void)
     b = at(m, &plain);
     g_assert_true(bsdf_sample_direction(&b, wo, 0.99f, (vec2){0.5f, 0.5f}, LOBE_ALL,
                                         TRANSPORT_RADIANCE, &s));
-    g_assert_cmpint(s.lane, ==, 7);
+    g_assert_cmpint(s.wavelength, ==, 7);
     g_assert_cmpfloat(fabsf(s.eta - 1.775f), <, 0.01f);
     material_free(m);
 }
@@ -386,7 +386,7 @@ static void test_mix(void)
             surface_hit hit = flat;
             hit.p = vec3_make(1e-3f * (float)(i % 200), 1e-3f * (float)(i / 200), 2);
             bsdf b, again;
-            material_bsdf(m, &hit, &w, ALL_LANES, &plain, &b);
+            material_bsdf(m, &hit, &w, ALL_WAVELENGTHS, &plain, &b);
             material_bsdf(m, &hit, &w, 3, &plain, &again);
             g_assert_cmpuint(b.lobes, ==, again.lobes);
             n_metal += (b.lobes & LOBE_SPECULAR) != 0;
@@ -472,8 +472,9 @@ static void test_smooth_lacquer(void)
         bsdf_sample s;
         g_assert_true(bsdf_sample_direction(&b, wo, 0.3f, (vec2){0.5f, 0.5f}, LOBE_ALL,
                                             TRANSPORT_RADIANCE, &s));
-        for (int lane = 0; lane < N_LANES; lane++)
-            g_assert_cmpfloat(fabsf(s.weight[lane] / expected[lane] - 1), <, 1e-3f);
+        for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++)
+            g_assert_cmpfloat(fabsf(s.weight[wavelength] / expected[wavelength] - 1), <,
+                              1e-3f);
         g_assert_cmpfloat(length3(s.wi - vec3_make(-wo[0], 0, wo[2])), <, 1e-5f);
     }
     material_free(m);

@@ -50,16 +50,16 @@ static const float reaches[] = {1e-3f, 0.3f, 2.0f, 20.0f, INFINITY};
 /* Two thirds of the coefficients come from the scale. */
 static medium medium_of(const fog *f, const wavelengths *w)
 {
-    float nm[N_LANES], a[N_LANES], s[N_LANES];
+    float nm[N_WAVELENGTHS], a[N_WAVELENGTHS], s[N_WAVELENGTHS];
     bool scatters = false;
-    for (int i = 0; i < N_LANES; i++) {
+    for (int i = 0; i < N_WAVELENGTHS; i++) {
         nm[i] = w->lambda[i];
         a[i] = f->absorption[i] / 3.0f, s[i] = f->scattering[i] / 3.0f;
         scatters = scatters || s[i] > 0;
     }
     medium m = {.scale = 3.0f};
-    m.absorption = curve_tabulated(nm, a, N_LANES, NULL);
-    m.scattering = scatters ? curve_tabulated(nm, s, N_LANES, NULL) : NULL;
+    m.absorption = curve_tabulated(nm, a, N_WAVELENGTHS, NULL);
+    m.scattering = scatters ? curve_tabulated(nm, s, N_WAVELENGTHS, NULL) : NULL;
     return m;
 }
 
@@ -84,8 +84,8 @@ typedef struct subject {
 
 /* Means over u of weight × carried over what all lanes carry. */
 typedef struct means {
-    double bin[N_BINS][N_LANES], on[N_LANES];
-    double most[N_LANES]; /* the largest value of all */
+    double bin[N_BINS][N_WAVELENGTHS], on[N_WAVELENGTHS];
+    double most[N_WAVELENGTHS]; /* the largest value of all */
 } means;
 
 /* Where a lamp is, over t_max (1 m if there is none): t and distance of the pivot. */
@@ -127,7 +127,7 @@ static double most_growth(draw_path draw)
 static double carried_sum(spectrum carried)
 {
     double sum = 0;
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         sum += (double)carried[i];
     return sum;
 }
@@ -143,7 +143,7 @@ static int bin_of(const subject *is, double t)
 static void check_draw(const subject *is, const medium_sample *d, float u)
 {
     double after = 0, before = carried_sum(is->carried);
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         after += (double)(is->carried[i] * d->weight[i]);
     bool at_end = !d->scatters && d->t == is->t_max;
     bool never = is_within(is->draw) && spectrum_is_black(d->weight);
@@ -164,7 +164,7 @@ static means mean_over_u(const subject *is, const medium *m, const wavelengths *
         medium_sample d = is->draw(m, w, is->carried, is->t_max, u);
         check_draw(is, &d, u);
         double *to = d.scatters ? out.bin[bin_of(is, (double)d.t)] : out.on;
-        for (int i = 0; i < N_LANES; i++) {
+        for (int i = 0; i < N_WAVELENGTHS; i++) {
             double value = (double)d.weight[i] * (double)is->carried[i] / sum;
             to[i] += value / N_DRAWS;
             out.most[i] = fmax(out.most[i], value);
@@ -174,30 +174,31 @@ static means mean_over_u(const subject *is, const medium *m, const wavelengths *
 }
 
 /* ∫ σs exp(-σt t) dt */
-static double scattered(const fog *f, int lane, double from, double to)
+static double scattered(const fog *f, int wavelength, double from, double to)
 {
-    double s = (double)f->scattering[lane], t = s + (double)f->absorption[lane];
+    double s = (double)f->scattering[wavelength],
+           t = s + (double)f->absorption[wavelength];
     return s > 0 ? s / t * (exp(-t * from) - exp(-t * to)) : 0;
 }
 
-static double left_of(const fog *f, int lane, double t_max)
+static double left_of(const fog *f, int wavelength, double t_max)
 {
-    double sigma = (double)f->scattering[lane] + (double)f->absorption[lane];
+    double sigma = (double)f->scattering[wavelength] + (double)f->absorption[wavelength];
     return sigma > 0 ? exp(-sigma * t_max) : 1;
 }
 
-static void check(const subject *is, const means *found, int lane, int bin,
+static void check(const subject *is, const means *found, int wavelength, int bin,
                   double expected)
 {
     /* A weight falls smoothly in u but for eight seams, where the mixture goes on to the
        next lane, and the bins' edges in each. */
-    double share = (double)is->carried[lane] / carried_sum(is->carried);
-    double allowed = 32.0 / N_DRAWS * found->most[lane] + share * 1e-5;
-    double mean = bin < N_BINS ? found->bin[bin][lane] : found->on[lane];
+    double share = (double)is->carried[wavelength] / carried_sum(is->carried);
+    double allowed = 32.0 / N_DRAWS * found->most[wavelength] + share * 1e-5;
+    double mean = bin < N_BINS ? found->bin[bin][wavelength] : found->on[wavelength];
     if (!(fabs(mean - expected * share) <= allowed))
         g_error("%s, carried %g of %g, t_max %g, lane %d, bin %d: %.6f, expected %.6f",
-                is->fog->name, (double)is->carried[lane], carried_sum(is->carried),
-                (double)is->t_max, lane, bin, mean, expected * share);
+                is->fog->name, (double)is->carried[wavelength], carried_sum(is->carried),
+                (double)is->t_max, wavelength, bin, mean, expected * share);
 }
 
 static void check_means(const subject *is)
@@ -205,12 +206,13 @@ static void check_means(const subject *is)
     const wavelengths w = wavelengths_at(0.5f);
     medium m = medium_of(is->fog, &w);
     const means found = mean_over_u(is, &m, &w);
-    for (int lane = 0; lane < N_LANES; lane++) {
+    for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++) {
         for (int k = 0; k < N_BINS; k++)
-            check(is, &found, lane, k,
-                  scattered(is->fog, lane, is->edge[k], is->edge[k + 1]));
+            check(is, &found, wavelength, k,
+                  scattered(is->fog, wavelength, is->edge[k], is->edge[k + 1]));
         if (!is_within(is->draw))
-            check(is, &found, lane, N_BINS, left_of(is->fog, lane, (double)is->t_max));
+            check(is, &found, wavelength, N_BINS,
+                  left_of(is->fog, wavelength, (double)is->t_max));
     }
     release(&m);
 }
@@ -287,9 +289,10 @@ static void test_corners(void)
     const wavelengths w = wavelengths_at(0.5f);
     for (int i = 0; i < 36; i++) {
         fog f = {"corner", ALIKE(0), ALIKE(0)};
-        for (int lane = 0; lane < N_LANES; lane++) {
-            f.absorption[lane] = sizes[(i / 6 + lane) % 6];
-            f.scattering[lane] = sizes[i % 6] > 0 ? sizes[(i % 6 + lane) % 6] : sizes[2];
+        for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++) {
+            f.absorption[wavelength] = sizes[(i / 6 + wavelength) % 6];
+            f.scattering[wavelength] =
+                sizes[i % 6] > 0 ? sizes[(i % 6 + wavelength) % 6] : sizes[2];
         }
         medium m = medium_of(&f, &w);
         for (size_t k = 0; k < G_N_ELEMENTS(ends) * G_N_ELEMENTS(carried); k++) {
@@ -352,9 +355,9 @@ static void test_transmittance(void)
         medium m = medium_of(&fogs[f], &w);
         for (size_t k = 0; k < G_N_ELEMENTS(lengths); k++) {
             spectrum t = medium_transmittance(&m, lengths[k], &w);
-            for (int lane = 0; lane < N_LANES; lane++) {
-                double expected = left_of(&fogs[f], lane, (double)lengths[k]);
-                g_assert_cmpfloat(fabs((double)t[lane] - expected), <=,
+            for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++) {
+                double expected = left_of(&fogs[f], wavelength, (double)lengths[k]);
+                g_assert_cmpfloat(fabs((double)t[wavelength] - expected), <=,
                                   expected * 2e-5 + 1e-30);
             }
         }
@@ -367,20 +370,20 @@ static void test_coloured_transmittance(void)
 {
     const wavelengths w = wavelengths_at(0.5f);
     const fog f = {"coloured glass", {0, 0, 1, 1, 0, 0, 0, 0}, ALIKE(0)};
-    const float color[N_LANES] = {1, 0.25f, 1, 0.25f, 0, 0.5f, 0.9f, 1};
-    float nm[N_LANES];
-    for (int i = 0; i < N_LANES; i++)
+    const float color[N_WAVELENGTHS] = {1, 0.25f, 1, 0.25f, 0, 0.5f, 0.9f, 1};
+    float nm[N_WAVELENGTHS];
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         nm[i] = w.lambda[i];
     medium m = medium_of(&f, &w);
     m.distance = 0.5f;
-    m.color = curve_tabulated(nm, color, N_LANES, NULL);
+    m.color = curve_tabulated(nm, color, N_WAVELENGTHS, NULL);
     static const float lengths[] = {0, 0.25f, 1, INFINITY};
     for (size_t k = 0; k < G_N_ELEMENTS(lengths); k++) {
         spectrum t = medium_transmittance(&m, lengths[k], &w);
-        for (int lane = 0; lane < N_LANES; lane++) {
-            double expected = left_of(&f, lane, (double)lengths[k]) *
-                              pow((double)color[lane], (double)lengths[k] / 0.5);
-            g_assert_cmpfloat(fabs((double)t[lane] - expected), <, 1e-5);
+        for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++) {
+            double expected = left_of(&f, wavelength, (double)lengths[k]) *
+                              pow((double)color[wavelength], (double)lengths[k] / 0.5);
+            g_assert_cmpfloat(fabs((double)t[wavelength] - expected), <, 1e-5);
         }
     }
     release(&m);

@@ -238,7 +238,7 @@ static void check_crossing(const crossing *c, int n)
     for (int i = 0; i < 3; i++)
         most = fmax(most, fmax(fabs(c->from[i]), fabs(c->to[i])));
     double allowed = 2e-5 + n * 5e-6 * most * 2;
-    for (int i = 0; i < N_LANES; i++) {
+    for (int i = 0; i < N_WAVELENGTHS; i++) {
         double expected = left_at(c, w.lambda[i]);
         if (!(fabs((double)left[i] / expected - 1) < allowed))
             g_error("%s: %.6f is left, expected %.6f", c->what, (double)left[i],

@@ -31,11 +31,11 @@ static double cumulative(double g, double cosine)
     return (1 - g * g) / (2 * g) * (1 / sqrt(1 + g * g - 2 * g * cosine) - 1 / (1 + g));
 }
 
-static bsdf phase_with(float g, int lane)
+static bsdf phase_with(float g, int wavelength)
 {
     bsdf b;
     memset(&b, 0xff, sizeof b); /* nothing need be set before */
-    bsdf_make_phase(&b, g, lane);
+    bsdf_make_phase(&b, g, wavelength);
     return b;
 }
 
@@ -57,7 +57,7 @@ static void test_is_one_value(void)
 {
     enum { N = 40 };
     for (size_t k = 0; k < G_N_ELEMENTS(GS); k++) {
-        const bsdf b = phase_with(GS[k], ALL_LANES);
+        const bsdf b = phase_with(GS[k], ALL_WAVELENGTHS);
         g_assert_true(b.is_phase);
         for (int i = 0; i < N * N; i++) {
             vec3 wo = spread(i / N, N), wi = spread(i % N, N);
@@ -66,8 +66,8 @@ static void test_is_one_value(void)
             g_assert_cmpfloat(fabs((double)pdf / expected - 1), <, 2e-4);
             for (int m = 0; m < 2; m++) {
                 spectrum f = bsdf_eval(&b, wo, wi, LOBE_ALL, MODES[m]);
-                for (int lane = 0; lane < N_LANES; lane++)
-                    g_assert_cmpfloat(f[lane], ==, pdf);
+                for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++)
+                    g_assert_cmpfloat(f[wavelength], ==, pdf);
                 g_assert_cmpfloat(bsdf_pdf(&b, wi, wo, LOBE_ALL, MODES[m]), ==, pdf);
             }
             g_assert_cmpfloat(bsdf_cosine(&b, wi), ==, 1.0f);
@@ -82,7 +82,7 @@ static void test_moments(void)
     enum { N = 4000 };
     const frame about = frame_from_normal(normalize3(vec3_make(-0.4f, 0.7f, 0.2f)));
     for (size_t k = 0; k < G_N_ELEMENTS(GS); k++) {
-        const bsdf b = phase_with(GS[k], ALL_LANES);
+        const bsdf b = phase_with(GS[k], ALL_WAVELENGTHS);
         double sum = 0, first = 0;
         for (int i = 0; i < N; i++) {
             double x = (i + 0.5) / N, cosine = 1 - 2 * x * x * x;
@@ -124,7 +124,7 @@ static float density(void *data, vec3 w)
 static void test_follows_density(void)
 {
     for (size_t k = 0; k < G_N_ELEMENTS(GS); k++) {
-        drawing d = {phase_with(GS[k], ALL_LANES),
+        drawing d = {phase_with(GS[k], ALL_WAVELENGTHS),
                      normalize3(vec3_make(0.3f, -0.5f, 0.4f))};
         double p = chi2_directions(draw, density, &d, 40000, 5 + k);
         if (p < TINY_P)
@@ -137,7 +137,7 @@ static void test_follows_closed_form(void)
 {
     enum { BINS = 200, N = 200000 };
     for (size_t k = 0; k < G_N_ELEMENTS(GS); k++) {
-        drawing d = {phase_with(GS[k], ALL_LANES),
+        drawing d = {phase_with(GS[k], ALL_WAVELENGTHS),
                      normalize3(vec3_make(-0.2f, 0.1f, 0.9f))};
         double counts[BINS] = {0}, expected[BINS];
         sampler s = sampler_make(hash_mix(3, k), 0);
@@ -165,9 +165,9 @@ static void check_draw(const bsdf *b, vec3 wo, vec2 u, transport_mode mode)
     g_assert_cmpfloat(fabsf(length3(s.wi) - 1), <, 1e-5f);
     g_assert_cmpfloat(s.pdf, ==, bsdf_pdf(b, wo, s.wi, LOBE_ALL, mode));
     g_assert_true(isfinite(s.pdf) && s.pdf > 0);
-    for (int lane = 0; lane < N_LANES; lane++)
-        g_assert_cmpfloat(s.weight[lane], ==, 1.0f);
-    g_assert_cmpint(s.lane, ==, b->lane);
+    for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++)
+        g_assert_cmpfloat(s.weight[wavelength], ==, 1.0f);
+    g_assert_cmpint(s.wavelength, ==, b->wavelength);
     g_assert_cmpfloat(s.eta, ==, 1.0f);
     g_assert_cmpuint(s.lobe & ~b->lobes, ==, 0);
     g_assert_true(s.lobe & LOBE_DIFFUSE);
@@ -181,7 +181,7 @@ static void test_draws(void)
     for (size_t k = 0; k < G_N_ELEMENTS(GS); k++)
         for (int i = 0; i < 4 * 4 * 4; i++)
             for (int m = 0; m < 2; m++) {
-                const bsdf b = phase_with(GS[k], i % 3 ? ALL_LANES : 5);
+                const bsdf b = phase_with(GS[k], i % 3 ? ALL_WAVELENGTHS : 5);
                 check_draw(&b, ways[i % 4], (vec2){ends[i / 4 % 4], ends[i / 16]},
                            MODES[m]);
             }
@@ -204,7 +204,7 @@ static void test_masks(void)
         {LOBE_ANY_SIDE, false},
         {0, false},
     };
-    const bsdf b = phase_with(0.4f, ALL_LANES);
+    const bsdf b = phase_with(0.4f, ALL_WAVELENGTHS);
     const vec3 wo = {0, 0, 1}, wi = {0.6f, 0, -0.8f};
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++)
         for (int m = 0; m < 2; m++) {
@@ -218,8 +218,8 @@ static void test_masks(void)
                 bsdf_sample_direction(&b, wo, 0, (vec2){0.3f, 0.3f}, mask, MODES[m], &s),
                 ==, there);
             spectrum albedo = bsdf_albedo(&b, wo, mask);
-            for (int lane = 0; lane < N_LANES; lane++)
-                g_assert_cmpfloat(albedo[lane], ==, there ? 1.0f : 0.0f);
+            for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++)
+                g_assert_cmpfloat(albedo[wavelength], ==, there ? 1.0f : 0.0f);
         }
 }
 

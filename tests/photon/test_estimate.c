@@ -37,17 +37,17 @@ static void test_kernel_integrates_to_one(void)
     }
 }
 
-static void test_kernel_lanes(void)
+static void test_kernel_wavelengths(void)
 {
     for (size_t i = 0; i < N_TRIED_KERNELS; i++) {
         for (int step = 0; step < 1000; step += LANES) {
             floats8 d2;
-            for (int lane = 0; lane < LANES; lane++)
-                d2[lane] = 4.0f * (float)(step + lane) / 1000.0f;
+            for (int wavelength = 0; wavelength < LANES; wavelength++)
+                d2[wavelength] = 4.0f * (float)(step + wavelength) / 1000.0f;
             floats8 eight = kernel_eval8(&kernels[i], d2, 1.0f / 4.0f);
-            for (int lane = 0; lane < LANES; lane++) {
-                float one = kernel_eval(&kernels[i], d2[lane], 4.0f);
-                g_assert_cmpfloat(fabsf(eight[lane] - one), <, 1e-6f);
+            for (int wavelength = 0; wavelength < LANES; wavelength++) {
+                float one = kernel_eval(&kernels[i], d2[wavelength], 4.0f);
+                g_assert_cmpfloat(fabsf(eight[wavelength] - one), <, 1e-6f);
             }
         }
     }
@@ -83,7 +83,7 @@ static bsdf diffuse_wall(float rho)
 {
     bsdf b = {.shading = frame_from_normal(vec3_make(0, 0, 1)),
               .n_geom = vec3_make(0, 0, 1),
-              .lane = ALL_LANES};
+              .wavelength = ALL_WAVELENGTHS};
     bsdf_make_diffuse(&b, spectrum_fill(rho));
     return b;
 }
@@ -357,9 +357,9 @@ static spectrum formula(const photon_store *s, vec3 x, const bsdf *b, vec3 wo,
 
 static void assert_close(spectrum found, spectrum expected)
 {
-    for (int lane = 0; lane < N_LANES; lane++) {
+    for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++) {
         float tolerance = 2e-5f * spectrum_max(expected) + 1e-20f;
-        g_assert_cmpfloat(fabsf(found[lane] - expected[lane]), <=, tolerance);
+        g_assert_cmpfloat(fabsf(found[wavelength] - expected[wavelength]), <=, tolerance);
     }
 }
 
@@ -369,8 +369,8 @@ static photon cloud_photon(uint32_t i)
     photon p = {.wi = warp_sphere(sampler_2d(&s)), .flags = i % 3 == 0};
     p.flags |= i % 7 < 3 ? PHOTON_BEHIND : 0;
     p.p = vec3_make(sampler_1d(&s), sampler_1d(&s), 0.1f * sampler_1d(&s));
-    for (int lane = 0; lane < N_LANES; lane++)
-        p.flux[lane] = sampler_1d(&s);
+    for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++)
+        p.flux[wavelength] = sampler_1d(&s);
     return p;
 }
 
@@ -481,8 +481,8 @@ static void test_flatten(void)
 
 static void assert_black(spectrum s)
 {
-    for (int lane = 0; lane < N_LANES; lane++)
-        g_assert_true(s[lane] >= 0.0f && s[lane] <= 0.0f);
+    for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++)
+        g_assert_true(s[wavelength] >= 0.0f && s[wavelength] <= 0.0f);
 }
 
 static void test_nothing_there(void)
@@ -561,7 +561,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/estimate/kernel/integrates-to-one", test_kernel_integrates_to_one);
-    g_test_add_func("/estimate/kernel/lanes", test_kernel_lanes);
+    g_test_add_func("/estimate/kernel/lanes", test_kernel_wavelengths);
     g_test_add_func("/estimate/even-field-unbiased", test_even_field_unbiased);
     g_test_add_func("/estimate/nearest-unbiased", test_nearest_unbiased);
     g_test_add_func("/estimate/formula", test_formula);

@@ -86,7 +86,7 @@ static photon random_photon(uint32_t i)
     sampler s = sampler_make(3, i);
     photon p = {.wi = random_direction(&s), .flags = i % 2};
     p.p = vec3_make(sampler_1d(&s), sampler_1d(&s), sampler_1d(&s));
-    for (int lane = 0; lane < N_LANES; lane++)
+    for (int lane = 0; lane < N_WAVELENGTHS; lane++)
         p.flux[lane] = sampler_1d(&s);
     return p;
 }

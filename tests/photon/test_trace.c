@@ -92,8 +92,9 @@ static void test_emitted_flux_is_the_power(void)
             if (photon_emit(s, &w, &random, &start))
                 sum += start.flux / N;
         }
-        for (int lane = 0; lane < N_LANES; lane++)
-            g_assert_cmpfloat(fabsf(sum[lane] / power[lane] - 1.0f), <, 5e-3f);
+        for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++)
+            g_assert_cmpfloat(fabsf(sum[wavelength] / power[wavelength] - 1.0f), <,
+                              5e-3f);
     }
 }
 

@@ -27,8 +27,8 @@ static void fill(photon_store *store, float *radii)
                     .wi = normalize3(vec3_make(b.y - 0.5f, a.x - 0.3f, b.x - 0.6f)),
                     .tag = i % 3,
                     .home = 1 + i % 2};
-        for (int lane = 0; lane < N_LANES; lane++)
-            p.flux[lane] = (float)(1 + (i + (uint32_t)lane) % 7);
+        for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++)
+            p.flux[wavelength] = (float)(1 + (i + (uint32_t)wavelength) % 7);
         photon_store_put(store, &p);
         radii[i] = 0.002f + 0.1f * sampler_1d(&random) * b.y;
     }
@@ -41,7 +41,8 @@ static double phase(double g, double cosine)
 
 /* Σ T p κ Φ of one wavelength over the photons of one tag, by definition. */
 static double seen(const photon_store *store, const float *radii, const ray *r,
-                   const medium *m, double length, int lane, double sigma_t, uint32_t tag)
+                   const medium *m, double length, int wavelength, double sigma_t,
+                   uint32_t tag)
 {
     double sum = 0;
     for (size_t i = 0; i < store->n; i++) {
@@ -56,7 +57,7 @@ static double seen(const photon_store *store, const float *radii, const ray *r,
             continue;
         double turn = -(double)dot3(p.wi, -r->direction);
         sum += exp(-sigma_t * t) * phase((double)m->g, turn) * (1 - d2 / r2) /
-               (0.5 * G_PI * r2) * (double)p.flux[lane];
+               (0.5 * G_PI * r2) * (double)p.flux[wavelength];
     }
     return sum;
 }
@@ -95,18 +96,19 @@ static void test_against_the_sum(void)
         bool failed = false;
         spectrum all = volume_map_radiance(map, &query, &failed);
         g_assert_false(failed);
-        for (int lane = 0; lane < N_LANES; lane += 3) {
+        for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength += 3) {
             double whole = 0;
             for (uint32_t tag = 0; tag < 3; tag++) {
-                double is = seen(&store, radii, &r, &m, (double)query.length, lane,
-                                 (double)sigma_t[lane], tag);
+                double is = seen(&store, radii, &r, &m, (double)query.length, wavelength,
+                                 (double)sigma_t[wavelength], tag);
                 whole += is;
-                g_assert_cmpfloat(fabs((double)groups[tag][lane] - is), <,
+                g_assert_cmpfloat(fabs((double)groups[tag][wavelength] - is), <,
                                   1e-3 + 1e-3 * is);
             }
-            found += (double)all[lane];
+            found += (double)all[wavelength];
             expected += whole;
-            g_assert_cmpfloat(fabs((double)all[lane] - whole), <, 1e-3 + 1e-3 * whole);
+            g_assert_cmpfloat(fabs((double)all[wavelength] - whole), <,
+                              1e-3 + 1e-3 * whole);
         }
     }
     g_test_message("all rays: %g, expected %g", found, expected);

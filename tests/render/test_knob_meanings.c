@@ -126,9 +126,9 @@ static void test_roulette(void)
         settings how = settings_with(v->scene, words);
         wavelengths w = scene_wavelengths(v->scene, &how, 0);
         double sum = 0.0, largest = 0.0;
-        for (int i = 0; i < N_LANES; i++) {
+        for (int i = 0; i < N_WAVELENGTHS; i++) {
             double rho = w.lambda[i] < 550.5f ? .9 : .1;
-            sum += rho / N_LANES;
+            sum += rho / N_WAVELENGTHS;
             largest = MAX(largest, rho);
         }
         double p = most ? largest : sum, sigma = sqrt(p * (1.0 - p) / N);

@@ -26,7 +26,7 @@
 typedef struct known {
     float p[3];
     uint32_t wi;
-    float flux[N_LANES];
+    float flux[N_WAVELENGTHS];
 } known;
 
 static void add_store(GArray *list, const photon_store *store)

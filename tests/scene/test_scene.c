@@ -129,7 +129,7 @@ static void test_hits_know_material_and_light(void)
         g_assert_cmpint(hit.shape, ==, i);
         g_assert_cmpint(hit.material, ==, materials[i]);
         g_assert_cmpint(hit.light, ==, lights[i]);
-        g_assert_cmpint(scene_bsdf(s, &hit, &w, ALL_LANES, &options, &b), ==,
+        g_assert_cmpint(scene_bsdf(s, &hit, &w, ALL_WAVELENGTHS, &options, &b), ==,
                         materials[i] != NO_INDEX);
         spectrum out = scene_emitted(s, &hit, -r.direction, &w);
         g_assert_cmpint(!spectrum_is_black(out), ==, lights[i] != NO_INDEX);

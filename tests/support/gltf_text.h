@@ -140,7 +140,7 @@ static inline bsdf bsdf_of(const material *m)
     surface_hit hit = {
         .n = {0, 0, 1}, .n_geom = {0, 0, 1}, .dpdu = {1, 0, 0}, .dpdv = {0, 1, 0}};
     bsdf b;
-    material_bsdf(m, &hit, &w, ALL_LANES, &plain, &b);
+    material_bsdf(m, &hit, &w, ALL_WAVELENGTHS, &plain, &b);
     return b;
 }
 

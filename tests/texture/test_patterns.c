@@ -100,12 +100,12 @@ static void test_nested(void)
     g_autoptr(curve) same = curve_rgb(color_space_srgb(), red, CURVE_ALBEDO, NULL);
     spectrum expected = 0.5f * curve_eval(same, &w);
     spectrum found = texture_eval_spectrum(t, &hit, &w, CURVE_ALBEDO);
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         close_to((double)found[i], (double)expected[i]);
     texture_free(t);
     t = make(s, "mix", true, named(named(list(), "tex2", "red"), "amount", "half"));
     found = texture_eval_spectrum(t, &hit, &w, CURVE_ALBEDO);
-    for (int i = 0; i < N_LANES; i++)
+    for (int i = 0; i < N_WAVELENGTHS; i++)
         close_to((double)found[i], (double)expected[i]);
     texture_free(t);
     scene_builder_free(s);

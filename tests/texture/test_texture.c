@@ -174,7 +174,7 @@ static void test_spectra(void)
         spectrum truth = curve_eval(same, &w);
         spectrum found =
             colours_at(with_number(list(colour_path), "scale", scale), roles[i], &w);
-        for (int k = 0; k < N_LANES; k++)
+        for (int k = 0; k < N_WAVELENGTHS; k++)
             g_assert_cmpfloat(fabsf(found[k] - truth[k]), <, 2e-3f * scale);
     }
 }

@@ -33,7 +33,7 @@ static void coloured_rgb(const scene *s, const double weight[2], float rgb[3])
         light_sample to;
         vec3 p = vec3_make(2, -1.5f, 1); /* a metre away */
         g_assert_true(l->kind->sample(l->self, &w, p, 0, (vec2){0}, &to));
-        for (int k = 0; k < N_LANES; k++)
+        for (int k = 0; k < N_WAVELENGTHS; k++)
             to.radiance[k] *= (float)weight[w.lambda[k] > 550];
         spectrum_to_xyz(&w, to.radiance, part);
         for (int k = 0; k < 3; k++)

@@ -93,7 +93,8 @@ static spectrum asked_irradiance(const photonmap_pass *pass, vec3 p, vec3 n,
                                  transport_scratch *scratch)
 {
     const surface_hit hit = {.p = p, .n_geom = n, .n = n, .instance = NO_INDEX};
-    bsdf white = {.shading = frame_from_normal(n), .n_geom = n, .lane = ALL_LANES};
+    bsdf white = {
+        .shading = frame_from_normal(n), .n_geom = n, .wavelength = ALL_WAVELENGTHS};
     bsdf_make_diffuse(&white, spectrum_fill(1.0f));
     const shading_point at = {.hit = &hit, .bsdf = &white, .wo = n};
     spectrum sum = {0};

@@ -59,15 +59,15 @@ static double angle_out(const glass *g, double nm, double *share)
 }
 
 /* What became of the photons of one lane. */
-typedef struct lane_sum {
+typedef struct wavelength_sum {
     double emitted, landed, straight; /* flux; straight: through both faces */
     double furthest;                  /* of those, from Snell's angle, rad */
-} lane_sum;
+} wavelength_sum;
 
 typedef struct experiment {
     const glass *glass;
     wavelengths w;
-    lane_sum lanes[N_LANES];
+    wavelength_sum wavelengths[N_WAVELENGTHS];
     bool mixed; /* a photon went through with more than one wavelength */
 } experiment;
 
@@ -88,19 +88,19 @@ static void watch(const photon_event *event, void *data)
     if (!emitted && event->kind != PHOTON_STORED)
         return;
     int coloured = 0;
-    for (int k = 0; k < N_LANES; k++)
+    for (int k = 0; k < N_WAVELENGTHS; k++)
         coloured += event->flux[k] > 0;
-    for (int k = 0; k < N_LANES; k++) {
+    for (int k = 0; k < N_WAVELENGTHS; k++) {
         double flux = (double)event->flux[k], share;
         if (!(flux > 0))
             continue;
-        lane_sum *lane = &e->lanes[k];
-        *(emitted ? &lane->emitted : &lane->landed) += flux;
+        wavelength_sum *wavelength = &e->wavelengths[k];
+        *(emitted ? &wavelength->emitted : &wavelength->landed) += flux;
         double expected = angle_out(e->glass, (double)e->w.lambda[k], &share);
         double off = fabs(angle_of(event->direction) - expected);
         if (!emitted && off < 0.002) {
-            lane->straight += flux;
-            lane->furthest = fmax(lane->furthest, off);
+            wavelength->straight += flux;
+            wavelength->furthest = fmax(wavelength->furthest, off);
             e->mixed |= coloured != 1;
         }
     }
@@ -143,17 +143,19 @@ static void test_prism(gconstpointer data)
     for (uint64_t i = 0; i < PHOTONS; i++)
         photon_tell(&task, i, watch, &e);
     double emitted = 0, landed = 0;
-    for (int k = 0; k < N_LANES; k++) {
-        const lane_sum *lane = &e.lanes[k];
+    for (int k = 0; k < N_WAVELENGTHS; k++) {
+        const wavelength_sum *wavelength = &e.wavelengths[k];
         double share, nm = (double)e.w.lambda[k], angle = angle_out(e.glass, nm, &share);
         g_test_message("%g nm: n %.5f, out at %.3f degrees, at most %.1g rad off; share "
                        "%.4f, Fresnel %.4f",
-                       nm, index_at(e.glass, nm), angle * 180 / G_PI, lane->furthest,
-                       lane->straight / lane->emitted, share);
-        g_assert_cmpfloat(lane->furthest, <, 3e-4);
-        g_assert_cmpfloat(fabs(lane->straight / lane->emitted / share - 1), <, 0.035);
-        emitted += lane->emitted;
-        landed += lane->landed;
+                       nm, index_at(e.glass, nm), angle * 180 / G_PI,
+                       wavelength->furthest, wavelength->straight / wavelength->emitted,
+                       share);
+        g_assert_cmpfloat(wavelength->furthest, <, 3e-4);
+        g_assert_cmpfloat(fabs(wavelength->straight / wavelength->emitted / share - 1), <,
+                          0.035);
+        emitted += wavelength->emitted;
+        landed += wavelength->landed;
     }
     g_test_message("white: %g of %g", landed, emitted);
     g_assert_false(e.mixed);

@@ -1,8 +1,8 @@
 /*
  * What is allowed, but seldom meant: glass that encloses nothing, is turned inside out or
- * has a surface where another body has one, lamps shut into bodies that let no light out,
- * skies seen from behind their portal or through fog that hides them, lamps that are not
- * in the medium one sees them through, scenes of strange size.
+ * has a surface where another body has one, lights shut into bodies that let no light
+ * out, environments seen from behind their portal or through fog that hides them, lights
+ * that are not in the medium one sees them through, scenes of strange size.
  */
 #include "api/describe/describe.h"
 
@@ -110,7 +110,7 @@ static int met_instead(const inspection *in, guint i, const shape_sample *at, un
 }
 
 /* Where glass stands right on a table, rounding tells which of the two a ray meets, and
-   it passes the other. Lamps and what lets nothing through may touch one another. */
+   it passes the other. Lights and what lets nothing through may touch one another. */
 static void inspect_touching(inspection *in, guint i, unsigned n_probes)
 {
     const shape *on = in->scene->shapes->pdata[i];
@@ -130,7 +130,7 @@ static void inspect_touching(inspection *in, guint i, unsigned n_probes)
     }
 }
 
-/* ---- Lamps ---- */
+/* ---- Lights ---- */
 
 static bool lets_light_through(const scene *s, const surface_hit *hit)
 {
@@ -173,8 +173,8 @@ static bool box_holds(box3 box, vec3 p)
     return true;
 }
 
-/* A room around lamp and camera is as it should be. */
-static void inspect_lamp(inspection *in, guint i)
+/* A room around light and camera is as it should be. */
+static void inspect_light(inspection *in, guint i)
 {
     const wavelengths w = wavelengths_at(0.5f);
     const light *l = in->scene->lights->pdata[i];
@@ -192,7 +192,7 @@ static void inspect_lamp(inspection *in, guint i)
 }
 
 /* A portal lets light in on one side only. */
-static void inspect_sky(inspection *in, guint i)
+static void inspect_environment(inspection *in, guint i)
 {
     const wavelengths w = wavelengths_at(0.5f);
     const light *l = in->scene->lights->pdata[i];
@@ -214,9 +214,9 @@ static const char *medium_name(const scene *s, uint32_t number)
     return m ? m->name : "none";
 }
 
-/* A lamp in sight stands in the medium that the way from the camera leads to, or an
+/* A light in sight stands in the medium that the way from the camera leads to, or an
    interface is missing. */
-static void inspect_lamp_in_medium(inspection *in, guint i)
+static void inspect_light_in_medium(inspection *in, guint i)
 {
     const scene *s = in->scene;
     const wavelengths w = wavelengths_at(0.5f);
@@ -280,11 +280,11 @@ GPtrArray *describe_warnings(const view *v)
     for (guint i = 0; i < s->lights->len; i++) {
         const light *l = s->lights->pdata[i];
         if (l->kind->is_environment)
-            inspect_sky(&in, i);
+            inspect_environment(&in, i);
         else
-            inspect_lamp(&in, i);
+            inspect_light(&in, i);
         inspect_fog(&in, i);
-        inspect_lamp_in_medium(&in, i);
+        inspect_light_in_medium(&in, i);
     }
     if (s->shapes->len > 0 && (s->radius > LARGEST_RADIUS || s->radius < SMALLEST_RADIUS))
         warn(&in, "the scene is %g m wide; lengths are in metres",

@@ -63,7 +63,7 @@ typedef struct gltf {
     GHashTable *notes; /**< texts given already */
     bool has_camera;
     bool shines;   /**< a surface is brighter than white paper can be */
-    double lumens; /**< per unit of a lamp's numbers; 0: not known yet */
+    double lumens; /**< per unit of a light's numbers; 0: not known yet */
     bool solid;    /**< closed meshes that transmit are read as solid glass */
     guint n_solid; /**< such meshes */
 } gltf;

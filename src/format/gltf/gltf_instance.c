@@ -2,7 +2,7 @@
  * Meshes where glTF's nodes put them. One that is shown once is put into the world as it
  * is. One that several nodes show, or that EXT_mesh_gpu_instancing repeats, becomes an
  * object with an instance for each place; what shines of it is copied, since each copy is
- * a lamp of its own, and so is what a node poses in a way of its own.
+ * a light of its own, and so is what a node poses in a way of its own.
  */
 #include "format/gltf/gltf_pose.h"
 

@@ -4,10 +4,10 @@
  *
  * Candela, lux and, of surfaces that shine, candela per square metre are taken as they
  * stand: a radiance of 1 is 1 cd/m², as viewers of glTF show it, and as pbrt's own
- * illuminance is meant. Blender makes lamps' numbers from watts by 683 lm/W, unless it is
- * told to leave them as they are, yet leaves shining surfaces as they are: where it wrote
- * the file and its lamps are that strong this is taken back, as Blender itself does, so
- * that lamps and surfaces keep their proportion.
+ * illuminance is meant. Blender makes lights' numbers from watts by 683 lm/W, unless it
+ * is told to leave them as they are, yet leaves shining surfaces as they are: where it
+ * wrote the file and its lights are that strong this is taken back, as Blender itself
+ * does, so that lights and surfaces keep their proportion.
  */
 #include "format/gltf/gltf.h"
 
@@ -18,9 +18,9 @@
 
 #define LUMENS_PER_WATT 683.0
 /* Between suns of Blender's that are so many watts per square metre, 0.1 to 20, and those
-   that are 683 times that; between its lamps of 2 to 2000 W, over 4 pi, likewise. */
-#define FAINT_SUN 37.0   /* lx */
-#define FAINT_LAMP 150.0 /* cd */
+   that are 683 times that; between its lights of 2 to 2000 W, over 4 pi, likewise. */
+#define FAINT_SUN 37.0    /* lx */
+#define FAINT_LIGHT 150.0 /* cd */
 #define DEGREES (180.0 / G_PI)
 
 enum { DEFAULT_HEIGHT = 720 };
@@ -32,15 +32,15 @@ static bool is_from_blender(gltf *g)
     return generator && g_str_has_prefix(generator, "Khronos glTF Blender I/O");
 }
 
-/* Whether a lamp's number is above those that Blender writes without 683 lm/W. */
-static bool is_strong(const json_value *lamp)
+/* Whether a light's number is above those that Blender writes without 683 lm/W. */
+static bool is_strong(const json_value *source)
 {
-    const char *type = json_text(lamp, "type");
+    const char *type = json_text(source, "type");
     bool is_sun = type && strcmp(type, "directional") == 0;
-    return json_real(lamp, "intensity", 1.0) > (is_sun ? FAINT_SUN : FAINT_LAMP);
+    return json_real(source, "intensity", 1.0) > (is_sun ? FAINT_SUN : FAINT_LIGHT);
 }
 
-/* Lumens that a lamp's unit stands for: 683 where Blender made it from watts. */
+/* Lumens that a light's unit stands for: 683 where Blender made it from watts. */
 static double lumens_of_unit(gltf *g)
 {
     json_value extensions;
@@ -49,8 +49,8 @@ static double lumens_of_unit(gltf *g)
     guint n = json_length(&lights);
     bool strong = false;
     for (guint i = 0; i < n && !strong && !gltf_failed(g); i++) {
-        json_value lamp = json_element(&lights, i);
-        strong = is_strong(&lamp);
+        json_value source = json_element(&lights, i);
+        strong = is_strong(&source);
     }
     if (!is_from_blender(g))
         return 1.0;
@@ -62,19 +62,19 @@ static double lumens_of_unit(gltf *g)
 }
 
 /* Colour times candela or lux. */
-static params *emission(gltf *g, const json_value *lamp, const char *name)
+static params *emission(gltf *g, const json_value *source, const char *name)
 {
     double color[3] = {1.0, 1.0, 1.0};
     params *p = gltf_params(g);
-    json_numbers(lamp, "color", color, 3);
+    json_numbers(source, "color", color, 3);
     give_triple(p, PARAM_RGB, name, color[0], color[1], color[2]);
     if (!(g->lumens > 0.0))
         g->lumens = lumens_of_unit(g);
-    give_float(p, "scale", json_real(lamp, "intensity", 1.0) / g->lumens);
+    give_float(p, "scale", json_real(source, "intensity", 1.0) / g->lumens);
     return p;
 }
 
-/* Blender's lamps fade over a share of 1 - cos of the outer angle. What it writes into a
+/* Blender's lights fade over a share of 1 - cos of the outer angle. What it writes into a
  * file is that share of the angle, which is wider; reading the file, it takes that back.
  */
 static double blender_inner(double inner, double outer)
@@ -85,10 +85,10 @@ static double blender_inner(double inner, double outer)
 
 /* The standard wants the inner angle below the outer one; Blender writes sharp edges as
  * two equal ones. */
-static params *spot_params(gltf *g, const json_value *lamp)
+static params *spot_params(gltf *g, const json_value *source)
 {
-    params *p = emission(g, lamp, "I");
-    json_value spot = json_member(lamp, "spot");
+    params *p = emission(g, source, "I");
+    json_value spot = json_member(source, "spot");
     double inner = json_real(&spot, "innerConeAngle", 0.0);
     double outer = json_real(&spot, "outerConeAngle", G_PI / 4.0);
     if (!(inner >= 0.0 && inner <= outer && outer > 0.0 && outer <= 0.5001 * G_PI))
@@ -102,21 +102,21 @@ static params *spot_params(gltf *g, const json_value *lamp)
     return p;
 }
 
-static params *distant_params(gltf *g, const json_value *lamp)
+static params *distant_params(gltf *g, const json_value *source)
 {
-    params *p = emission(g, lamp, "L");
+    params *p = emission(g, source, "L");
     give_triple(p, PARAM_POINT3, "to", 0.0, 0.0, -1.0);
     return p;
 }
 
-static params *point_params(gltf *g, const json_value *lamp)
+static params *point_params(gltf *g, const json_value *source)
 {
-    return emission(g, lamp, "I");
+    return emission(g, source, "I");
 }
 
 typedef struct light_type {
     const char *name, *kind;
-    params *(*make)(gltf *g, const json_value *lamp);
+    params *(*make)(gltf *g, const json_value *source);
 } light_type;
 
 static const light_type types[] = {
@@ -125,33 +125,33 @@ static const light_type types[] = {
     {"spot", "spot", spot_params},
 };
 
-static bool is_black(const json_value *lamp)
+static bool is_black(const json_value *source)
 {
     double color[3] = {1.0, 1.0, 1.0};
-    json_numbers(lamp, "color", color, 3);
-    return !(json_real(lamp, "intensity", 1.0) > 0.0) ||
+    json_numbers(source, "color", color, 3);
+    return !(json_real(source, "intensity", 1.0) > 0.0) ||
            !(color[0] + color[1] + color[2] > 0.0);
 }
 
-static void add_light(gltf *g, const json_value *lamp, const transform *to_world)
+static void add_light(gltf *g, const json_value *source, const transform *to_world)
 {
-    const char *type = json_text(lamp, "type");
+    const char *type = json_text(source, "type");
     const light_type *found = NULL;
     for (size_t i = 0; type && i < G_N_ELEMENTS(types); i++)
         if (strcmp(types[i].name, type) == 0)
             found = &types[i];
     if (!found) {
-        json_fail(lamp, "expected \"type\" directional, point or spot, found %s",
+        json_fail(source, "expected \"type\" directional, point or spot, found %s",
                   type ? type : "none");
         return;
     }
-    if (is_black(lamp) || gltf_failed(g))
+    if (is_black(source) || gltf_failed(g))
         return;
     GError *error = NULL;
-    g_autoptr(params) p = found->make(g, lamp);
+    g_autoptr(params) p = found->make(g, source);
     if (!gltf_failed(g) &&
         !builder_add_light(g->builder, found->kind, p, to_world, &error))
-        gltf_take_error(g, lamp, error);
+        gltf_take_error(g, source, error);
 }
 
 void gltf_add_light(gltf *g, const json_value *node, const transform *to_world)
@@ -163,9 +163,9 @@ void gltf_add_light(gltf *g, const json_value *node, const transform *to_world)
     if (index < 0)
         return;
     json_value lights = json_member(&all, "lights");
-    json_value lamp = json_element(&lights, (guint)index);
+    json_value source = json_element(&lights, (guint)index);
     if (!gltf_failed(g))
-        add_light(g, &lamp, to_world);
+        add_light(g, &source, to_world);
 }
 
 /* ---- Cameras ---- */

@@ -341,7 +341,7 @@ static void read_info(gltf *g, const json_value *m, gltf_material_info *info)
     note_occlusion(g, m);
     info->area_light = read_shine(g, m, info->colored);
     /* What is unlit is a picture, and black behind it would be none; a closed body of it
-     * may be a sky, seen from within. */
+     * may be a environment, seen from within. */
     if (!info->area_light || !(is_unlit(m) || json_flag(m, "doubleSided", false)))
         return;
     if (!is_unlit(m))

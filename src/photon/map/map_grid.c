@@ -11,7 +11,7 @@
  * there is one for every four photons.
  *
  * The grid covers the photons' bounds densely while it has at most one cell a photon.
- * Beyond that (a lamp in a landscape) rows of cells are hashed into that many slots: row
+ * Beyond that (a light in a landscape) rows of cells are hashed into that many slots: row
  * (y, z) begins at a hashed slot and x counts on from there, wrapping round. Photons of
  * far cells that share a slot fail the distance test; a query's rows that overlap are
  * merged, so that it meets no photon twice.

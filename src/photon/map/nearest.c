@@ -19,7 +19,7 @@ static int compare_photons(const photon_store *s, size_t a, size_t b)
     if (s->numbered)
         return order ? order
                      : (s->number[a] > s->number[b]) - (s->number[a] < s->number[b]);
-    for (int lane = 0; lane < N_LANES && !order; lane++)
+    for (int lane = 0; lane < N_WAVELENGTHS && !order; lane++)
         order = compare(s->flux[a][lane], s->flux[b][lane]);
     return order;
 }

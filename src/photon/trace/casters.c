@@ -106,7 +106,7 @@ static bool stands_apart(const caustic_casters *c, const light_bound *bound)
 }
 
 /* The share of a light's power that may meet the sphere: parallel light is spread over
-   the whole scene, that from a lamp apart from the sphere over a cone and up to twice as
+   the whole scene, that from a light apart from the sphere over a cone and up to twice as
    strong as on average. */
 static float power_share(caustic_casters *c, int i, const wavelengths *w)
 {

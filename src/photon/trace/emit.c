@@ -142,8 +142,8 @@ static vec3 far_along(vec3 p, vec3 d, vec3 q)
     return p + (length3(p) + length3(q)) * d;
 }
 
-/* From a lamp apart: the place is drawn by the lamp, the direction in the cone. The lamp
-   is asked twice, since the cone depends on the place. */
+/* From a light apart: the place is drawn by the light, the direction in the cone. The
+   light is asked twice, since the cone depends on the place. */
 static bool emit_in_cone(const caustic_casters *c, const light *l, const wavelengths *w,
                          const float u[EMISSION_DIMENSIONS], light_emission *out)
 {

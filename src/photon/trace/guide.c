@@ -201,7 +201,7 @@ static double chi2_of_pair(const guide_tally *tally, int pair)
     return sum;
 }
 
-/* A small thing seen from many places of a lamp fills a slanted sheet, even along every
+/* A small thing seen from many places of a light fills a slanted sheet, even along every
    axis and uneven in the squares of two. One of two such axes, or -1. */
 static int correlated_axis(const guide_tally *tally)
 {

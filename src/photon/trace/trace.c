@@ -18,11 +18,11 @@ typedef struct photon_path {
     sampler random;
     path_segment at;
     int light;
-    float share;        /* of its light that it carries */
-    caustic_end end;    /* the lamp's end of its way, as far as is known: for the share */
-    uint32_t primitive; /* of the light */
-    bool from_delta;    /* the light cannot be hit by a ray */
-    bool specular_only; /* no lobe but SPECULAR so far */
+    float mis_weight; /* of its light that it carries */
+    caustic_end end;  /* the light's end of its way, as far as is known: for the share */
+    uint32_t primitive;  /* of the light */
+    bool from_delta;     /* the light cannot be hit by a ray */
+    bool specular_only;  /* no lobe but SPECULAR so far */
     unsigned n_followed; /* specular or glossy bounces */
     unsigned n_diffuse;
     unsigned n_after;    /* followed bounces since the last diffuse one */
@@ -47,7 +47,7 @@ static void tell_flux(const photon_path *path, photon_event_kind kind,
         .light = path->light,
         .lobe = lobe,
         .flux = flux,
-        .share = path->share,
+        .mis_weight = path->mis_weight,
     };
     path->tell(&event, path->tell_data);
 }
@@ -111,10 +111,10 @@ static bool emit(photon_path *path)
     scene_leave_light(task->scene, at.light, at.n, &path->at.ray);
     path->at.throughput = at.flux / (float)task->n_photons;
     path->light = at.light;
-    path->at.lane = ALL_LANES;
+    path->at.wavelength = ALL_WAVELENGTHS;
     path->from_delta = scene_light(task->scene, at.light)->is_delta;
     path->specular_only = true;
-    path->share = 1.0f;
+    path->mis_weight = 1.0f;
     path->primitive = at.primitive;
     path->end = (caustic_end){
         .light = at.light, .p = at.ray.origin, .n = at.n, .direction = at.ray.direction};
@@ -125,7 +125,7 @@ static bool emit(photon_path *path)
    elsewhere is a caustic too. */
 static bool goes_on(const trace_task *task)
 {
-    return task->photon_class == PHOTON_CAUSTIC && task->share;
+    return task->photon_class == PHOTON_CAUSTIC && task->mis;
 }
 
 static photon_class class_here(const photon_path *path)
@@ -206,11 +206,11 @@ static float power_of(const settings *how, spectrum flux)
 }
 
 /* What paths from the eye leave to a photon that scatters first at this hit. */
-static float share_at(photon_path *path, const surface_hit *hit, const bsdf *b,
-                      const bsdf_sample *next)
+static float mis_weight_at(photon_path *path, const surface_hit *hit, const bsdf *b,
+                           const bsdf_sample *next)
 {
     const trace_task *task = path->task;
-    if (!task->share || path->n_followed + path->n_diffuse > 0)
+    if (!task->mis || path->n_followed + path->n_diffuse > 0)
         return 1.0f;
     caustic_end *end = &path->end;
     vec3 to_light = -end->direction;
@@ -226,7 +226,7 @@ static float share_at(photon_path *path, const surface_hit *hit, const bsdf *b,
             end->pdf_lights *= from->kind->pdf(from->self, hit->p, to_light, &on_light);
         end->pdf_scatter = bsdf_pdf(b, next->wi, to_light, LOBE_ALL, TRANSPORT_RADIANCE);
     }
-    return caustic_share_of(task->share, end);
+    return caustic_mis_weight(task->mis, end);
 }
 
 /* Roulette: gives the photon a new flux, or ends it. */
@@ -265,16 +265,16 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
         path->out->of.n_not_finite++;
     float survival = survival_with(path, flux);
     if (scattered) {
-        float share = share_at(path, hit, b, &next);
-        path->share *= share;
-        flux *= share;
-        survival *= minf(1.0f, share / PHOTON_LEAST_SHARE);
+        float weight = mis_weight_at(path, hit, b, &next);
+        path->mis_weight *= weight;
+        flux *= weight;
+        survival *= minf(1.0f, weight / PHOTON_LEAST_WEIGHT);
     }
     if (!survives(path, flux, survival, u.roulette)) {
         tell(path, PHOTON_ABSORBED, hit, 0);
         return false;
     }
-    path->at.lane = next.lane;
+    path->at.wavelength = next.wavelength;
     path->at.ray = hit_ray(hit, next.wi);
     path->specular_only &= (next.lobe & LOBE_SPECULAR) != 0;
     bool diffuse = (next.lobe & LOBE_DIFFUSE) != 0;
@@ -372,7 +372,7 @@ static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
         tell(path, PHOTON_LEFT, NULL, 0);
     if (event != EVENT_SURFACE && event != EVENT_MEDIUM)
         return false;
-    scene_scatterer(task->scene, hit, &task->w, path->at.lane, &options, b);
+    scene_scatterer(task->scene, hit, &task->w, path->at.wavelength, &options, b);
     if (event == EVENT_SURFACE)
         land(path, hit, b);
     return true;

@@ -25,8 +25,8 @@
 #pragma once
 
 #include "base/parallel.h"
+#include "photon/caustic_mis.h"
 #include "photon/photon.h"
-#include "photon/share.h"
 #include "photon/trace/emit.h"
 
 /** After so many bounces, photons and paths from the eye go on by this chance at each,
@@ -42,13 +42,13 @@ typedef struct trace_task {
     uint32_t pass;
     photon_class photon_class;
     const caustic_casters *casters; /**< for caustics that are not EMISSION_UNIFORM */
-    const emission_guide *guide; /**< for EMISSION_GUIDED caustics; NULL: uniform */
-    const caustic_share *share;  /**< of caustics: what they leave to paths from the eye;
-                                    NULL: nothing. With it, photons that landed go on and
-                                    land again where specular or glossy bounces take them
-                                    next */
-    uint64_t n_photons;          /**< to emit */
-    uint64_t first;              /**< index of the first of them */
+    const emission_guide *guide;    /**< for EMISSION_GUIDED caustics; NULL: uniform */
+    const caustic_mis *mis; /**< of caustics: what they leave to paths from the eye;
+                                   NULL: nothing. With it, photons that landed go on and
+                                   land again where specular or glossy bounces take them
+                                   next */
+    uint64_t n_photons;     /**< to emit */
+    uint64_t first;         /**< index of the first of them */
     int slice, n_slices; /**< of the shutter's time, that they are emitted in; 0 of 0: all
                             of it */
     const cancel_flag *cancel; /**< may be NULL */
@@ -93,14 +93,14 @@ typedef struct photon_event {
     vec3 p, direction;      /**< where, and whither it goes on */
     const surface_hit *hit; /**< NULL for EMITTED and LEFT; in a medium on no shape */
     int light;
-    unsigned lobe; /**< of SCATTERED */
-    spectrum flux; /**< of the photon after the event, its share alone */
-    float share;   /**< see trace_task.share */
+    unsigned lobe;    /**< of SCATTERED */
+    spectrum flux;    /**< of the photon after the event, its share alone */
+    float mis_weight; /**< see trace_task.mis */
 } photon_event;
 
 /** @brief A photon whose share is smaller than this is one of few that carry as much: its
  * flux is multiplied by this instead, with a probability of their ratio. */
-#define PHOTON_LEAST_SHARE 0.25f
+#define PHOTON_LEAST_WEIGHT 0.25f
 
 /** @brief Hears of each event. */
 typedef void (*photon_listener)(const photon_event *event, void *data);

@@ -10,15 +10,14 @@
 #define TRIAL_PIXELS 4.0
 
 /* The share of trial photons, as of a pass with a radius of a few pixels. */
-static caustic_share trial_share(transport_plan *plan)
+static caustic_mis trial_mis(transport_plan *plan)
 {
     double radius = plan->how.radius;
     if (!(radius > 0.0))
         radius = TRIAL_PIXELS * (double)visible_pixel(plan);
     if (!(radius > 0.0))
         radius = 0.01 * (double)plan->scene->radius;
-    return (caustic_share){.casters = plan->casters,
-                           .discs = caustic_discs(plan, radius)};
+    return (caustic_mis){.casters = plan->casters, .discs = caustic_discs(plan, radius)};
 }
 
 enum { MOST_LIT = 8192 }; /* size: places that light sampling found lit */
@@ -96,7 +95,7 @@ static bool try_photons(transport_plan *plan, path_effort *paths,
         return false;
     }
     plan->boost = found.boost;
-    plan->share.boost = found.boost;
+    plan->mis.boost = found.boost;
     if (plan->n_photons[PHOTON_CAUSTIC] > 0)
         caustics_decide(plan, &found, paths);
     return true;
@@ -151,13 +150,13 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
         return false;
     plan_ask(plan, photons_wanted(&plan->how));
     plan->n_photons[PHOTON_CAUSTIC] = caustics_most(plan);
-    plan->shares = plan->n_photons[PHOTON_CAUSTIC] > 0;
+    plan->uses_mis = plan->n_photons[PHOTON_CAUSTIC] > 0;
     if (plan_is_tiny(plan))
         caustics_settle(plan);
-    if (!plan->shares && !plan->how.bright_spots)
+    if (!plan->uses_mis && !plan->how.bright_spots)
         return true;
-    if (plan->shares)
-        plan->share = trial_share(plan);
+    if (plan->uses_mis)
+        plan->mis = trial_mis(plan);
     if (!plan_is_tiny(plan) && !try_photons(plan, &paths, cancel, error))
         return false;
     if (plan->n_photons[PHOTON_CAUSTIC] > 0 &&

@@ -3,10 +3,10 @@
  * photons for the light that only photons find (caustics, seen directly or through
  * glass).
  *
- * Light that goes lamp → specular or glossy → diffuse surface is found by photons and by
+ * Light that goes light → specular or glossy → diffuse surface is found by photons and by
  * paths from the eye; at whatever diffuse surface the camera path stands, and however it
- * got there, each takes the share that it finds better (photon/share.h). Every other path
- * is traced from the camera; brightly lit places are looked at as lamps are
+ * got there, each takes the share that it finds better (photon/caustic_mis.h). Every
+ * other path is traced from the camera; brightly lit places are looked at as lights are
  * (path_spots.c). Trials tell how many photons a pass is worth, and how often it is worth
  * to look (budget.h); where that is never, this is `path`.
  */

@@ -19,7 +19,7 @@ static float left_by_photons(const path_walk *walk, const camera_path *path,
         .pdf_scatter = path->pdf_scatter,
         .pdf_lights = scene_light_pdf(walk->scene, met->light, path->from, d, hit),
     };
-    return 1.0f - caustic_share_of(&walk->pass->caustics->share, &end);
+    return 1.0f - caustic_mis_weight(&walk->pass->caustics->mis, &end);
 }
 
 static void meet_light(void *data, const met_light *met)
@@ -46,7 +46,7 @@ static void note_density(const path_walk *walk, camera_path *path, const surface
     bsdf room;
     if (!walk->pass->caustics || path->n_diffuse == 0 || !(next->lobe & LOBE_GLOSSY))
         return;
-    const bsdf *all = path_all_lanes(walk, path, hit, b, &room);
+    const bsdf *all = path_all_wavelengths(walk, path, hit, b, &room);
     path->pdf_scatter =
         bsdf_pdf(all, -path->at.ray.direction, next->wi, LOBE_ALL, TRANSPORT_RADIANCE);
 }
@@ -66,7 +66,7 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     note_density(walk, path, hit, b, &next);
     path->looked = path_looks(walk, path, b);
     path->at.throughput *= next.weight;
-    path->at.lane = next.lane;
+    path->at.wavelength = next.wavelength;
     path->eta2 *= next.eta * next.eta;
     path->pdf = (next.lobe & LOBE_SPECULAR) ? 0.0f : next.pdf;
     path->from = hit->p;
@@ -90,7 +90,7 @@ static void note_seen(const path_walk *walk, const surface_hit *hit)
     bsdf b;
     const path_pass *pass = walk->pass;
     const camera_path *path = &walk->path;
-    if (scene_bsdf(walk->scene, hit, &pass->w, path->at.lane, &pass->options, &b))
+    if (scene_bsdf(walk->scene, hit, &pass->w, path->at.wavelength, &pass->options, &b))
         radiance_sample_note(walk->out, hit, &b, -path->at.ray.direction, path->from);
 }
 
@@ -116,7 +116,7 @@ static bool path_goes_on(path_walk *walk)
         meet_surface(walk, NULL);
         return false;
     }
-    scene_scatterer(walk->scene, &hit, &pass->w, path->at.lane, &pass->options, &b);
+    scene_scatterer(walk->scene, &hit, &pass->w, path->at.wavelength, &pass->options, &b);
     if (event == EVENT_SURFACE && path->at.eye && !path->at.ray.media.participating)
         radiance_sample_note(walk->out, &hit, &b, -path->at.ray.direction, path->from);
     if (path_is_cut(walk, path, 1))

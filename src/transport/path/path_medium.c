@@ -1,6 +1,6 @@
 /*
  * A camera path in a participating medium: it is scattered at points drawn by the
- * medium's extinction (Pharr et al. 2023, chapter 14) and by how near lamps are, and on
+ * medium's extinction (Pharr et al. 2023, chapter 14) and by how near lights are, and on
  * its way it sees what photons left in the medium.
  */
 #include "transport/direct.h"

@@ -1,9 +1,9 @@
 /*
- * Bright spots as lamps: from surfaces of a camera path a ray is sent to a place that is
- * brightly lit, as to a point on a lamp, and what photons and light sampling say of it
+ * Bright spots as lights: from surfaces of a camera path a ray is sent to a place that is
+ * brightly lit, as to a point on a light, and what photons and light sampling say of it
  * there is weighed against what the path finds by scattering (photon/spots.h). So a room
  * that is lit by what the sun throws through its window is no noisier than one with a
- * lamp there.
+ * light there.
  */
 #include "transport/direct.h"
 #include "transport/path/path_walk.h"
@@ -61,8 +61,8 @@ static bool meet_surface(path_walk *walk, const camera_path *path,
     if (scene_advance(&who, &sight, &out->hit) != EVENT_SURFACE)
         return false;
     out->transmittance = sight.throughput;
-    return scene_bsdf(walk->scene, &out->hit, &pass->w, path->at.lane, &pass->options,
-                      &out->bsdf);
+    return scene_bsdf(walk->scene, &out->hit, &pass->w, path->at.wavelength,
+                      &pass->options, &out->bsdf);
 }
 
 static bool look_at_spot(path_walk *walk, const camera_path *path, const surface_hit *hit,

@@ -68,10 +68,11 @@ bool path_is_cut(const path_walk *walk, const camera_path *path, unsigned more)
     return limit >= 0 && path->bounces + more > limit;
 }
 
-void path_add_from(path_walk *walk, const camera_path *path, spectrum radiance, int lamp)
+void path_add_from(path_walk *walk, const camera_path *path, spectrum radiance,
+                   int source)
 {
     if (add(walk, path, radiance) && walk->out->groups)
-        walk->out->groups[scene_light_group(walk->scene, lamp)] +=
+        walk->out->groups[scene_light_group(walk->scene, source)] +=
             path->at.throughput * radiance;
 }
 
@@ -80,13 +81,13 @@ bool path_samples_every_light(const camera_path *path)
     return path->n_diffuse == 0 && !path->by_either;
 }
 
-const bsdf *path_all_lanes(const path_walk *walk, const camera_path *path,
-                           const surface_hit *hit, const bsdf *b, bsdf *room)
+const bsdf *path_all_wavelengths(const path_walk *walk, const camera_path *path,
+                                 const surface_hit *hit, const bsdf *b, bsdf *room)
 {
     const path_pass *pass = walk->pass;
-    if (path->at.lane == ALL_LANES)
+    if (path->at.wavelength == ALL_WAVELENGTHS)
         return b;
-    scene_bsdf(walk->scene, hit, &pass->w, ALL_LANES, &pass->options, room);
+    scene_bsdf(walk->scene, hit, &pass->w, ALL_WAVELENGTHS, &pass->options, room);
     return room;
 }
 
@@ -123,8 +124,8 @@ void path_sample_lights(path_walk *walk, const camera_path *path, const surface_
         .every_light = path_samples_every_light(path),
         .shadow_rays = walk->how->shadow_rays,
         .followed = LOBE_ALL,
-        .share = share ? &walk->pass->caustics->share : NULL,
-        .all_lanes = share ? path_all_lanes(walk, path, hit, b, &room) : NULL,
+        .mis = share ? &walk->pass->caustics->mis : NULL,
+        .all_wavelengths = share ? path_all_wavelengths(walk, path, hit, b, &room) : NULL,
     };
     direct_radiance found[FEW_LIGHTS];
     int n = direct_light(&query, walk->random, found, &walk->scratch->shadow_rays);

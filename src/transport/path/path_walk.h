@@ -17,11 +17,11 @@ typedef struct camera_path {
     float eta2;         /* takes refraction's scale of radiance out of roulette */
     float pdf; /* pdf_solid_angle of the direction; 0: specular or from the camera */
     vec3 from;
-    float
-        pdf_scatter; /* of the direction, by the bsdf of all lanes; where photons share */
-    bool every_light; /* how lights were sampled there */
-    float looked;     /* probability that bright spots were looked at from there ... */
-    bool by_either;   /* ... and it has lobes both diffuse and glossy */
+    float pdf_scatter; /* of the direction, by the bsdf of all wavelengths; where photons
+                          share */
+    bool every_light;  /* how lights were sampled there */
+    float looked;      /* probability that bright spots were looked at from there ... */
+    bool by_either;    /* ... and it has lobes both diffuse and glossy */
 } camera_path;
 
 /* What one camera ray's path is traced with. */
@@ -50,7 +50,7 @@ void path_sample_lights(path_walk *walk, const camera_path *path, const surface_
 void path_gather_caustics(path_walk *walk, const camera_path *path,
                           const surface_hit *hit, const bsdf *b);
 
-/** @brief True where light comes by followed bounces from a lamp to a diffuse surface of
+/** @brief True where light comes by followed bounces from a light to a diffuse surface of
  * this path, or a point in a medium. */
 bool path_is_caustic(const camera_path *path);
 
@@ -65,9 +65,9 @@ bool path_photons_share(const path_walk *walk, const camera_path *path);
  * mirror. */
 bool path_samples_every_light(const camera_path *path);
 
-/** @brief The bsdf whatever lane the path has kept: b, or made in room. */
-const bsdf *path_all_lanes(const path_walk *walk, const camera_path *path,
-                           const surface_hit *hit, const bsdf *b, bsdf *room);
+/** @brief The bsdf whatever wavelength the path has kept: b, or made in room. */
+const bsdf *path_all_wavelengths(const path_walk *walk, const camera_path *path,
+                                 const surface_hit *hit, const bsdf *b, bsdf *room);
 
 /** @brief Adds what came from one light. */
 void path_add_from(path_walk *walk, const camera_path *path, spectrum radiance,

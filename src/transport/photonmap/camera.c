@@ -4,7 +4,7 @@
  * to say about the others (Whitted 1980; Jensen 2001, §8).
  *
  * Both sides of glass are followed at the first bounces, later one of them by chance. A
- * lamp met after a glossy bounce is shared with light sampling by multiple importance
+ * light met after a glossy bounce is shared with light sampling by multiple importance
  * sampling.
  */
 #include "transport/direct.h"
@@ -58,12 +58,12 @@ static bool add(camera_tree *tree, const camera_branch *branch, radiance_layer l
     return true;
 }
 
-/* Adds what came from one lamp. */
+/* Adds what came from one light. */
 static void add_from(camera_tree *tree, const camera_branch *branch, radiance_layer layer,
-                     spectrum radiance, int lamp)
+                     spectrum radiance, int source)
 {
     if (add(tree, branch, layer, radiance) && tree->out->groups)
-        tree->out->groups[scene_light_group(tree->pass->scene, lamp)] +=
+        tree->out->groups[scene_light_group(tree->pass->scene, source)] +=
             branch->at.throughput * radiance;
 }
 
@@ -197,7 +197,7 @@ static scene_event shade_medium(void *data, float length, const surface_hit *beh
     static const radiance_layer layers[N_PHOTON_CLASSES] = {LAYER_DIRECT, LAYER_INDIRECT,
                                                             LAYER_CAUSTIC};
     const medium_look look = {&branch->at.ray, length, branch->at.throughput,
-                              branch->at.lane, true};
+                              branch->at.wavelength, true};
     const spectrum *parts = tree->scratch->estimate.groups;
     const bool scatters = events_left(tree, branch) != 0;
     if (scatters && samples_lights) {
@@ -227,7 +227,7 @@ static bool bounce(camera_tree *tree, camera_branch *branch, const surface_hit *
     if (!bsdf_sample_direction(b, wo, u_lobe, u, lobes, TRANSPORT_RADIANCE, &next))
         return false;
     branch->at.throughput *= next.weight / probability;
-    branch->at.lane = next.lane;
+    branch->at.wavelength = next.wavelength;
     branch->eta2 *= next.eta * next.eta;
     branch->glossy_pdf = (next.lobe & LOBE_GLOSSY) ? next.pdf * probability : 0.0f;
     branch->from = hit->p;
@@ -292,7 +292,7 @@ static void follow(camera_tree *tree, camera_branch branch)
             meet_surface(&step, NULL);
             return;
         }
-        scene_bsdf(pass->scene, &hit, &pass->w, branch.at.lane, &pass->options, &b);
+        scene_bsdf(pass->scene, &hit, &pass->w, branch.at.wavelength, &pass->options, &b);
         if (branch.at.eye)
             radiance_sample_note(tree->out, &hit, &b, -branch.at.ray.direction,
                                  branch.from);

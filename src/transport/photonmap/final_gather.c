@@ -3,13 +3,13 @@
  * mean over rays of what the maps say about the surfaces those rays meet, so that the
  * map's blotches are averaged away.
  *
- * A gather ray never counts lamps it meets: light → here is the direct layer's, and light
- * → specular → here the caustic map's.
+ * A gather ray never counts lights it meets: light → here is the direct layer's, and
+ * light → specular → here the caustic map's.
  *
  * Kept irradiance is looked up nearby only. Where light falls off to nothing, as on a
- * wall above its lamp, there are no photons, and the nearest place with any is far and in
- * the light: what is dark would shine. There the maps are asked, which is quick, for few
- * photons are in reach.
+ * wall above its light, there are no photons, and the nearest place with any is far and
+ * in the light: what is dark would shine. There the maps are asked, which is quick, for
+ * few photons are in reach.
  */
 #include "transport/photonmap/photonmap_medium.h"
 
@@ -233,32 +233,32 @@ static void collect(const photonmap_pass *pass, transport_scratch *scratch,
         scratch->gathered[i] += factor * parts[i];
 }
 
-/* What a Lambertian surface sends out by all maps, kept or asked; beta times its parts by
-   light groups are collected. */
+/* What a Lambertian surface sends out by all maps, kept or asked; throughput times its
+   parts by light groups are collected. */
 static spectrum outgoing_by_maps(const photonmap_pass *pass, const shading_point *at,
-                                 spectrum beta, transport_scratch *scratch)
+                                 spectrum throughput, transport_scratch *scratch)
 {
     const map_place place = place_of(pass, at);
     const spectrum f = at->bsdf->rho * INV_PI_F, *parts = NULL;
     spectrum irradiance = {0};
     if (kept_irradiance(&place, &scratch->estimate, &irradiance, &parts)) {
-        collect(pass, scratch, beta * f, parts);
+        collect(pass, scratch, throughput * f, parts);
         return irradiance * f;
     }
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         irradiance += class_irradiance(&place, c, &scratch->estimate);
-        collect(pass, scratch, beta * f, scratch->estimate.groups);
+        collect(pass, scratch, throughput * f, scratch->estimate.groups);
     }
     return irradiance * f;
 }
 
-/* Outgoing radiance of the diffuse lobes at a point, from all that light does there; beta
-   times its parts by light groups are collected. */
+/* Outgoing radiance of the diffuse lobes at a point, from all that light does there;
+   throughput times its parts by light groups are collected. */
 static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
-                         spectrum beta, sampler *random, transport_scratch *scratch)
+                         spectrum throughput, sampler *random, transport_scratch *scratch)
 {
     if (pass->irradiance[0] && at->bsdf->lambertian && !at->hit->camera_facing)
-        return outgoing_by_maps(pass, at, beta, scratch);
+        return outgoing_by_maps(pass, at, throughput, scratch);
     spectrum radiance = {0};
     if (pass->how->direct_illumination) {
         const direct_query query = {
@@ -274,14 +274,14 @@ static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
             radiance = found[0].diffuse;
             if (scratch->gathered)
                 scratch->gathered[scene_light_group(pass->scene, found[0].light)] +=
-                    beta * radiance;
+                    throughput * radiance;
         }
     }
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         if (c == PHOTON_DIRECT && pass->how->direct_illumination)
             continue;
         radiance += photonmap_gather(pass, (photon_class)c, at, 0, scratch);
-        collect(pass, scratch, beta, scratch->estimate.groups);
+        collect(pass, scratch, throughput, scratch->estimate.groups);
     }
     return radiance;
 }
@@ -301,7 +301,7 @@ static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b)
     if (!(u.roulette < p))
         return false;
     path->at.throughput *= next.weight / p;
-    path->at.lane = next.lane;
+    path->at.wavelength = next.wavelength;
     path->at.ray = hit_ray(hit, next.wi);
     path->bounces++;
     return true;
@@ -320,7 +320,7 @@ static scene_event cross_medium(void *data, float length, const surface_hit *beh
     const medium *m = scene_medium(pass->scene, path->at.ray.media.participating);
     const bool samples_lights = pass->how->direct_illumination;
     const spectrum before = path->at.throughput;
-    const medium_look look = {&path->at.ray, length, before, path->at.lane, false};
+    const medium_look look = {&path->at.ray, length, before, path->at.wavelength, false};
     if (samples_lights) {
         path->sum +=
             before * photonmap_direct_in_medium(pass, &look, path->random, scratch);
@@ -348,7 +348,7 @@ static spectrum gather_along(gather_path path, int64_t events)
     while ((events < 0 || path.bounces < events) && !cancelled(pass->plan->cancel) &&
            scene_advance(&who, &path.at, &hit) == EVENT_SURFACE) {
         bsdf b;
-        scene_bsdf(pass->scene, &hit, &pass->w, path.at.lane, &pass->options, &b);
+        scene_bsdf(pass->scene, &hit, &pass->w, path.at.wavelength, &pass->options, &b);
         const shading_point at = {.hit = &hit, .bsdf = &b, .wo = -path.at.ray.direction};
         if (b.lobes & LOBE_DIFFUSE)
             path.sum += path.at.throughput * outgoing(pass, &at, path.at.throughput,
@@ -381,7 +381,7 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
             continue;
         const gather_path path = {.at = {.ray = hit_ray(at->hit, first.wi),
                                          .throughput = first.weight,
-                                         .lane = first.lane},
+                                         .wavelength = first.wavelength},
                                   .pass = pass,
                                   .random = &stream,
                                   .scratch = scratch};

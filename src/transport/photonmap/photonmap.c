@@ -88,7 +88,7 @@ static trace_task trace_task_for(const slice_task *s, const cancel_flag *cancel)
         .photon_class = s->c,
         .casters = pass->plan->casters,
         .guide = pass->plan->guide,
-        .share = pass->plan->shares ? &pass->share : NULL,
+        .mis = pass->plan->uses_mis ? &pass->mis : NULL,
         .n_photons = each,
         .first = each * (uint64_t)s->slice,
         .slice = s->slice,
@@ -244,8 +244,8 @@ static void *open_pass(const transport_plan *plan, uint32_t index)
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         pass->estimates[c] = photonmap_estimate_options(
             &plan->how, (photon_class)c, radius_of(plan, (photon_class)c, index));
-    pass->share = plan->share;
-    pass->share.discs = caustic_discs(plan, radius_of(plan, PHOTON_CAUSTIC, index));
+    pass->mis = plan->mis;
+    pass->mis.discs = caustic_discs(plan, radius_of(plan, PHOTON_CAUSTIC, index));
     return pass;
 }
 

@@ -1,5 +1,5 @@
 /*
- * Photon mapping (Jensen 1996, 2001): photons are traced from the lamps into three maps,
+ * Photon mapping (Jensen 1996, 2001): photons are traced from the lights into three maps,
  * and camera paths gather from them at the first diffuse surface.
  *
  * A pass holds the maps; camera.c follows camera paths, final_gather.c makes the indirect
@@ -40,14 +40,14 @@ typedef struct photonmap_pass {
     irradiance_cache *irradiance[MOST_TIME_SLICES]; /**< of each slice, for final
                                                        gathering; NULL: not asked for */
     estimate_options estimates[N_PHOTON_CLASSES];
-    caustic_share share; /**< if plan->shares */
+    caustic_mis mis; /**< if plan->uses_mis */
     bool has_delta_lights;
 } photonmap_pass;
 
 /** @brief Radius of pass i from that of pass 0 (Knaus & Zwicker 2011, eq. 20). */
 double photonmap_radius(double radius, double alpha, uint32_t pass);
 
-/** @brief caustic_share.discs of a pass with that radius. */
+/** @brief caustic_mis.discs of a pass with that radius. */
 float caustic_discs(const transport_plan *plan, double radius);
 
 /** @brief How the given class is to be estimated with radius r. */

@@ -65,16 +65,16 @@ typedef struct direct_sum {
     size_t n_groups; /* 0: not asked for */
 } direct_sum;
 
-static void add(direct_sum *sum, int lamp, spectrum radiance)
+static void add(direct_sum *sum, int source, spectrum radiance)
 {
     sum->radiance += radiance;
     if (sum->n_groups > 0)
-        sum->groups[scene_light_group(sum->pass->scene, lamp)] += radiance;
+        sum->groups[scene_light_group(sum->pass->scene, source)] += radiance;
 }
 
-/* By a point on a lamp, or on each. */
-static void sample_lamps(const medium_look *look, const surface_hit *at, const bsdf *b,
-                         sampler *random, transport_scratch *scratch, direct_sum *sum)
+/* By a point on a light, or on each. */
+static void sample_lights(const medium_look *look, const surface_hit *at, const bsdf *b,
+                          sampler *random, transport_scratch *scratch, direct_sum *sum)
 {
     const photonmap_pass *pass = sum->pass;
     const direct_query query = {
@@ -116,9 +116,9 @@ static void meet_surface(void *data, const surface_hit *hit)
     direct_meet(pass->scene, &pass->w, &way->at.ray, hit, meet_light, data);
 }
 
-static void meet_lamps(const medium_look *look, const surface_hit *at,
-                       const bsdf_sample *next, transport_scratch *scratch,
-                       direct_sum *sum)
+static void meet_lights(const medium_look *look, const surface_hit *at,
+                        const bsdf_sample *next, transport_scratch *scratch,
+                        direct_sum *sum)
 {
     scattered_way way = {
         .from = {at->p, next->pdf, look->every_light},
@@ -143,9 +143,9 @@ static medium_sample point_on(const photonmap_pass *pass, const medium_look *loo
     medium_pivot pivot;
     bool near = direct_pivot(pass->scene, &pass->w, r, look->length, random, &pivot);
     float u = sampler_1d(random);
-    return near ? medium_sample_within_near(m, &pass->w, look->carried, look->length,
+    return near ? medium_sample_within_near(m, &pass->w, look->throughput, look->length,
                                             &pivot, u)
-                : medium_sample_within(m, &pass->w, look->carried, look->length, u);
+                : medium_sample_within(m, &pass->w, look->throughput, look->length, u);
 }
 
 spectrum photonmap_direct_in_medium(const photonmap_pass *pass, const medium_look *look,
@@ -166,12 +166,12 @@ spectrum photonmap_direct_in_medium(const photonmap_pass *pass, const medium_loo
     const surface_hit hit = hit_in_medium(r, at.t);
     bsdf b;
     bsdf_sample way;
-    bsdf_make_phase(&b, m->g, look->lane);
-    sample_lamps(look, &hit, &b, random, scratch, &sum);
+    bsdf_make_phase(&b, m->g, look->wavelength);
+    sample_lights(look, &hit, &b, random, scratch, &sum);
     if (pass->how->shadow_rays &&
         bsdf_sample_direction(&b, -r->direction, 0.0f, sampler_2d(random), LOBE_ALL,
                               TRANSPORT_RADIANCE, &way))
-        meet_lamps(look, &hit, &way, scratch, &sum);
+        meet_lights(look, &hit, &way, scratch, &sum);
     at.weight *= scene_solid_transmittance(pass->scene, &r->media, at.t, &pass->w);
     for (size_t i = 0; i < sum.n_groups; i++)
         sum.groups[i] *= at.weight;

@@ -10,14 +10,14 @@
 /** @brief A ray through the medium that it starts in. */
 typedef struct medium_look {
     const ray *ray;
-    float length;     /**< m: how far the medium reaches on it */
-    spectrum carried; /**< what its radiance counts, by wavelength */
-    int lane;
-    bool every_light; /**< sample each lamp, where they are few, instead of one */
+    float length;        /**< m: how far the medium reaches on it */
+    spectrum throughput; /**< what its radiance counts, by wavelength */
+    int wavelength;
+    bool every_light; /**< sample each light, where they are few, instead of one */
 } medium_look;
 
-/** @brief Light that comes straight from lamps and is scattered once, toward the ray's
- * origin: from one point of the ray that stands for all, by sampling lamps and the phase
+/** @brief Light that comes straight from lights and is scattered once, toward the ray's
+ * origin: from one point of the ray that stands for all, by sampling lights and the phase
  * function; scratch->estimate.groups are its parts. */
 spectrum photonmap_direct_in_medium(const photonmap_pass *pass, const medium_look *look,
                                     sampler *random, transport_scratch *scratch);

@@ -105,9 +105,9 @@ static float sight_in_medium(const trials *all, const surface_hit *hit)
     ray r = hit_ray_to(hit, eye.direction, eye.distance);
     if (scene_occluded(task->scene, &r))
         return 0.0f;
-    float left = spectrum_mean(scene_transmittance(task->scene, &r, &task->w));
+    float transmittance = spectrum_mean(scene_transmittance(task->scene, &r, &task->w));
     float pixels = (float)all->pixels_each;
-    return left < UNSEEN_VALUE
+    return transmittance < UNSEEN_VALUE
                ? 0.0f
                : SIGHT_REACH * SIGHT_REACH * pixels * camera_pixel_area(c, eye.distance);
 }
@@ -128,8 +128,8 @@ typedef struct trial {
    density, all of them together leave the 1 / (1 + m)-th part. */
 static void add_noise(trial_noise *sum, const photon_event *event, float sight)
 {
-    double w = (double)event->share, odds = w / fmax(1.0 - w, 1e-9);
-    double survived = fmin(1.0, w / (double)PHOTON_LEAST_SHARE);
+    double w = (double)event->mis_weight, odds = w / fmax(1.0 - w, 1e-9);
+    double survived = fmin(1.0, w / (double)PHOTON_LEAST_WEIGHT);
     double flux = (double)spectrum_mean(event->flux) * survived / w;
     double noise = flux * flux * odds / (survived * (double)sight);
     sum->of_paths += noise;
@@ -204,7 +204,7 @@ static double noise_scale(const trials *all)
     double per_pixel = (double)(SIGHT_REACH * SIGHT_REACH) * all->pixels_each / pixels;
     double of_all = (double)all->task.n_photons / (double)all->first;
     return per_pixel * reflected * reflected * of_all * (double)all->task.n_photons /
-           (double)all->task.share->discs;
+           (double)all->task.mis->discs;
 }
 
 static void sum_noise(const trials *all)
@@ -331,7 +331,7 @@ static trials trials_of(transport_plan *plan, const emission_guide *guide,
                 .photon_class = PHOTON_CAUSTIC,
                 .casters = plan->casters,
                 .guide = guide,
-                .share = plan->shares ? &plan->share : NULL,
+                .mis = plan->uses_mis ? &plan->mis : NULL,
                 .n_photons = each,
                 .cancel = cancel,
             },

@@ -3,19 +3,19 @@
  * Transport Simulation with Vertex Connection and Merging", 2012): bidirectional path
  * tracing and photon mapping as one set of strategies, weighted against one another.
  *
- *   lamp y0 ── y1 ── ... ── ys        light subpaths, N a pass, kept as vertices
+ *   light y0 ── y1 ── ... ── ys        light subpaths, N a pass, kept as vertices
  *                            ┆  connect (a ray), or merge (yes within r of zt)
  *   eye  z0 ── z1 ── ... ── zt        a camera subpath; it connects to one light subpath
  *
  *   strategy                      vcm  bpt  bpm  ppm  light
- *   camera path meets the lamp     x    x    a    a    b
- *   camera vertex to the lamp      x    x
+ *   camera path meets the light     x    x    a    a    b
+ *   camera vertex to the light      x    x
  *   camera vertex to light vertex  x    x
  *   light vertex to the eye        x    x              x
  *   merging                        x         x    c
  *
  * a: where the camera path has met mirrors and glass only; c: at its first vertex that
- * scatters otherwise, where it ends; b: lamps seen directly. `light` therefore does not
+ * scatters otherwise, where it ends; b: lights seen directly. `light` therefore does not
  * see what stands in a mirror; the others are complete. Where several strategies find a
  * path they share it by the balance heuristic, so that their weights sum to one.
  *
@@ -34,10 +34,10 @@
  * own time. Merging, which joins two times, does so within a slice of time; vertices on
  * what moves are in the map where that is in the middle of the slice.
  *
- * A path that glass dispersed keeps one lane of the spectrum; if both subpaths did, they
- * meet only in the lane they share, by the zeros of the others. Densities for weights are
- * those of the bsdf of all lanes whatever a path has kept, for two strategies that find
- * the same path in the same lane must agree about its weights.
+ * A path that glass dispersed keeps one wavelength of the spectrum; if both subpaths did,
+ * they meet only in the wavelength they share, by the zeros of the others. Densities for
+ * weights are those of the bsdf of all wavelengths whatever a path has kept, for two
+ * strategies that find the same path in the same wavelength must agree about its weights.
  */
 #pragma once
 
@@ -52,7 +52,7 @@
 
 /** @brief Which strategies run (setting vcm_strategies). */
 typedef struct vcm_strategies {
-    bool connect;  /**< camera vertices to the lamp and to light vertices */
+    bool connect;  /**< camera vertices to the light and to light vertices */
     bool merge;    /**< camera vertices with light vertices nearby */
     bool splat;    /**< light vertices to the eye */
     bool end_here; /**< merge at the first vertex, unweighted, and end there */
@@ -71,7 +71,7 @@ typedef struct light_vertex {
     spectrum flux; /**< that arrived; one of N */
     kept_hit hit;  /**< light came to it along kept_hit_wo */
     partial_weights weights;
-    scattering_counts before; /**< what scattered between lamp and here */
+    scattering_counts before; /**< what scattered between light and here */
     int light;                /**< that it left */
     float alone;              /**< see vcm_weights.h */
 } light_vertex;
@@ -130,7 +130,7 @@ float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, photon_hits *hi
 /** @brief The strategies of a vcm_choice. */
 vcm_strategies vcm_strategies_of(int choice);
 
-/** @brief A light vertex as a photon; its flux, one of N, is its share of the lamps'. */
+/** @brief A light vertex as a photon; its flux, one of N, is its share of the lights'. */
 photon vcm_photon(const vcm_pass *pass, const light_vertex *v);
 
 /** @brief Tells each event of light subpath i (photon_sender.tell). */
@@ -144,7 +144,7 @@ void light_paths_clear(light_paths *paths);
 /** @brief A surface point of a subpath, with what scatters there. */
 typedef struct vcm_vertex {
     const surface_hit *hit;
-    bsdf bsdf;   /**< of all lanes: evaluates, and tells densities */
+    bsdf bsdf;   /**< of all wavelengths: evaluates, and tells densities */
     vec3 wo;     /**< to where the subpath came from */
     float alone; /**< see vcm_weights.h */
 } vcm_vertex;
@@ -199,7 +199,7 @@ typedef struct vcm_walk {
 bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsigned lobes,
                 sampler *random);
 
-/** @brief The layer that a path of these scattering events from the eye to the lamp
+/** @brief The layer that a path of these scattering events from the eye to the light
  * belongs to. */
 radiance_layer vcm_layer(scattering_counts counts);
 
@@ -207,10 +207,10 @@ radiance_layer vcm_layer(scattering_counts counts);
 scattering_counts vcm_count(scattering_counts from_eye, bool diffuse);
 
 /** @brief Counts from the eye, then those of a light subpath. */
-static inline scattering_counts vcm_join(scattering_counts eye, scattering_counts lamp)
+static inline scattering_counts vcm_join(scattering_counts eye, scattering_counts source)
 {
-    eye.n += lamp.n;
-    eye.n_diffuse += lamp.n_diffuse;
+    eye.n += source.n;
+    eye.n_diffuse += source.n_diffuse;
     return eye;
 }
 

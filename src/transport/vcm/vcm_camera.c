@@ -1,4 +1,4 @@
-/* Camera subpaths: each vertex meets lamps, is connected, and merges. */
+/* Camera subpaths: each vertex meets lights, is connected, and merges. */
 #include "transport/direct.h"
 #include "transport/vcm/vcm.h"
 
@@ -13,7 +13,7 @@ typedef struct camera_walk {
     partial_weights at_curve;      /* see leave_curve */
 } camera_walk;
 
-static void add(camera_walk *c, scattering_counts counts, int lamp, spectrum radiance)
+static void add(camera_walk *c, scattering_counts counts, int source, spectrum radiance)
 {
     spectrum value = c->walk.at.throughput * radiance;
     if (!spectrum_is_finite(value)) {
@@ -22,13 +22,13 @@ static void add(camera_walk *c, scattering_counts counts, int lamp, spectrum rad
     }
     c->out->layers[vcm_layer(counts)] += value;
     if (c->out->groups)
-        c->out->groups[scene_light_group(c->pass->scene, lamp)] += value;
+        c->out->groups[scene_light_group(c->pass->scene, source)] += value;
 }
 
-/* Which lamp light came from, and what it scattered by on its way. */
+/* Which light light came from, and what it scattered by on its way. */
 typedef struct arrival {
     scattering_counts before;
-    int lamp;
+    int source;
 } arrival;
 
 /* Adds what this surface scatters by its two classes of lobes, f, of light that itself
@@ -39,13 +39,13 @@ static void add_scattered(camera_walk *c, const lobe_pair *f, arrival from,
     for (int i = 0; i < 2; i++) {
         scattering_counts seen = vcm_count(c->walk.counts, i == 0);
         if (!spectrum_is_black(f->value[i]))
-            add(c, vcm_join(seen, from.before), from.lamp, f->value[i] * arriving);
+            add(c, vcm_join(seen, from.before), from.source, f->value[i] * arriving);
     }
 }
 
-/* ---- The camera path runs into a lamp ---- */
+/* ---- The camera path runs into a light ---- */
 
-/* True if lamps that this path meets are counted, and by it alone. */
+/* True if lights that this path meets are counted, and by it alone. */
 static bool meets_alone(const camera_walk *c, bool *counted)
 {
     const vcm_strategies *how = &c->pass->strategies;
@@ -93,8 +93,8 @@ static void meet_surface(void *data, const surface_hit *hit)
 
 /* ---- Connections ---- */
 
-static float lamp_weight(const camera_walk *c, const vcm_vertex *v, int index,
-                         const light_sample *to_light)
+static float light_weight(const camera_walk *c, const vcm_vertex *v, int index,
+                          const light_sample *to_light)
 {
     const scene *s = c->pass->scene;
     const light *l = scene_light(s, index);
@@ -118,7 +118,7 @@ static float lamp_weight(const camera_walk *c, const vcm_vertex *v, int index,
     return 1.0f / (met + 1.0f + traced);
 }
 
-static void connect_to_lamp(camera_walk *c, const vcm_vertex *v)
+static void connect_to_light(camera_walk *c, const vcm_vertex *v)
 {
     float u_light = sampler_1d(c->random), u_primitive = sampler_1d(c->random);
     vec2 u = sampler_2d(c->random);
@@ -134,16 +134,16 @@ static void connect_to_lamp(camera_walk *c, const vcm_vertex *v)
     spectrum transmittance;
     if (!vcm_visible(c->pass, v->hit, to_light.wi, to_light.distance, &transmittance))
         return;
-    float weight = lamp_weight(c, v, index, &to_light);
-    add_scattered(c, &f, (arrival){.lamp = index},
+    float weight = light_weight(c, v, index, &to_light);
+    add_scattered(c, &f, (arrival){.source = index},
                   to_light.radiance * (weight / to_light.pdf) * transmittance);
 }
 
 /* Where a camera vertex and a light vertex face one another. */
 typedef struct vertex_pair {
-    const vcm_vertex *eye, *lamp;
+    const vcm_vertex *eye, *source;
     const light_vertex *light;
-    vec3 direction; /* from eye to lamp */
+    vec3 direction; /* from eye to light */
     float distance2;
 } vertex_pair;
 
@@ -151,21 +151,21 @@ static float pair_weight(const camera_walk *c, const vertex_pair *p)
 {
     vec3 d = p->direction;
     float eye_area = hit_cosine(p->eye->hit, d) / p->distance2;
-    float lamp_area = fabsf(dot3(d, p->lamp->hit->n_geom)) / p->distance2;
-    float lamp_side = weights_connected(
-        &p->light->weights, lamp_area * vcm_pdf(p->eye, d, TRANSPORT_RADIANCE),
-        vcm_pdf_reverse(p->lamp, -d, TRANSPORT_IMPORTANCE), &c->pass->ratios,
-        p->lamp->alone);
+    float light_area = fabsf(dot3(d, p->source->hit->n_geom)) / p->distance2;
+    float light_side = weights_connected(
+        &p->light->weights, light_area * vcm_pdf(p->eye, d, TRANSPORT_RADIANCE),
+        vcm_pdf_reverse(p->source, -d, TRANSPORT_IMPORTANCE), &c->pass->ratios,
+        p->source->alone);
     float eye_side = weights_connected(
-        &c->walk.weights, eye_area * vcm_pdf(p->lamp, -d, TRANSPORT_IMPORTANCE),
+        &c->walk.weights, eye_area * vcm_pdf(p->source, -d, TRANSPORT_IMPORTANCE),
         vcm_pdf_reverse(p->eye, d, TRANSPORT_RADIANCE), &c->pass->ratios, p->eye->alone);
-    return 1.0f / (lamp_side + 1.0f + eye_side);
+    return 1.0f / (light_side + 1.0f + eye_side);
 }
 
 static void add_pair(camera_walk *c, const vertex_pair *p)
 {
     lobe_pair f = vcm_scatter(p->eye, p->direction, TRANSPORT_RADIANCE);
-    lobe_pair g = vcm_scatter(p->lamp, -p->direction, TRANSPORT_IMPORTANCE);
+    lobe_pair g = vcm_scatter(p->source, -p->direction, TRANSPORT_IMPORTANCE);
     if (lobe_pair_is_black(&f) || lobe_pair_is_black(&g))
         return;
     c->scratch->shadow_rays++;
@@ -195,9 +195,9 @@ static void connect_to_vertex(camera_walk *c, const vcm_vertex *v, const light_v
     float distance2 = length3_2(to);
     if (!(distance2 > 0.0f) || vcm_ends_light(pass, &hit))
         return;
-    vcm_vertex lamp = {.hit = &hit, .wo = kept_hit_wo(&l->hit), .alone = l->alone};
-    scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &lamp.bsdf);
-    const vertex_pair p = {v, &lamp, l, to / sqrtf(distance2), distance2};
+    vcm_vertex source = {.hit = &hit, .wo = kept_hit_wo(&l->hit), .alone = l->alone};
+    scene_bsdf(pass->scene, &hit, &pass->w, ALL_WAVELENGTHS, &options, &source.bsdf);
+    const vertex_pair p = {v, &source, l, to / sqrtf(distance2), distance2};
     add_pair(c, &p);
 }
 
@@ -207,7 +207,7 @@ static void connect(camera_walk *c, const vcm_vertex *v)
     vcm_vertex at = *v;
     if (vcm_ends_light(c->pass, v->hit))
         at.alone = 0.0f;
-    connect_to_lamp(c, &at);
+    connect_to_light(c, &at);
     for (size_t i = c->first_light; i < c->end_light; i++)
         connect_to_vertex(c, &at, &c->pass->light.vertices[i]);
 }
@@ -219,12 +219,12 @@ static float merge_weight(const camera_walk *c, const vcm_vertex *v,
 {
     if (c->pass->strategies.end_here)
         return 1.0f;
-    float lamp_side = weights_merged(&l->weights, vcm_pdf(v, wi, TRANSPORT_RADIANCE),
-                                     &c->pass->ratios, v->alone);
+    float light_side = weights_merged(&l->weights, vcm_pdf(v, wi, TRANSPORT_RADIANCE),
+                                      &c->pass->ratios, v->alone);
     float eye_side =
         weights_merged(&c->walk.weights, vcm_pdf_reverse(v, wi, TRANSPORT_RADIANCE),
                        &c->pass->ratios, v->alone);
-    return 1.0f / (lamp_side + 1.0f + eye_side);
+    return 1.0f / (light_side + 1.0f + eye_side);
 }
 
 /* To where light came from, of what moves with its surface to another time. */
@@ -362,7 +362,7 @@ static void follow(camera_walk *c)
         }
         vcm_vertex v = {.hit = &hit, .wo = -walk->at.ray.direction};
         float cosine = hit_cosine(&hit, v.wo);
-        scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf);
+        scene_bsdf(pass->scene, &hit, &pass->w, ALL_WAVELENGTHS, &options, &v.bsdf);
         if (walk->at.eye)
             radiance_sample_note(c->out, v.hit, &v.bsdf, v.wo, walk->from);
         if (!vcm_length_allowed(pass, walk->counts.n + 1) || !(cosine > 0.0f))

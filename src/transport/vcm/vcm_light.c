@@ -52,7 +52,7 @@ static void tell(const light_walk *l, photon_event_kind kind, const surface_hit 
         .light = l->light,
         .lobe = l->walk.lobe,
         .flux = l->walk.at.throughput / (float)l->pass->light.n,
-        .share = 1.0f,
+        .mis_weight = 1.0f,
     };
     l->tell(&event, l->tell_data);
 }
@@ -222,11 +222,12 @@ static bool emit(light_walk *l)
                              .direction = e.ray.direction};
     e.ray.time = l->time;
     scene_leave_light(pass->scene, l->light, e.n, &e.ray);
-    l->walk = (vcm_walk){
-        .at = {.ray = e.ray, .throughput = e.flux / p_light, .lane = ALL_LANES},
-        .from = l->start.p,
-        .eta2 = 1.0f,
-        .mode = TRANSPORT_IMPORTANCE};
+    l->walk = (vcm_walk){.at = {.ray = e.ray,
+                                .throughput = e.flux / p_light,
+                                .wavelength = ALL_WAVELENGTHS},
+                         .from = l->start.p,
+                         .eta2 = 1.0f,
+                         .mode = TRANSPORT_IMPORTANCE};
     return !spectrum_is_black(l->walk.at.throughput);
 }
 
@@ -308,7 +309,7 @@ static void follow(light_walk *l)
             return;
         }
         vcm_vertex v = {.hit = &hit, .wo = -l->walk.at.ray.direction};
-        scene_bsdf(pass->scene, &hit, &pass->w, ALL_LANES, &options, &v.bsdf);
+        scene_bsdf(pass->scene, &hit, &pass->w, ALL_WAVELENGTHS, &options, &v.bsdf);
         if (!(fabsf(dot3(v.wo, hit.n_geom)) > 0.0f))
             return;
         arrive(l, &hit);

@@ -47,7 +47,8 @@ bool vcm_visible(const vcm_pass *pass, const surface_hit *from, vec3 direction,
     return true;
 }
 
-/* By the bsdf that samples: v's own, or that of the lane which the path has kept. */
+/* By the bsdf that samples: v's own, or that of the wavelength which the path has kept.
+ */
 static bool sample_direction(const vcm_pass *pass, const vcm_walk *walk,
                              const vcm_vertex *v, unsigned lobes, sampler *random,
                              bsdf_sample *out)
@@ -55,10 +56,11 @@ static bool sample_direction(const vcm_pass *pass, const vcm_walk *walk,
     static const bsdf_options options = {0};
     float u_lobe = sampler_1d(random);
     vec2 u = sampler_2d(random);
-    bsdf one_lane;
-    const bsdf *b = walk->at.lane == ALL_LANES ? &v->bsdf : &one_lane;
-    if (b == &one_lane &&
-        !scene_bsdf(pass->scene, v->hit, &pass->w, walk->at.lane, &options, &one_lane))
+    bsdf one_wavelength;
+    const bsdf *b = walk->at.wavelength == ALL_WAVELENGTHS ? &v->bsdf : &one_wavelength;
+    if (b == &one_wavelength &&
+        !scene_bsdf(pass->scene, v->hit, &pass->w, walk->at.wavelength, &options,
+                    &one_wavelength))
         return false;
     if (!bsdf_sample_direction(b, v->wo, u_lobe, u, lobes, walk->mode, out))
         return false;
@@ -80,7 +82,7 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
         weights_bounce(&walk->weights, cosine, vcm_pdf(v, next.wi, walk->mode),
                        vcm_pdf_reverse(v, next.wi, walk->mode), &pass->ratios, v->alone);
     walk->at.throughput *= next.weight;
-    walk->at.lane = next.lane;
+    walk->at.wavelength = next.wavelength;
     walk->lobe = next.lobe;
     walk->mirrors_only &= (next.lobe & LOBE_SPECULAR) != 0;
     walk->eta2 *= next.eta * next.eta;
