@@ -1,0 +1,358 @@
+/*
+ * How far from the truth a picture is after so much processor time, algorithm by
+ * algorithm: a table of points for equal_time.py, which makes curves and ratios of them.
+ *
+ *   scene ─► two long renders of algorithms that share no weakness ─► reference, its
+ * floor ─► each algorithm, 1, 4, 16 ... passes, some seeds ─► seconds, relMSE, FLIP
+ *
+ * Of the scene's own words on how to render none counts: all settings are the default's
+ * but the algorithm and the passes: a sample a pixel and three photons for two, as a
+ * render with `time` chooses them where time is short, and each point a whole render with
+ * so many. One thread, its processor seconds, planning included. Errors are of R, G and B
+ * cut at CUT, for single pixels of a lamp would outweigh the picture.
+ *
+ *   equal_time [--size WxH] [--seconds S] [--longest TIMES] [--seeds N] [--cache DIR]
+ *              [--kind NAME]... SCENE...
+ */
+#include <math.h>
+#include <nephroid/nephroid.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* Twice white: what is brighter is white in the picture as well. */
+#define CUT 2.0f
+
+static const char *const beauty[3] = {"R", "G", "B"};
+static const char *const caustic[3] = {"caustic.R", "caustic.G", "caustic.B"};
+
+enum { MOST_KINDS = 8, FIRST_SEED = 1, STEP = 4 };
+
+/* What is compared: a name, and the settings that make it, in their order. */
+typedef struct kind {
+    const char *name, *settings;
+} kind;
+
+static const kind all_kinds[] = {
+    {"auto", "integrator=auto"},
+    {"path", "integrator=path"},
+    {"sppm", "integrator=sppm"},
+    {"vcm", "integrator=vcm"},
+    {"final", "integrator=photonmap final_gather=true"},
+};
+
+enum { AUTO, PATH, SPPM, VCM }; /* of them, by place */
+
+typedef struct options {
+    int width, height, seeds;
+    double seconds; /* of a render, until which passes are added */
+    double longest; /* of a reference, as many times that */
+    const char *cache;
+    kind kinds[MOST_KINDS];
+    int n_kinds; /* 0: all */
+} options;
+
+static double processor_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void fail(const char *what, GError *error)
+{
+    fprintf(stderr, "equal_time: %s%s%s\n", what, error ? ": " : "",
+            error ? error->message : "");
+    exit(3);
+}
+
+static void set(NephSettings *how, const char *name, const char *value)
+{
+    GError *error = NULL;
+    if (!neph_settings_set(how, name, value, &error))
+        fail("setting", error);
+}
+
+static void set_number(NephSettings *how, const char *name, int64_t value)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%lld", (long long)value);
+    set(how, name, text);
+}
+
+static void set_all(NephSettings *how, const char *settings)
+{
+    char **words = g_strsplit(settings, " ", -1);
+    for (char **word = words; *word; word++) {
+        char **pair = g_strsplit(*word, "=", 2);
+        set(how, pair[0], pair[1] ? pair[1] : "");
+        g_strfreev(pair);
+    }
+    g_strfreev(words);
+}
+
+static int64_t n_pixels(const NephScene *scene)
+{
+    int width, height;
+    neph_scene_size(scene, &width, &height);
+    return (int64_t)width * height;
+}
+
+/* One whole render. @return NULL: the algorithm refuses the scene */
+static NephImage *shot(const NephScene *scene, const kind *k, int64_t passes, int seed,
+                       double *seconds)
+{
+    GError *error = NULL;
+    NephSettings *how = neph_settings_new();
+    set_number(how, "threads", 1);
+    set_number(how, "spp", 1);
+    set_number(how, "photons", n_pixels(scene) * 3 / 2);
+    set_number(how, "passes", passes);
+    set_number(how, "seed", seed);
+    set_all(how, k->settings);
+    double start = processor_seconds();
+    NephRender *render = neph_render_new(scene, how, &error);
+    bool done = render && neph_render_run(render, NULL, NULL, &error);
+    *seconds = processor_seconds() - start;
+    NephImage *image = done ? neph_render_image(render, &error) : NULL;
+    if (!image)
+        fprintf(stderr, "equal_time: %s: %s\n", k->name, error->message);
+    g_clear_error(&error);
+    neph_render_free(render);
+    neph_settings_free(how);
+    return image;
+}
+
+/* Where the values of a channel begin. */
+static const float *channel(const NephImage *image, const char *name)
+{
+    int width, height, n;
+    neph_image_size(image, &width, &height, &n);
+    for (int c = 0; c < n; c++)
+        if (strcmp(neph_image_channel_name(image, c), name) == 0)
+            return neph_image_pixels(image) + c;
+    return NULL;
+}
+
+/* Three numbers a pixel, cut. The caller frees them. */
+static float *colours(const NephImage *from, const char *const names[3])
+{
+    int width, height, n_channels;
+    neph_image_size(from, &width, &height, &n_channels);
+    size_t n = (size_t)width * (size_t)height;
+    float *rgb = g_new0(float, 3 * n);
+    for (size_t c = 0; c < 3; c++) {
+        const float *values = channel(from, names[c]);
+        for (size_t i = 0; values && i < n; i++) {
+            float v = values[i * (size_t)n_channels];
+            rgb[3 * i + c] = isfinite(v) ? fminf(v, CUT) : 0.0f;
+        }
+    }
+    return rgb;
+}
+
+static NephImage *cut(const NephImage *from)
+{
+    GError *error = NULL;
+    int width, height, n_channels;
+    neph_image_size(from, &width, &height, &n_channels);
+    float *rgb = colours(from, beauty);
+    NephImage *out = neph_image_new(width, height, rgb, &error);
+    if (!out)
+        fail("no memory", error);
+    g_free(rgb);
+    return out;
+}
+
+static NephImageDifference compare(const NephImage *image, const NephImage *reference)
+{
+    GError *error = NULL;
+    NephImageDifference out;
+    NephImage *a = cut(image), *b = cut(reference);
+    if (!neph_image_compare(a, b, &out, &error))
+        fail("comparing", error);
+    neph_image_free(a);
+    neph_image_free(b);
+    return out;
+}
+
+/* relMSE over what caustics light: a fifth of it and more, by the reference's layers.
+   NAN: nothing is. */
+static double caustic_error(const NephImage *image, const NephImage *reference)
+{
+    int width, height, n_channels;
+    neph_image_size(image, &width, &height, &n_channels);
+    float *is = colours(image, beauty), *should = colours(reference, beauty);
+    float *lit = colours(reference, caustic);
+    double sum = 0.0;
+    int n = 0;
+    for (int i = 0; i < width * height; i++) {
+        const float *a = is + 3 * i, *b = should + 3 * i, *l = lit + 3 * i;
+        if (!(l[0] + l[1] + l[2] > 0.2f * (b[0] + b[1] + b[2])))
+            continue;
+        for (int c = 0; c < 3; c++)
+            sum += (double)((a[c] - b[c]) * (a[c] - b[c]) / (b[c] * b[c] + 0.01f));
+        n += 3;
+    }
+    g_free(is);
+    g_free(should);
+    g_free(lit);
+    return n > 0.01 * width * height ? sum / n : (double)NAN;
+}
+
+/* Passes of about so many seconds, from what a few take. */
+static int64_t passes_for(const NephScene *scene, const kind *k, double seconds)
+{
+    double few;
+    neph_image_free(shot(scene, k, STEP, 99, &few));
+    return (int64_t)fmax(STEP * seconds / few, 1.0);
+}
+
+static bool is_file(const char *path)
+{
+    FILE *f = fopen(path, "rb");
+    if (f)
+        fclose(f);
+    return f;
+}
+
+/* A long render of one algorithm, kept in the cache. */
+static NephImage *long_shot(const NephScene *scene, const char *name, const kind *k,
+                            const options *o)
+{
+    char path[1024];
+    double seconds = o->longest * o->seconds;
+    GError *error = NULL;
+    snprintf(path, sizeof path, "%s/%s-%s-%dx%d-%.0fs.exr", o->cache, name, k->name,
+             o->width, o->height, seconds);
+    if (is_file(path)) {
+        NephImage *kept = neph_image_read(path, &error);
+        if (!kept)
+            fail(path, error);
+        return kept;
+    }
+    fprintf(stderr, "equal_time: %s by %s for %.0f s\n", name, k->name, seconds);
+    double spent;
+    NephImage *made = shot(scene, k, passes_for(scene, k, seconds), 4711, &spent);
+    if (!made || !neph_image_write(made, path, 0.0f, &error))
+        fail(path, error);
+    return made;
+}
+
+static void measure_kind(const NephScene *scene, const char *name, const kind *k,
+                         const NephImage *reference, const options *o)
+{
+    for (int seed = FIRST_SEED; seed < FIRST_SEED + o->seeds; seed++) {
+        double seconds = 0.0;
+        for (int64_t passes = 1; seconds * STEP < 1.5 * o->seconds; passes *= STEP) {
+            NephImage *image = shot(scene, k, passes, seed, &seconds);
+            if (!image)
+                return;
+            NephImageDifference d = compare(image, reference);
+            printf("%s\t%s\t%d\t%lld\t%.4f\t%.6f\t%.5f\t%.6f\n", name, k->name, seed,
+                   (long long)passes, seconds, d.relmse, d.flip,
+                   caustic_error(image, reference));
+            fflush(stdout);
+            neph_image_free(image);
+        }
+    }
+}
+
+/* Of a name, or of a name and settings in one word, as "few indirect_photons=1000". */
+static bool add_kind(const char *text, options *o)
+{
+    if (o->n_kinds == MOST_KINDS)
+        return false;
+    kind *k = &o->kinds[o->n_kinds++];
+    for (size_t i = 0; i < G_N_ELEMENTS(all_kinds); i++)
+        if (strcmp(text, all_kinds[i].name) == 0)
+            *k = all_kinds[i];
+    if (k->name)
+        return true;
+    char **parts = g_strsplit(text, " ", 2); /* kept to the end */
+    *k = (kind){parts[0], parts[1]};
+    return k->settings != NULL;
+}
+
+/* "cornell" of ".../cornell.pbrt", "coffee" of ".../coffee/scene-v4.pbrt" */
+static void name_of(const char *path, char *out, size_t n)
+{
+    char *copy = g_strdup(path), *base = g_path_get_basename(copy);
+    if (strcmp(base, "scene-v4.pbrt") == 0) {
+        char *folder = g_path_get_dirname(copy);
+        g_free(base);
+        base = g_path_get_basename(folder);
+        g_free(folder);
+    }
+    snprintf(out, n, "%.*s", (int)strcspn(base, "."), base);
+    g_free(base);
+    g_free(copy);
+}
+
+static void measure_scene(const char *path, const options *o)
+{
+    GError *error = NULL;
+    char name[128];
+    name_of(path, name, sizeof name);
+    NephScene *scene = neph_scene_load(path, 1, NULL, NULL, &error);
+    if (!scene || !neph_scene_resize(scene, o->width, o->height, &error))
+        fail(path, error);
+    double spent;
+    NephImage *tried = shot(scene, &all_kinds[VCM], 1, 1, &spent);
+    bool media = !tried;
+    neph_image_free(tried);
+    /* vcm has the least noise where anything is hard; its bias goes with the passes. */
+    const kind *by[2] = {&all_kinds[media ? PATH : VCM], &all_kinds[SPPM]};
+    NephImage *reference = long_shot(scene, name, by[0], o);
+    NephImage *other = long_shot(scene, name, by[1], o);
+    NephImageDifference floor = compare(other, reference);
+    printf("%s\tfloor\t0\t0\t0\t%.6f\t%.5f\t%.6f\n", name, floor.relmse, floor.flip,
+           caustic_error(other, reference));
+    for (int i = 0; i < o->n_kinds; i++)
+        if (!media || strcmp(o->kinds[i].name, "vcm") != 0)
+            measure_kind(scene, name, &o->kinds[i], reference, o);
+    neph_image_free(reference);
+    neph_image_free(other);
+    neph_scene_free(scene);
+}
+
+static bool read_option(const char *name, const char *value, options *o)
+{
+    if (strcmp(name, "--size") == 0)
+        return sscanf(value, "%dx%d", &o->width, &o->height) == 2;
+    if (strcmp(name, "--seconds") == 0)
+        return (o->seconds = strtod(value, NULL)) > 0.0;
+    if (strcmp(name, "--longest") == 0)
+        return (o->longest = strtod(value, NULL)) > 0.0;
+    if (strcmp(name, "--seeds") == 0)
+        return (o->seeds = atoi(value)) > 0;
+    if (strcmp(name, "--cache") == 0)
+        return (o->cache = value) != NULL;
+    if (strcmp(name, "--kind") == 0)
+        return add_kind(value, o);
+    return false;
+}
+
+int main(int argc, char **argv)
+{
+    options o = {.width = 256,
+                 .height = 256,
+                 .seeds = 5,
+                 .seconds = 16.0,
+                 .longest = 100.0,
+                 .cache = "."};
+    int i = 1;
+    for (; i + 1 < argc && strncmp(argv[i], "--", 2) == 0; i += 2)
+        if (!read_option(argv[i], argv[i + 1], &o))
+            fail("usage: equal_time [--size WxH] [--seconds S] [--longest TIMES] "
+                 "[--seeds N] [--cache DIR] [--kind 'NAME [SETTING=VALUE...]']... "
+                 "SCENE...",
+                 NULL);
+    bool all = o.n_kinds == 0;
+    for (size_t k = 0; all && k < G_N_ELEMENTS(all_kinds); k++)
+        add_kind(all_kinds[k].name, &o);
+    for (; i < argc; i++)
+        measure_scene(argv[i], &o);
+    return 0;
+}
