@@ -1,0 +1,400 @@
+#include "image/denoise/denoise.h"
+
+#include "base/memory.h"
+#include "image/denoise/blend.h"
+#include "image/denoise/prefilter.h"
+#include "math/vec.h"
+
+#include <math.h>
+
+enum {
+    LIGHT_PLANES = 39, /* of one light: see light_planes */
+    OUTLIER_REACH = 2, /* pixels around one that may be an outlier */
+};
+
+/* Light is divided by no less: where nearly nothing is reflected, noise would be blown up
+   and taken back in vain. */
+#define LEAST_ALBEDO 0.02f
+
+/* A pixel of one half is cut to so many times the brightest around it, in the other half
+   and beside it: more has come by a path that hardly anyone finds. */
+#define OUTLIER 4.0f
+
+/* Features that scatter in a window by less than this of what they do in the picture tell
+   nothing there. */
+#define LEAST_SCATTER 1e-3f
+
+/* Differences of less than this of the mean light are not seen. */
+#define LEAST_CONTRAST 1e-3f
+
+struct denoiser {
+    grid g;
+    float share;
+    int n_planes;
+    float *plane[MOST_FEATURES];
+    float *doubt[MOST_FEATURES]; /* of the plane's feature */
+    float least[MOST_FEATURES];
+    int n_features;
+    float *doubts[MOST_FEATURES]; /* one a feature */
+    int first[MOST_FEATURES];     /* planes of the features */
+};
+
+denoiser *denoiser_new(const denoise_size *size, GError **error)
+{
+    if (size->width < 1 || size->height < 1 || !(size->share > 0.0f) ||
+        !(size->share < 1.0f)) {
+        error_set(error, ERROR_INPUT, "nothing to denoise");
+        return NULL;
+    }
+    denoiser *d = g_new0(denoiser, 1);
+    d->g = grid_make(size->width, size->height, size->threads, size->cancel);
+    d->share = size->share;
+    return d;
+}
+
+void denoiser_free(denoiser *d)
+{
+    if (!d)
+        return;
+    for (int i = 0; i < d->n_planes; i++)
+        big_free(d->plane[i]);
+    for (int i = 0; i < d->n_features; i++)
+        big_free(d->doubts[i]);
+    g_free(d);
+}
+
+size_t denoise_memory(int width, int height, int n_feature_channels)
+{
+    grid g = grid_make(width, height, 1, NULL);
+    return g.n * sizeof(float) * (size_t)(LIGHT_PLANES + n_feature_channels);
+}
+
+static bool planes_new(const grid *g, float **planes, int n, GError **error)
+{
+    for (int i = 0; i < n; i++) {
+        planes[i] = plane_new(g, error);
+        if (!planes[i])
+            return false;
+    }
+    return true;
+}
+
+static void planes_free(float **planes, int n)
+{
+    for (int i = 0; i < n; i++)
+        g_clear_pointer(&planes[i], big_free);
+}
+
+/* ---- Reading ---- */
+
+/* A number of a half: the other half's where it is not finite, or what stood before. */
+static float finite_number(const denoise_layer *layer, int h, size_t i, float before)
+{
+    if (isfinite(layer->half[h][i]))
+        return layer->half[h][i];
+    return isfinite(layer->half[1 - h][i]) ? layer->half[1 - h][i] : before;
+}
+
+static void read_channel(const grid *g, const denoise_layer *layer, int h, int c,
+                         float *plane)
+{
+    float before = 0.0f;
+    for (int y = 0; y < g->height; y++) {
+        for (int x = 0; x < g->width; x++) {
+            size_t pixel = (size_t)y * (size_t)g->width + (size_t)x;
+            size_t i = pixel * (size_t)layer->n_channels + (size_t)c;
+            before = finite_number(layer, h, i, before);
+            plane[plane_at(g, x, y)] = before;
+        }
+    }
+    plane_mirror(g, plane);
+}
+
+/* ---- Features ---- */
+
+static float scatter_of(const grid *g, const float *plane)
+{
+    double sum = 0.0, sum2 = 0.0, n = (double)g->width * (double)g->height;
+    for (int y = 0; y < g->height; y++) {
+        for (int x = 0; x < g->width; x++) {
+            double v = (double)plane[plane_at(g, x, y)];
+            sum += v;
+            sum2 += v * v;
+        }
+    }
+    return (float)sqrt(fmax(sum2 / n - (sum / n) * (sum / n), 0.0));
+}
+
+static bool read_feature(denoiser *d, const denoise_layer *layer, float *const *planes,
+                         GError **error)
+{
+    noisy_feature f = {&d->g, layer->n_channels, {{NULL}}, d->share};
+    float *doubt = d->doubts[d->n_features];
+    for (int h = 0; h < 2; h++) {
+        for (int c = 0; c < layer->n_channels; c++) {
+            f.half[h][c] = planes[h * MOST_CHANNELS + c];
+            read_channel(&d->g, layer, h, c, planes[h * MOST_CHANNELS + c]);
+        }
+    }
+    if (!prefilter(&f, d->plane + d->n_planes, doubt, error))
+        return false;
+    for (int p = d->n_planes; p < d->n_planes + layer->n_channels; p++) {
+        d->least[p] = LEAST_SCATTER * scatter_of(&d->g, d->plane[p]);
+        d->doubt[p] = doubt;
+    }
+    return true;
+}
+
+int denoiser_add(denoiser *d, const denoise_layer *feature, GError **error)
+{
+    int n = feature->n_channels, number = d->n_features;
+    float *halves[2 * MOST_CHANNELS] = {0};
+    if (d->n_planes + n > MOST_FEATURES) {
+        error_set(error, ERROR_INPUT, "more than %d features", (int)MOST_FEATURES);
+        return -1;
+    }
+    bool ok = planes_new(&d->g, halves, 2 * MOST_CHANNELS, error) &&
+              planes_new(&d->g, d->plane + d->n_planes, n, error) &&
+              planes_new(&d->g, d->doubts + number, 1, error) &&
+              read_feature(d, feature, halves, error);
+    planes_free(halves, 2 * MOST_CHANNELS);
+    if (!ok) {
+        planes_free(d->plane + d->n_planes, n);
+        planes_free(d->doubts + number, 1);
+        return -1;
+    }
+    d->first[number] = d->n_planes;
+    d->n_planes += n;
+    return d->n_features++;
+}
+
+/* ---- Light ---- */
+
+/* Planes while light is filtered. */
+typedef struct light_planes {
+    float *raw[2][3], *color[2][3]; /* color: without outliers */
+    float *bright[2], *noise[2];    /* luminance, and its variance summed over patches */
+    float *variance;                /* of the mean of both */
+    float *sum[N_BANDS][N_HALVES][N_SUMS];
+    float *out[3];
+} light_planes;
+
+_Static_assert(sizeof(light_planes) <= LIGHT_PLANES * sizeof(float *), "all are counted");
+
+typedef struct light_loop {
+    const denoiser *d;
+    const denoise_layer *light;
+    float *const *albedo; /* three planes, or NULL */
+    light_planes p;
+} light_loop;
+
+static float divisor(const light_loop *loop, int c, size_t at)
+{
+    return loop->albedo ? maxf(loop->albedo[c][at], LEAST_ALBEDO) : 1.0f;
+}
+
+static void divide_row(int y, void *data)
+{
+    const light_loop *loop = data;
+    const grid *g = &loop->d->g;
+    for (int x = 0; x < g->width; x++) {
+        size_t at = plane_at(g, x, y);
+        for (int c = 0; c < 3; c++) {
+            float by = divisor(loop, c, at);
+            for (int h = 0; h < 2; h++)
+                loop->p.raw[h][c][at] /= by;
+        }
+        for (int h = 0; h < 2; h++)
+            loop->p.bright[h][at] = luminance(
+                loop->p.raw[h][0][at], loop->p.raw[h][1][at], loop->p.raw[h][2][at]);
+    }
+}
+
+static void variance_row(int y, void *data)
+{
+    const light_loop *loop = data;
+    const grid *g = &loop->d->g;
+    const float *given = loop->light->variance;
+    float share = loop->d->share;
+    for (int x = 0; x < g->width; x++) {
+        size_t at = plane_at(g, x, y);
+        float by =
+            luminance(divisor(loop, 0, at), divisor(loop, 1, at), divisor(loop, 2, at));
+        float apart = loop->p.bright[0][at] - loop->p.bright[1][at];
+        float told = given ? given[(size_t)y * (size_t)g->width + (size_t)x] : NAN;
+        loop->p.variance[at] = isfinite(told) && told >= 0.0f
+                                   ? told / (by * by)
+                                   : share * (1.0f - share) * apart * apart;
+    }
+}
+
+/* The brightest around a pixel of half h, itself only in the other half. */
+static float brightest_around(const light_loop *loop, int h, size_t at)
+{
+    float most = 0.0f;
+    for (int v = -OUTLIER_REACH; v <= OUTLIER_REACH; v++) {
+        for (int u = -OUTLIER_REACH; u <= OUTLIER_REACH; u++) {
+            size_t i =
+                (size_t)((ptrdiff_t)at + v * (ptrdiff_t)loop->d->g.stride + (ptrdiff_t)u);
+            most = maxf(most, loop->p.bright[1 - h][i]);
+            if (u != 0 || v != 0)
+                most = maxf(most, loop->p.bright[h][i]);
+        }
+    }
+    return most;
+}
+
+static void cut_row(int y, void *data)
+{
+    const light_loop *loop = data;
+    const grid *g = &loop->d->g;
+    for (int x = 0; x < g->width; x++) {
+        size_t at = plane_at(g, x, y);
+        for (int h = 0; h < 2; h++) {
+            float most = OUTLIER * brightest_around(loop, h, at);
+            float bright = loop->p.bright[h][at];
+            float scale = bright > most ? most / bright : 1.0f;
+            for (int c = 0; c < 3; c++)
+                loop->p.color[h][c][at] = scale * loop->p.raw[h][c][at];
+        }
+    }
+}
+
+/* Luminance again, of what is left. */
+static void bright_row(int y, void *data)
+{
+    const light_loop *loop = data;
+    const grid *g = &loop->d->g;
+    for (int x = 0; x < g->width; x++) {
+        size_t at = plane_at(g, x, y);
+        for (int h = 0; h < 2; h++)
+            loop->p.bright[h][at] =
+                luminance(loop->p.color[h][0][at], loop->p.color[h][1][at],
+                          loop->p.color[h][2][at]);
+    }
+}
+
+static void find_noise(const light_loop *loop)
+{
+    const grid *g = &loop->d->g;
+    float share = loop->d->share;
+    plane_mirror(g, loop->p.variance);
+    plane_box(g, loop->p.variance, PATCH, loop->p.noise[0]);
+    for (size_t i = 0; i < g->n; i++) {
+        loop->p.noise[1][i] = loop->p.noise[0][i] / (1.0f - share);
+        loop->p.noise[0][i] /= share;
+    }
+}
+
+/* Fills all planes but the sums. */
+static bool read_light(const light_loop *loop)
+{
+    const grid *g = &loop->d->g;
+    for (int h = 0; h < 2; h++) {
+        for (int c = 0; c < 3; c++)
+            read_channel(g, loop->light, h, c, loop->p.raw[h][c]);
+    }
+    if (!plane_rows(g, divide_row, (void *)loop) ||
+        !plane_rows(g, variance_row, (void *)loop))
+        return false;
+    plane_mirror(g, loop->p.bright[0]);
+    plane_mirror(g, loop->p.bright[1]);
+    if (!plane_rows(g, cut_row, (void *)loop) || !plane_rows(g, bright_row, (void *)loop))
+        return false;
+    for (int h = 0; h < 2; h++) {
+        plane_mirror(g, loop->p.bright[h]);
+        for (int c = 0; c < 3; c++)
+            plane_mirror(g, loop->p.color[h][c]);
+    }
+    find_noise(loop);
+    return true;
+}
+
+static float mean_brightness(const light_loop *loop)
+{
+    const grid *g = &loop->d->g;
+    double sum = 0.0;
+    for (int y = 0; y < g->height; y++) {
+        for (int x = 0; x < g->width; x++)
+            sum += (double)fabsf(loop->p.bright[0][plane_at(g, x, y)]);
+    }
+    return (float)(sum / ((double)g->width * (double)g->height));
+}
+
+static regression regression_of(const light_loop *loop)
+{
+    const denoiser *d = loop->d;
+    regression r = {.g = d->g, .n_features = d->n_planes};
+    float mean = mean_brightness(loop) * LEAST_CONTRAST;
+    for (int f = 0; f < d->n_planes; f++) {
+        r.feature[f] = d->plane[f];
+        r.doubt[f] = d->doubt[f];
+        r.least[f] = d->least[f];
+    }
+    for (int h = 0; h < N_HALVES; h++) {
+        r.alike[h] = (patch_source){.g = &d->g,
+                                    .n_channels = 1,
+                                    .value = {loop->p.bright[1 - h]},
+                                    .noise = loop->p.noise[1 - h],
+                                    .least = mean * mean + 1e-30f};
+        for (int c = 0; c < 3; c++)
+            r.color[h][c] = loop->p.color[h][c];
+        for (int k = 0; k < N_BANDS; k++)
+            memcpy(r.sum[k][h], loop->p.sum[k][h], sizeof r.sum[k][h]);
+    }
+    return r;
+}
+
+static blend blend_of(const light_loop *loop, const regression *r)
+{
+    blend b = {.done = r, .share = loop->d->share, .variance = loop->p.variance};
+    for (int c = 0; c < 3; c++) {
+        b.out[c] = loop->p.out[c];
+        for (int h = 0; h < N_HALVES; h++)
+            b.raw[h][c] = loop->p.raw[h][c];
+    }
+    return b;
+}
+
+static void write_light(const light_loop *loop, float *out)
+{
+    const grid *g = &loop->d->g;
+    for (int y = 0; y < g->height; y++) {
+        for (int x = 0; x < g->width; x++) {
+            size_t at = plane_at(g, x, y);
+            for (int c = 0; c < 3; c++)
+                *out++ = loop->p.out[c][at] * divisor(loop, c, at);
+        }
+    }
+}
+
+static bool filter(const light_loop *loop, float *out, GError **error)
+{
+    if (!read_light(loop)) {
+        error_set(error, ERROR_CANCELLED, "cancelled");
+        return false;
+    }
+    regression r = regression_of(loop);
+    blend b = blend_of(loop, &r);
+    if (!regress(&r)) {
+        error_set(error, ERROR_CANCELLED, "cancelled");
+        return false;
+    }
+    if (!blend_all(&b, error))
+        return false;
+    write_light(loop, out);
+    return true;
+}
+
+bool denoiser_filter(const denoiser *d, const denoise_layer *light, int divide_by,
+                     float *out, GError **error)
+{
+    enum { N = sizeof(light_planes) / sizeof(float *) };
+    light_loop loop = {.d = d, .light = light};
+    if (divide_by >= 0)
+        loop.albedo = d->plane + d->first[divide_by];
+    float **planes = (float **)&loop.p;
+    bool ok = planes_new(&d->g, planes, N, error) && filter(&loop, out, error);
+    planes_free(planes, N);
+    return ok;
+}

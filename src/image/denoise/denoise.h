@@ -1,0 +1,58 @@
+/*
+ * Takes the noise out of a picture of which there are two independent halves, one of its
+ * parts (direct light, caustics ...) at a time, by what else is known of each pixel.
+ *
+ *   features ─► prefilter ─┐
+ *   light, halves ─────────┴► regress (two bandwidths) ─► choose ─► shrink ─► light
+ *
+ * - prefilter.h: features (albedo, normal, a photon estimate ...) by non-local means.
+ * - regress.h: colours as linear functions of features in windows.
+ * - choose: between bandwidths, where the halves say which errs less.
+ * - shrink: toward the picture as it was, as far as what was taken out of it is more than
+ *   its noise; James & Stein, "Estimation with Quadratic Loss", 1961. So whatever the
+ *   filter does, the error falls with that of the picture: a picture without noise stays
+ *   what it is.
+ *
+ * The same bits on any number of threads. Numbers that are not finite are replaced by the
+ * other half's or a neighbour's.
+ */
+#pragma once
+
+#include "base/parallel.h"
+#include "image/image.h"
+
+/** @brief One quantity of each pixel, in two halves that share no random number. */
+typedef struct denoise_layer {
+    int n_channels;        /**< 1..3 */
+    const float *half[2];  /**< [pixel][channel], rows from the top */
+    const float *variance; /**< of the luminance of the mean of both, [pixel]: square of
+                              its standard error; NULL: as the halves' difference tells */
+} denoise_layer;
+
+/** @brief Of the picture. */
+typedef struct denoise_size {
+    int width, height;
+    float share; /**< of all samples that are in the first half, 0..1 exclusive */
+    unsigned threads;
+    const cancel_flag *cancel; /**< may be NULL */
+} denoise_size;
+
+typedef struct denoiser denoiser;
+
+denoiser *denoiser_new(const denoise_size *size, GError **error);
+void denoiser_free(denoiser *d);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(denoiser, denoiser_free)
+
+/** @brief One more feature for all lights that are filtered from now on.
+ * @return its number, or -1 */
+int denoiser_add(denoiser *d, const denoise_layer *feature, GError **error);
+
+/** @brief Filters light of three channels, linear.
+ * @param divide_by number of a feature of three channels, an albedo that the light is
+ * about proportional to; -1: none
+ * @param out [pixel][3] */
+bool denoiser_filter(const denoiser *d, const denoise_layer *light, int divide_by,
+                     float *out, GError **error);
+
+/** @brief Bytes that it takes while it works, about. */
+size_t denoise_memory(int width, int height, int n_feature_channels);

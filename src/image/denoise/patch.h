@@ -1,0 +1,38 @@
+/*
+ * Non-local means: how alike two pixels are by the patches around them, given how noisy
+ * these are.
+ *
+ *   d(p, q) = max(0, Σ (u_p - u_q)² - (v_p + min(v_p, v_q))) / (v_p + v_q)
+ *
+ * where Σ is over the patch and v sums variances over it; d / k² is Rousselle's distance
+ * with bandwidth k, of sums in place of a mean of ratios: a pixel that by chance has no
+ * scatter counts no more than others. Rousselle, Manzi & Zwicker, "Robust Denoising using
+ * Feature and Color Information", 2013.
+ */
+#pragma once
+
+#include "image/denoise/lanes.h"
+#include "image/denoise/plane.h"
+
+enum { MOST_CHANNELS = 3, PATCH_PIXELS = (2 * PATCH + 1) * (2 * PATCH + 1) };
+
+/** @brief What patches are compared by. */
+typedef struct patch_source {
+    const grid *g;
+    int n_channels;
+    const float *value[MOST_CHANNELS];
+    const float *noise; /**< sum over patch and channels of the variance */
+    float least;        /**< added to the noise: differences that nobody sees */
+} patch_source;
+
+/** @brief d for BLOCK pixels from (x, y) on and those at (dx, dy) from them. */
+void patch_distances(const patch_source *s, int x, int y, int dx, int dy, float *d);
+
+/** @brief About exp(-d), zero from 8 on. */
+static inline floats8 patch_weight(floats8 d)
+{
+    floats8 t = max8(fill8(1.0f) - d * 0.125f, fill8(0.0f));
+    t *= t;
+    t *= t;
+    return t * t;
+}

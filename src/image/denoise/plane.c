@@ -1,0 +1,95 @@
+#include "image/denoise/plane.h"
+
+#include "base/memory.h"
+
+grid grid_make(int width, int height, unsigned threads, const cancel_flag *cancel)
+{
+    size_t blocks = ((size_t)width + BLOCK - 1) / BLOCK;
+    grid g = {width, height, blocks * BLOCK + 2 * MARGIN, 0, threads, cancel};
+    g.n = g.stride * ((size_t)height + 2 * MARGIN);
+    return g;
+}
+
+float *plane_new(const grid *g, GError **error)
+{
+    return big_alloc(g->n, sizeof(float), "denoising", error);
+}
+
+/* Where in 0..n-1 the mirrored picture has what lies at i. */
+static int mirrored(int i, int n)
+{
+    int period = 2 * n;
+    int at = (i % period + period) % period;
+    return at < n ? at : period - 1 - at;
+}
+
+void plane_mirror(const grid *g, float *plane)
+{
+    int x_end = (int)g->stride - MARGIN;
+    for (int y = 0; y < g->height; y++) {
+        for (int x = -MARGIN; x < 0; x++)
+            plane[plane_at(g, x, y)] = plane[plane_at(g, mirrored(x, g->width), y)];
+        for (int x = g->width; x < x_end; x++)
+            plane[plane_at(g, x, y)] = plane[plane_at(g, mirrored(x, g->width), y)];
+    }
+    for (int y = -MARGIN; y < g->height + MARGIN; y++) {
+        if (y < 0 || y >= g->height)
+            memcpy(plane + plane_at(g, -MARGIN, y),
+                   plane + plane_at(g, -MARGIN, mirrored(y, g->height)),
+                   g->stride * sizeof(float));
+    }
+}
+
+typedef struct row_loop {
+    row_body body;
+    void *data;
+} row_loop;
+
+static void do_rows(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const row_loop *loop = data;
+    for (size_t y = begin; y < end; y++)
+        loop->body((int)y, loop->data);
+}
+
+bool plane_rows(const grid *g, row_body body, void *data)
+{
+    row_loop loop = {body, data};
+    return parallel_for((size_t)g->height, ROWS_AT_ONCE, g->threads, g->cancel, do_rows,
+                        &loop);
+}
+
+typedef struct box_loop {
+    const grid *g;
+    const float *from;
+    int radius;
+    float *to;
+} box_loop;
+
+static void box_row(int y, void *data)
+{
+    const box_loop *loop = data;
+    const grid *g = loop->g;
+    float columns[BLOCK + 2 * PATCH];
+    for (int x0 = 0; x0 < g->width; x0 += BLOCK) {
+        for (int x = 0; x < BLOCK + 2 * loop->radius; x++) {
+            columns[x] = 0.0f;
+            for (int v = -loop->radius; v <= loop->radius; v++)
+                columns[x] += loop->from[plane_at(g, x0 + x - loop->radius, y + v)];
+        }
+        for (int x = 0; x < BLOCK; x++) {
+            float sum = 0.0f;
+            for (int u = 0; u <= 2 * loop->radius; u++)
+                sum += columns[x + u];
+            loop->to[plane_at(g, x0 + x, y)] = sum;
+        }
+    }
+}
+
+void plane_box(const grid *g, const float *from, int radius, float *to)
+{
+    box_loop loop = {g, from, radius, to};
+    plane_rows(g, box_row, &loop);
+    plane_mirror(g, to);
+}

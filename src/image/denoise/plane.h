@@ -1,0 +1,48 @@
+/*
+ * Planes: one number a pixel, with a margin around the picture that mirrors it, so that
+ * windows and vectors may hang over its edges.
+ *
+ *   plane[(y + MARGIN) * stride + x + MARGIN]
+ */
+#pragma once
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+#include <stddef.h>
+
+enum {
+    PATCH = 3,   /**< patches that are compared are squares of 2 PATCH + 1 pixels */
+    BLOCK = 32,  /**< pixels of a row that are worked on at once */
+    MARGIN = 24, /**< at least window, patch and a vector */
+    ROWS_AT_ONCE = 16,
+};
+
+/** @brief Size of the picture, and what it is worked on with. */
+typedef struct grid {
+    int width, height;
+    size_t stride, n; /**< n: numbers of a plane */
+    unsigned threads;
+    const cancel_flag *cancel;
+} grid;
+
+grid grid_make(int width, int height, unsigned threads, const cancel_flag *cancel);
+float *plane_new(const grid *g, GError **error);
+
+static inline size_t plane_at(const grid *g, int x, int y)
+{
+    return (size_t)(y + MARGIN) * g->stride + (size_t)(x + MARGIN);
+}
+
+/** @brief Fills the margin from the picture. */
+void plane_mirror(const grid *g, float *plane);
+
+/** @brief Sums over squares of 2 radius + 1 pixels, the margin's included; that of `to`
+ * is filled. Not in place. @param radius at most PATCH */
+void plane_box(const grid *g, const float *from, int radius, float *to);
+
+/** @brief Work on the pixels of row y. */
+typedef void (*row_body)(int y, void *data);
+
+/** @brief Calls body for every row, on all threads. @return false: cancelled */
+bool plane_rows(const grid *g, row_body body, void *data);

@@ -1,0 +1,172 @@
+#include "image/denoise/prefilter.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+enum { AROUND = 5 /* pixels that are looked at in both directions */ };
+
+/* 1/k² of the bandwidth k = 1/2. */
+#define SHARPNESS 4.0f
+
+typedef struct feature_loop {
+    const noisy_feature *f;
+    patch_source alike[2]; /* weights that filter half h: of the other */
+    float *out[2][MOST_CHANNELS];
+    float *error2; /* of the result, over the pixels of a patch */
+} feature_loop;
+
+/* ---- Noise ---- */
+
+typedef struct noise_loop {
+    const noisy_feature *f;
+    float *variance;
+} noise_loop;
+
+/* Variance of the mean of the halves, summed over channels, as their difference tells. */
+static void variance_row(int y, void *data)
+{
+    const noise_loop *loop = data;
+    const noisy_feature *f = loop->f;
+    for (int x = 0; x < f->g->width; x++) {
+        size_t at = plane_at(f->g, x, y);
+        loop->variance[at] = 0.0f;
+        for (int c = 0; c < f->n_channels; c++) {
+            float d = f->half[0][c][at] - f->half[1][c][at];
+            loop->variance[at] += f->share * (1.0f - f->share) * d * d;
+        }
+    }
+}
+
+/* Noise of patches of the halves into the planes. */
+static bool find_noise(const noisy_feature *f, float *noise[2], GError **error)
+{
+    float *variance = plane_new(f->g, error);
+    if (!variance)
+        return false;
+    noise_loop loop = {f, variance};
+    plane_rows(f->g, variance_row, &loop);
+    plane_mirror(f->g, variance);
+    plane_box(f->g, variance, PATCH, noise[0]);
+    for (size_t i = 0; i < f->g->n; i++) {
+        noise[1][i] = noise[0][i] / (1.0f - f->share);
+        noise[0][i] /= f->share;
+    }
+    big_free(variance);
+    return true;
+}
+
+/* ---- Smoothing ---- */
+
+static bool block_is_noisy(const float *noise)
+{
+    float sum = 0.0f;
+    for (int i = 0; i < BLOCK; i++)
+        sum += noise[i];
+    return sum > 0.0f;
+}
+
+static void smooth_block(const feature_loop *loop, int h, int x, int y)
+{
+    const noisy_feature *f = loop->f;
+    float sum[MOST_CHANNELS + 1][BLOCK] = {{0}}, d[BLOCK];
+    for (int dy = -AROUND; dy <= AROUND; dy++) {
+        for (int dx = -AROUND; dx <= AROUND; dx++) {
+            size_t at = plane_at(f->g, x + dx, y + dy);
+            patch_distances(&loop->alike[h], x, y, dx, dy, d);
+            for (int i = 0; i < BLOCK; i += LANES) {
+                floats8 weight = patch_weight(SHARPNESS * load8(d + i));
+                float *all = sum[MOST_CHANNELS] + i;
+                store8(all, load8(all) + weight);
+                for (int c = 0; c < f->n_channels; c++)
+                    store8(sum[c] + i,
+                           load8(sum[c] + i) + weight * load8(f->half[h][c] + at + i));
+            }
+        }
+    }
+    for (int c = 0; c < f->n_channels; c++) {
+        float *out = loop->out[h][c] + plane_at(f->g, x, y);
+        for (int i = 0; i < BLOCK; i++)
+            out[i] = sum[c][i] / sum[MOST_CHANNELS][i];
+    }
+}
+
+static void smooth_row(int y, void *data)
+{
+    const feature_loop *loop = data;
+    const noisy_feature *f = loop->f;
+    for (int x = 0; x < f->g->width && !cancelled(f->g->cancel); x += BLOCK) {
+        size_t at = plane_at(f->g, x, y);
+        bool noisy = block_is_noisy(loop->alike[0].noise + at);
+        for (int h = 0; h < 2; h++) {
+            if (noisy)
+                smooth_block(loop, h, x, y);
+            for (int c = 0; c < f->n_channels && !noisy; c++)
+                memcpy(loop->out[h][c] + at, f->half[h][c] + at, BLOCK * sizeof(float));
+        }
+    }
+}
+
+/* Joins the smoothed halves, of which those of the second become the result; by how much
+   they differ is what is left of the noise. */
+static void join_row(int y, void *data)
+{
+    const feature_loop *loop = data;
+    const noisy_feature *f = loop->f;
+    float share = f->share, n = PATCH_PIXELS * (float)f->n_channels;
+    for (int x = 0; x < f->g->width; x++) {
+        size_t at = plane_at(f->g, x, y);
+        float sum = 0.0f;
+        for (int c = 0; c < f->n_channels; c++) {
+            float a = loop->out[0][c][at], *b = &loop->out[1][c][at];
+            sum += share * (1.0f - share) * (a - *b) * (a - *b);
+            *b = share * a + (1.0f - share) * *b;
+        }
+        loop->error2[at] = sum / n;
+    }
+}
+
+static bool smooth(feature_loop *loop, float *const noise[2])
+{
+    const noisy_feature *f = loop->f;
+    for (int h = 0; h < 2; h++) {
+        loop->alike[h] = (patch_source){.g = f->g,
+                                        .n_channels = f->n_channels,
+                                        .noise = noise[1 - h],
+                                        .least = 1e-20f};
+        for (int c = 0; c < f->n_channels; c++)
+            loop->alike[h].value[c] = f->half[1 - h][c];
+    }
+    if (!plane_rows(f->g, smooth_row, loop) || !plane_rows(f->g, join_row, loop))
+        return false;
+    for (int c = 0; c < f->n_channels; c++)
+        plane_mirror(f->g, loop->out[1][c]);
+    plane_mirror(f->g, loop->error2);
+    return true;
+}
+
+bool prefilter(const noisy_feature *f, float *const out[MOST_CHANNELS], float *doubt,
+               GError **error)
+{
+    enum { NOISE = MOST_CHANNELS, N = MOST_CHANNELS + 2 };
+    feature_loop loop = {.f = f};
+    float *planes[N] = {0};
+    bool ok = true;
+    for (int i = 0; i < N && ok; i++)
+        ok = (planes[i] = plane_new(f->g, error)) != NULL;
+    for (int c = 0; c < MOST_CHANNELS; c++) {
+        loop.out[0][c] = planes[c];
+        loop.out[1][c] = out[c];
+    }
+    if (ok && (ok = find_noise(f, planes + NOISE, error))) {
+        loop.error2 = planes[NOISE]; /* no longer wanted by then */
+        ok = smooth(&loop, planes + NOISE);
+        if (ok)
+            plane_box(f->g, loop.error2, PATCH, doubt);
+        else
+            error_set(error, ERROR_CANCELLED, "cancelled");
+    }
+    for (int i = 0; i < N; i++)
+        big_free(planes[i]);
+    return ok;
+}

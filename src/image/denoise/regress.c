@@ -1,0 +1,333 @@
+#include "image/denoise/regress.h"
+
+#include <math.h>
+
+enum {
+    WINDOW = SIDE * SIDE,
+    CENTRE = BEFORE * SIDE + BEFORE,
+    BLOCK_CENTRES = BLOCK / CENTRES,
+    STRIP = 24, /* rows; more than windows of two strips reach over */
+    MOST_COLUMNS = MOST_FEATURES + 1,
+    MOST_ROWS = MOST_COLUMNS + 3, /* of the normal equations, colours below */
+};
+_Static_assert((int)STRIP > (int)SIDE && (int)STRIP % CENTRES == 0, "strips do not meet");
+_Static_assert(MARGIN >= SIDE - BEFORE + PATCH + LANES, "windows stay in the planes");
+
+/* Of the squared scatter of a feature, so much is added: where it hardly tells, it is
+ * left alone. */
+#define RIDGE 1e-3f
+
+/* Farther apart than anything that weighs. */
+#define FAR 8.0f
+
+/* A window: columns of the regression, and what is regressed. */
+typedef struct window {
+    int n_columns; /* the first is all ones */
+    float column[MOST_COLUMNS][WINDOW];
+    float color[N_HALVES][3][WINDOW];
+    float doubt[MOST_COLUMNS]; /* squared error of the columns */
+    float weight[N_BANDS][WINDOW];
+} window;
+
+/* What a window's pixels are by the features: a linear function a colour. */
+typedef float solution[3][MOST_COLUMNS];
+typedef float equations[MOST_ROWS][MOST_COLUMNS];
+
+/* Distances of a block's windows: [half][offset][centre]. */
+typedef struct block {
+    float distance[N_HALVES][WINDOW][BLOCK_CENTRES];
+} block;
+
+/* ---- Windows ---- */
+
+static void gather(const grid *g, const float *plane, int x, int y, float *out)
+{
+    for (int v = 0; v < SIDE; v++)
+        memcpy(out + v * SIDE, plane + plane_at(g, x - BEFORE, y - BEFORE + v),
+               SIDE * sizeof(float));
+}
+
+/* Makes a feature one of the differences to the window's centre, in units of their
+   scatter. @return false: it tells nothing */
+static bool scale_column(float *column, float least, float *doubt)
+{
+    float centre = column[CENTRE];
+    floats8 sum2 = {0};
+    for (int i = 0; i < WINDOW; i += LANES) {
+        floats8 difference = load8(column + i) - centre;
+        store8(column + i, difference);
+        sum2 += difference * difference;
+    }
+    float scatter2 = sum8(sum2) / (float)WINDOW;
+    if (!(scatter2 > least * least + *doubt))
+        return false;
+    *doubt /= scatter2;
+    float scale = 1.0f / sqrtf(scatter2);
+    for (int i = 0; i < WINDOW; i++)
+        column[i] *= scale;
+    return true;
+}
+
+static void gather_features(const regression *r, int x, int y, window *w)
+{
+    for (int i = 0; i < WINDOW; i++)
+        w->column[0][i] = 1.0f;
+    w->n_columns = 1;
+    for (int f = 0; f < r->n_features; f++) {
+        float *column = w->column[w->n_columns], *doubt = &w->doubt[w->n_columns];
+        gather(&r->g, r->feature[f], x, y, column);
+        *doubt = r->doubt[f][plane_at(&r->g, x, y)];
+        w->n_columns += scale_column(column, r->least[f], doubt);
+    }
+}
+
+static bool is_black(const float *color)
+{
+    float sum = 0.0f;
+    for (int i = 0; i < WINDOW; i++)
+        sum += fabsf(color[i]);
+    return !(sum > 0.0f);
+}
+
+/* @return false: all is black */
+static bool gather_colors(const regression *r, int x, int y, window *w)
+{
+    bool black = true;
+    for (int h = 0; h < N_HALVES; h++) {
+        for (int c = 0; c < 3; c++) {
+            gather(&r->g, r->color[h][c], x, y, w->color[h][c]);
+            black = black && is_black(w->color[h][c]);
+        }
+    }
+    return !black;
+}
+
+/* Pixels out of the picture weigh nothing. */
+static void cut_at_edges(const grid *g, int x, int y, float *distance)
+{
+    for (int v = 0; v < SIDE; v++) {
+        for (int u = 0; u < SIDE; u++) {
+            int qx = x + u - BEFORE, qy = y + v - BEFORE;
+            if (qx < 0 || qx >= g->width || qy < 0 || qy >= g->height)
+                distance[v * SIDE + u] = FAR;
+        }
+    }
+}
+
+static void weigh(const grid *g, int x, int y, const float (*distance)[BLOCK_CENTRES],
+                  window *w)
+{
+    static const float scale[N_BANDS] = {1.0f, 4.0f}; /* 1/k² */
+    float d[WINDOW];
+    for (int i = 0; i < WINDOW; i++)
+        d[i] = distance[i][0];
+    if (x < BEFORE || x + SIDE > g->width + BEFORE || y < BEFORE ||
+        y + SIDE > g->height + BEFORE)
+        cut_at_edges(g, x, y, d);
+    for (int k = 0; k < N_BANDS; k++) {
+        for (int i = 0; i < WINDOW; i += LANES)
+            store8(w->weight[k] + i, patch_weight(scale[k] * load8(d + i)));
+    }
+}
+
+/* ---- Least squares ---- */
+
+/* Scalar products with four columns, of one weighed with both bandwidths. */
+static void dot_4(float a[N_BANDS][WINDOW], const float *const b[4], floats4 out[N_BANDS])
+{
+    floats8 sum[N_BANDS][4] = {{{0}}};
+    for (int i = 0; i < WINDOW; i += LANES) {
+        floats8 wide = load8(a[0] + i), narrow = load8(a[1] + i);
+        for (int k = 0; k < 4; k++) {
+            floats8 v = load8(b[k] + i);
+            sum[0][k] += wide * v;
+            sum[1][k] += narrow * v;
+        }
+    }
+    for (int k = 0; k < N_BANDS; k++)
+        out[k] = sums4(sum[k][0], sum[k][1], sum[k][2], sum[k][3]);
+}
+
+/* The lower half of the normal equations; their right-hand sides in the last three rows.
+ */
+static void make_equations(const window *w, int half, equations m[N_BANDS])
+{
+    int n = w->n_columns;
+    float weighed[N_BANDS][WINDOW];
+    for (int j = 0; j < n; j++) {
+        for (int b = 0; b < N_BANDS; b++) {
+            for (int i = 0; i < WINDOW; i += LANES)
+                store8(weighed[b] + i, load8(w->weight[b] + i) * load8(w->column[j] + i));
+        }
+        for (int i = j; i < n + 3; i += 4) {
+            const float *with[4];
+            floats4 product[N_BANDS];
+            for (int k = 0; k < 4; k++) {
+                int row = MIN(i + k, n + 2);
+                with[k] = row < n ? w->column[row] : w->color[half][row - n];
+            }
+            dot_4(weighed, with, product);
+            for (int k = 0; k < 4 && i + k < n + 3; k++) {
+                m[0][i + k][j] = product[0][k];
+                m[1][i + k][j] = product[1][k];
+            }
+        }
+    }
+}
+
+/* Cholesky's, in place; the right-hand sides become L⁻¹ b on the way. */
+static void factor(equations m, int n)
+{
+    for (int j = 0; j < n; j++) {
+        float d = m[j][j];
+        for (int k = 0; k < j; k++)
+            d -= m[j][k] * m[j][k];
+        float inverse = d > 0.0f ? 1.0f / sqrtf(d) : 0.0f;
+        m[j][j] = inverse;
+        for (int i = j + 1; i < n + 3; i++) {
+            float sum = m[i][j];
+            for (int k = 0; k < j; k++)
+                sum -= m[i][k] * m[j][k];
+            m[i][j] = sum * inverse;
+        }
+    }
+}
+
+/* What the factors and L⁻¹ b give. */
+static void substitute(equations m, int n, solution s)
+{
+    for (int c = 0; c < 3; c++) {
+        for (int j = n - 1; j >= 0; j--) {
+            float sum = m[n + c][j];
+            for (int k = j + 1; k < n; k++)
+                sum -= m[k][j] * s[c][k];
+            s[c][j] = sum * m[j][j];
+        }
+    }
+}
+
+/* Features that are in doubt themselves count less: by as much as doubt adds to their
+   scatter. */
+static void solve(const window *w, equations m, solution s)
+{
+    for (int j = 1; j < w->n_columns; j++)
+        m[j][j] += (RIDGE + w->doubt[j]) * m[0][0] + RIDGE;
+    factor(m, w->n_columns);
+    substitute(m, w->n_columns, s);
+}
+
+/* ---- What is said of the window's pixels ---- */
+
+/* Adds to the sums of LANES pixels. */
+static void say(const window *w, int band, solution s, int i, float *const to[N_SUMS])
+{
+    floats8 weight = load8(w->weight[band] + i);
+    floats8 red = {0}, green = {0}, blue = {0};
+    for (int j = 0; j < w->n_columns; j++) {
+        floats8 x = load8(w->column[j] + i);
+        red += s[0][j] * x;
+        green += s[1][j] * x;
+        blue += s[2][j] * x;
+    }
+    store8(to[0], load8(to[0]) + weight * red);
+    store8(to[1], load8(to[1]) + weight * green);
+    store8(to[2], load8(to[2]) + weight * blue);
+    store8(to[3], load8(to[3]) + weight);
+}
+
+static void spread(const grid *g, int x, int y, const window *w, int band, solution s,
+                   float *const sum[N_SUMS])
+{
+    for (int i = 0; i < WINDOW; i += LANES) {
+        size_t at = plane_at(g, x - BEFORE + i % SIDE, y - BEFORE + i / SIDE);
+        float *const to[N_SUMS] = {sum[0] + at, sum[1] + at, sum[2] + at, sum[3] + at};
+        say(w, band, s, i, to);
+    }
+}
+
+static void regress_at(const regression *r, int x, int y, const block *b, int centre)
+{
+    window w;
+    equations m[N_BANDS];
+    solution s;
+    if (!gather_colors(r, x, y, &w))
+        return;
+    gather_features(r, x, y, &w);
+    for (int h = 0; h < N_HALVES; h++) {
+        weigh(&r->g, x, y, (const float(*)[BLOCK_CENTRES]) & b->distance[h][0][centre],
+              &w);
+        make_equations(&w, h, m);
+        for (int k = 0; k < N_BANDS; k++) {
+            solve(&w, m[k], s);
+            spread(&r->g, x, y, &w, k, s, r->sum[k][h]);
+        }
+    }
+}
+
+/* ---- Blocks and strips ---- */
+
+/* Whether anything in reach of the block's windows shines. */
+static bool block_shines(const regression *r, int x0, int y)
+{
+    float sum = 0.0f;
+    for (int h = 0; h < N_HALVES; h++) {
+        for (int c = 0; c < 3; c++) {
+            for (int v = 0; v < SIDE; v++) {
+                size_t at = plane_at(&r->g, x0 - BEFORE, y - BEFORE + v);
+                const float *row = r->color[h][c] + at;
+                for (int u = 0; u < BLOCK + SIDE; u++)
+                    sum += fabsf(row[u]);
+            }
+        }
+    }
+    return sum > 0.0f;
+}
+
+static void measure_block(const regression *r, int x0, int y, block *b)
+{
+    float d[BLOCK];
+    for (int h = 0; h < N_HALVES; h++) {
+        for (int o = 0; o < WINDOW; o++) {
+            patch_distances(&r->alike[h], x0, y, o % SIDE - BEFORE, o / SIDE - BEFORE, d);
+            for (int i = 0; i < BLOCK_CENTRES; i++)
+                b->distance[h][o][i] = d[i * CENTRES];
+        }
+    }
+}
+
+static void regress_row(const regression *r, int y, block *b)
+{
+    for (int x0 = 0; x0 < r->g.width; x0 += BLOCK) {
+        if (cancelled(r->g.cancel) || !block_shines(r, x0, y))
+            continue;
+        measure_block(r, x0, y, b);
+        for (int i = 0; i < BLOCK_CENTRES && x0 + i * CENTRES < r->g.width; i++)
+            regress_at(r, x0 + i * CENTRES, y, b, i);
+    }
+}
+
+typedef struct strip_loop {
+    const regression *r;
+    size_t odd; /* 0 or 1 */
+} strip_loop;
+
+static void regress_strip(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)end;
+    (void)thread;
+    const strip_loop *loop = data;
+    block b;
+    int y0 = (int)(2 * begin + loop->odd) * STRIP;
+    int y1 = MIN(y0 + STRIP, loop->r->g.height);
+    for (int y = y0; y < y1; y += CENTRES)
+        regress_row(loop->r, y, &b);
+}
+
+bool regress(const regression *r)
+{
+    size_t strips = ((size_t)r->g.height + STRIP - 1) / STRIP;
+    strip_loop even = {r, 0}, odd = {r, 1};
+    return parallel_for((strips + 1) / 2, 1, r->g.threads, r->g.cancel, regress_strip,
+                        &even) &&
+           parallel_for(strips / 2, 1, r->g.threads, r->g.cancel, regress_strip, &odd);
+}

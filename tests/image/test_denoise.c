@@ -1,0 +1,492 @@
+/*
+ * denoise: pictures of which the truth is known, with noise of known size. Distances and
+ * regressions against naive twins in double precision.
+ */
+#include "base/memory.h"
+#include "image/denoise/denoise.h"
+#include "image/denoise/regress.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { W = 75, H = 61, N = W * H };
+
+/* ---- Pictures ---- */
+
+/* A truth and two noisy halves of it. */
+typedef struct picture {
+    float truth[3 * N], half[2][3 * N], variance[N], out[3 * N];
+} picture;
+
+typedef float (*pattern)(int x, int y);
+
+static float flat(int x, int y)
+{
+    (void)x;
+    (void)y;
+    return 0.7f;
+}
+
+/* An edge that runs askew, as a caustic's. */
+static float edge(int x, int y)
+{
+    return 3 * x + y > 120 ? 4.0f : 0.25f;
+}
+
+static float checks(int x, int y)
+{
+    return (x / 3 + y / 3) % 2 ? 0.9f : 0.15f;
+}
+
+static float slope(int x, int y)
+{
+    return 0.5f + 0.01f * (float)x + 0.005f * (float)y;
+}
+
+/* Fine detail that no feature tells of. */
+static float detail(int x, int y)
+{
+    return 1.0f + 0.5f * sinf(1.1f * (float)x) * cosf(0.9f * (float)y);
+}
+
+static double normal(GRand *random)
+{
+    double u = 1.0 - g_rand_double(random);
+    return sqrt(-2.0 * log(u)) * cos(2.0 * G_PI * g_rand_double(random));
+}
+
+/* @param sigma of the mean of both halves, relative */
+static picture *noisy(pattern what, double sigma, guint32 seed)
+{
+    picture *p = g_new0(picture, 1);
+    g_autoptr(GRand) random = g_rand_new_with_seed(seed);
+    for (int i = 0; i < N; i++) {
+        float value = what(i % W, i / W);
+        p->variance[i] = (float)(sigma * sigma) * value * value;
+        for (int c = 0; c < 3; c++)
+            p->truth[3 * i + c] = value * (c == 1 ? 1.0f : 0.8f);
+        for (int h = 0; h < 2; h++) {
+            double scale = 1.0 + sigma * sqrt(2.0) * normal(random);
+            for (int c = 0; c < 3; c++)
+                p->half[h][3 * i + c] = p->truth[3 * i + c] * (float)scale;
+        }
+    }
+    return p;
+}
+
+static denoise_layer layer_of(const picture *p)
+{
+    return (denoise_layer){3, {p->half[0], p->half[1]}, p->variance};
+}
+
+static double squared_error(const picture *p, const float *out)
+{
+    double sum = 0.0;
+    for (int i = 0; i < 3 * N; i++)
+        sum += pow((double)(out[i] - p->truth[i]), 2.0);
+    return sum / (3 * N);
+}
+
+static double raw_error(const picture *p)
+{
+    float *mean = g_new(float, 3 * N);
+    for (int i = 0; i < 3 * N; i++)
+        mean[i] = 0.5f * (p->half[0][i] + p->half[1][i]);
+    double error = squared_error(p, mean);
+    g_free(mean);
+    return error;
+}
+
+static const denoise_size size = {W, H, 0.5f, 2, NULL};
+
+/* Filters p, with up to one feature. @return the squared error over that of the raw */
+static double gain(picture *p, const denoise_layer *feature, bool divide)
+{
+    GError *error = NULL;
+    g_autoptr(denoiser) d = denoiser_new(&size, &error);
+    const denoise_layer light = layer_of(p);
+    int number = feature ? denoiser_add(d, feature, &error) : -1;
+    g_assert_no_error(error);
+    g_assert_true(denoiser_filter(d, &light, divide ? number : -1, p->out, &error));
+    g_assert_no_error(error);
+    return squared_error(p, p->out) / raw_error(p);
+}
+
+/* ---- Closed cases ---- */
+
+static void test_constant(void)
+{
+    g_autofree picture *p = noisy(flat, 0.2, 1);
+    double mean = 0.0, raw = 0.0;
+    g_assert_cmpfloat(gain(p, NULL, false), <, 0.02);
+    for (int i = 0; i < N; i++) {
+        mean += (double)p->out[3 * i + 1] / N;
+        raw += 0.5 * (double)(p->half[0][3 * i + 1] + p->half[1][3 * i + 1]) / N;
+    }
+    /* Half a standard error of the mean. */
+    g_assert_cmpfloat_with_epsilon(mean, raw, 0.5 * 0.2 * 0.7 / sqrt(N));
+}
+
+/* First order: a slope is no steeper and no flatter after. */
+static void test_slope_known_to_feature(void)
+{
+    g_autofree picture *p = noisy(slope, 0.2, 2), *known = noisy(slope, 0.0, 2);
+    const denoise_layer feature = layer_of(known);
+    g_assert_cmpfloat(gain(p, &feature, false), <, 0.03);
+    float left = 0.0f, right = 0.0f;
+    for (int y = 10; y < H - 10; y++) {
+        left += p->out[3 * (y * W + 2) + 1];
+        right += p->out[3 * (y * W + W - 3) + 1];
+    }
+    g_assert_cmpfloat_with_epsilon((double)(right - left) / (H - 20), 0.01 * (W - 5),
+                                   0.05);
+}
+
+/* A converged picture stays what it is, whatever is in it and whatever features say. */
+static void test_converged(void)
+{
+    static const pattern patterns[] = {flat, edge, checks, slope, detail};
+    g_autofree picture *false_edge = noisy(checks, 0.0, 9);
+    const denoise_layer feature = layer_of(false_edge);
+    for (size_t i = 0; i < G_N_ELEMENTS(patterns); i++) {
+        for (double sigma = 0.02; sigma > 0.0001; sigma *= 0.2) {
+            g_autofree picture *p = noisy(patterns[i], sigma, 3 + (guint32)i);
+            double alone = gain(p, NULL, false), misled = gain(p, &feature, false);
+            g_test_message("pattern %zu, noise %g: %g, %g", i, sigma, alone, misled);
+            g_assert_cmpfloat(alone, <, 1.05);
+            g_assert_cmpfloat(misled, <, 1.05);
+        }
+    }
+}
+
+/* With half the noise in the picture there is less in what is shown. */
+static void test_error_falls(void)
+{
+    static const pattern patterns[] = {flat, edge, checks, detail};
+    for (size_t i = 0; i < G_N_ELEMENTS(patterns); i++) {
+        double before = (double)INFINITY;
+        for (double sigma = 0.5; sigma > 0.001; sigma *= 0.5) {
+            g_autofree picture *p = noisy(patterns[i], sigma, 20);
+            double error = gain(p, NULL, false) * raw_error(p);
+            g_assert_cmpfloat(error, <, before);
+            before = error;
+        }
+    }
+}
+
+static void test_edge_known_to_feature(void)
+{
+    g_autofree picture *p = noisy(edge, 0.3, 5), *known = noisy(edge, 0.1, 6);
+    const denoise_layer feature = layer_of(known);
+    double blind = gain(p, NULL, false), seeing = gain(p, &feature, false);
+    g_test_message("edge: %g without the feature, %g with it", blind, seeing);
+    g_assert_cmpfloat(seeing, <, 0.06);
+    g_assert_cmpfloat(seeing, <, 0.5 * blind);
+}
+
+static void test_texture_known_to_albedo(void)
+{
+    g_autofree picture *p = noisy(checks, 0.3, 7), *albedo = noisy(checks, 0.0, 8);
+    const denoise_layer feature = layer_of(albedo);
+    g_assert_cmpfloat(gain(p, &feature, true), <, 0.03);
+    g_assert_cmpfloat(gain(p, &feature, false), <, 0.06);
+}
+
+/* Feature and light have nothing to do with each other: its noise does not come in. */
+static void test_noisy_feature_of_nothing(void)
+{
+    g_autofree picture *p = noisy(flat, 0.2, 11), *other = noisy(flat, 1.0, 12);
+    const denoise_layer feature = layer_of(other);
+    g_assert_cmpfloat(gain(p, &feature, false), <, 0.03);
+}
+
+/* ---- What must not happen ---- */
+
+static void test_not_finite(void)
+{
+    g_autofree picture *p = noisy(flat, 0.1, 13);
+    static const float odd[] = {NAN, INFINITY, -INFINITY};
+    for (int i = 0; i < 30; i++)
+        p->half[i % 2][3 * (i * 149 % N) + i % 3] = odd[i % 3];
+    p->half[0][3000] = p->half[1][3000] = NAN;
+    p->variance[77] = NAN;
+    p->variance[78] = INFINITY;
+    GError *error = NULL;
+    g_autoptr(denoiser) d = denoiser_new(&size, &error);
+    const denoise_layer light = layer_of(p);
+    g_assert_cmpint(denoiser_add(d, &light, &error), ==, 0);
+    g_assert_true(denoiser_filter(d, &light, -1, p->out, &error));
+    for (int i = 0; i < 3 * N; i++)
+        g_assert_cmpfloat(fabsf(p->out[i] - p->truth[i]), <, 0.1);
+}
+
+/* One path that hardly anyone finds leaves no spot. */
+static void test_outlier(void)
+{
+    g_autofree picture *p = noisy(flat, 0.1, 14);
+    int at = 30 * W + 40;
+    for (int c = 0; c < 3; c++)
+        p->half[1][3 * at + c] = 1000.0f;
+    p->variance[at] = 500.0f * 500.0f;
+    gain(p, NULL, false);
+    for (int i = 0; i < 3 * N; i++)
+        g_assert_cmpfloat(fabsf(p->out[i] - p->truth[i]), <, 0.15);
+}
+
+static void test_black(void)
+{
+    g_autofree picture *p = noisy(flat, 0.1, 15);
+    memset(p->half, 0, sizeof p->half);
+    memset(p->variance, 0, sizeof p->variance);
+    gain(p, NULL, false);
+    for (int i = 0; i < 3 * N; i++)
+        g_assert_cmpfloat(p->out[i], ==, 0.0f);
+}
+
+/* Any number of threads gives the same bits. */
+static void test_threads(void)
+{
+    g_autofree picture *p = noisy(detail, 0.3, 16), *other = noisy(edge, 0.2, 17);
+    g_autofree float *first = g_new(float, 3 * N);
+    const denoise_layer light = layer_of(p), feature = layer_of(other);
+    for (unsigned threads = 1; threads <= 7; threads += 3) {
+        denoise_size by = size;
+        by.threads = threads;
+        g_autoptr(denoiser) d = denoiser_new(&by, NULL);
+        g_assert_cmpint(denoiser_add(d, &feature, NULL), ==, 0);
+        g_assert_true(
+            denoiser_filter(d, &light, -1, threads == 1 ? first : p->out, NULL));
+        if (threads > 1)
+            g_assert_cmpmem(first, 3 * N * sizeof(float), p->out, 3 * N * sizeof(float));
+    }
+}
+
+static void test_small_pictures(void)
+{
+    for (int w = 1; w < 20; w += 6) {
+        float half[2][3 * 20 * 3], out[3 * 20 * 3];
+        for (int i = 0; i < 3 * 3 * w; i++)
+            half[0][i] = half[1][i] = 0.25f;
+        const denoise_size small = {w, 3, 0.5f, 1, NULL};
+        const denoise_layer light = {3, {half[0], half[1]}, NULL};
+        g_autoptr(denoiser) d = denoiser_new(&small, NULL);
+        g_assert_true(denoiser_filter(d, &light, -1, out, NULL));
+        for (int i = 0; i < 3 * 3 * w; i++)
+            g_assert_cmpfloat_with_epsilon(out[i], 0.25f, 1e-5f);
+    }
+}
+
+static void test_no_memory(void)
+{
+    g_autofree picture *p = noisy(flat, 0.1, 18);
+    const denoise_layer light = layer_of(p);
+    bool done = false;
+    for (unsigned n = 1; !done; n++) {
+        GError *error = NULL;
+        g_autoptr(denoiser) d = denoiser_new(&size, NULL);
+        big_alloc_fail_at(n);
+        done = denoiser_add(d, &light, &error) == 0 &&
+               denoiser_filter(d, &light, -1, p->out, &error);
+        big_alloc_fail_at(0);
+        g_assert_true(done || g_error_matches(error, NEPH_ERROR, ERROR_FAILED));
+        g_clear_error(&error);
+        g_assert_cmpuint(n, <, 200);
+    }
+}
+
+static void test_cancelled(void)
+{
+    g_autofree picture *p = noisy(flat, 0.1, 19);
+    const denoise_layer light = layer_of(p);
+    cancel_flag cancel = {.set = true};
+    denoise_size stopped = size;
+    stopped.cancel = &cancel;
+    GError *error = NULL;
+    g_autoptr(denoiser) d = denoiser_new(&stopped, NULL);
+    g_assert_false(denoiser_filter(d, &light, -1, p->out, &error));
+    g_assert_error(error, NEPH_ERROR, ERROR_CANCELLED);
+    g_clear_error(&error);
+}
+
+/* ---- Naive twins ---- */
+
+/* Everything a regression needs, made of a picture: halves as they are, noise the same
+   everywhere. */
+typedef struct workbench {
+    regression r;
+    GPtrArray *planes;
+} workbench;
+
+static float *bench_plane(workbench *b)
+{
+    float *plane = plane_new(&b->r.g, NULL);
+    g_ptr_array_add(b->planes, plane);
+    return plane;
+}
+
+static float *filled_plane(workbench *b, const float *from, int c)
+{
+    float *plane = bench_plane(b);
+    for (int i = 0; i < N; i++)
+        plane[plane_at(&b->r.g, i % W, i / W)] = from[3 * i + c];
+    plane_mirror(&b->r.g, plane);
+    return plane;
+}
+
+static workbench bench_open(const picture *p, const picture *feature, float noise)
+{
+    workbench b = {.planes = g_ptr_array_new_with_free_func(big_free)};
+    b.r.g = grid_make(W, H, 2, NULL);
+    float *all = bench_plane(&b), *zero = bench_plane(&b);
+    for (size_t i = 0; i < b.r.g.n; i++)
+        all[i] = noise;
+    for (int h = 0; h < N_HALVES; h++) {
+        for (int c = 0; c < 3; c++)
+            b.r.color[h][c] = filled_plane(&b, p->half[h], c);
+        for (int k = 0; k < N_BANDS; k++) {
+            for (int i = 0; i < N_SUMS; i++)
+                b.r.sum[k][h][i] = bench_plane(&b);
+        }
+    }
+    for (int h = 0; h < N_HALVES; h++)
+        b.r.alike[h] =
+            (patch_source){NULL, 1, {b.r.color[1 - h][1]}, all, .least = 1e-6f};
+    b.r.n_features = 1;
+    b.r.feature[0] = filled_plane(&b, feature->half[0], 1);
+    b.r.doubt[0] = zero;
+    return b;
+}
+
+static double naive_distance(const patch_source *s, int x, int y, int qx, int qy)
+{
+    double sum = 0.0;
+    for (int v = -PATCH; v <= PATCH; v++) {
+        for (int u = -PATCH; u <= PATCH; u++)
+            sum += pow((double)s->value[0][plane_at(s->g, x + u, y + v)] -
+                           (double)s->value[0][plane_at(s->g, qx + u, qy + v)],
+                       2.0);
+    }
+    double here = (double)s->noise[plane_at(s->g, x, y)];
+    double there = (double)s->noise[plane_at(s->g, qx, qy)];
+    return fmax(sum - (here + fmin(here, there)), 0.0) /
+           (here + there + (double)s->least);
+}
+
+static void test_distances(void)
+{
+    g_autofree picture *p = noisy(detail, 0.2, 30);
+    workbench b = bench_open(p, p, 0.3f);
+    patch_source s = b.r.alike[0];
+    float d[BLOCK];
+    s.g = &b.r.g;
+    for (int i = 0; i < 60; i++) {
+        int x = i * 7 % (W - 32), y = i * 13 % H, dx = i % 15 - 7, dy = i / 4 - 7;
+        patch_distances(&s, x, y, dx, dy, d);
+        for (int k = 0; k < BLOCK; k++) {
+            double want = naive_distance(&s, x + k, y, x + k + dx, y + dy);
+            g_assert_cmpfloat_with_epsilon((double)d[k], want, 1e-4 * (1.0 + want));
+        }
+    }
+    g_ptr_array_unref(b.planes);
+}
+
+/* A window's line through colours by one feature, in closed form. */
+typedef struct line {
+    double a, b, weight[SIDE * SIDE];
+} line;
+
+static double naive_weight(double d)
+{
+    return pow(fmax(1.0 - d / 8.0, 0.0), 8.0);
+}
+
+static line naive_line(const regression *r, int h, int band, int x, int y)
+{
+    line out = {0};
+    double w0 = 0, f1 = 0, f2 = 0, c1 = 0, fc = 0, spread = 0;
+    const grid *g = &r->g;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        int qx = x + i % SIDE - BEFORE, qy = y + i / SIDE - BEFORE;
+        double f = (double)r->feature[0][plane_at(g, qx, qy)] -
+                   (double)r->feature[0][plane_at(g, x, y)];
+        double c = (double)r->color[h][1][plane_at(g, qx, qy)];
+        double d = naive_distance(&r->alike[h], x, y, qx, qy) * (band ? 4.0 : 1.0);
+        bool in = qx >= 0 && qx < W && qy >= 0 && qy < H;
+        double w = out.weight[i] = in ? naive_weight(d) : 0.0;
+        spread += f * f / (SIDE * SIDE);
+        w0 += w;
+        f1 += w * f;
+        f2 += w * f * f;
+        c1 += w * c;
+        fc += w * f * c;
+    }
+    f2 += (1e-3 * w0 + 1e-3) * spread; /* the ridge */
+    out.b = (w0 * fc - f1 * c1) / (w0 * f2 - f1 * f1);
+    out.a = (c1 - out.b * f1) / w0;
+    return out;
+}
+
+static void naive_regress(const regression *r, int h, int band, double *sum,
+                          double *weights)
+{
+    const grid *g = &r->g;
+    for (int y = 0; y < H; y += CENTRES) {
+        for (int x = 0; x < W; x += CENTRES) {
+            line l = naive_line(r, h, band, x, y);
+            for (int i = 0; i < SIDE * SIDE; i++) {
+                int qx = x + i % SIDE - BEFORE, qy = y + i / SIDE - BEFORE;
+                if (qx < 0 || qx >= W || qy < 0 || qy >= H)
+                    continue;
+                double f = (double)r->feature[0][plane_at(g, qx, qy)] -
+                           (double)r->feature[0][plane_at(g, x, y)];
+                sum[qy * W + qx] += l.weight[i] * (l.a + l.b * f);
+                weights[qy * W + qx] += l.weight[i];
+            }
+        }
+    }
+}
+
+static void test_regression(void)
+{
+    g_autofree picture *p = noisy(detail, 0.2, 31), *feature = noisy(slope, 0.05, 32);
+    workbench b = bench_open(p, feature, 0.4f);
+    for (int h = 0; h < N_HALVES; h++)
+        b.r.alike[h].g = &b.r.g;
+    g_assert_true(regress(&b.r));
+    for (int band = 0; band < N_BANDS; band++) {
+        double *sum = g_new0(double, N), *weights = g_new0(double, N);
+        naive_regress(&b.r, 1, band, sum, weights);
+        for (int i = 0; i < N; i++) {
+            size_t at = plane_at(&b.r.g, i % W, i / W);
+            double value = (double)b.r.sum[band][1][1][at],
+                   weight = (double)b.r.sum[band][1][3][at];
+            g_assert_cmpfloat_with_epsilon(weight, weights[i], 1e-3 * (1.0 + weights[i]));
+            g_assert_cmpfloat_with_epsilon(value, sum[i], 2e-3 * (1.0 + weights[i]));
+        }
+        g_free(sum);
+        g_free(weights);
+    }
+    g_ptr_array_unref(b.planes);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/denoise/constant", test_constant);
+    g_test_add_func("/denoise/slope-known-to-feature", test_slope_known_to_feature);
+    g_test_add_func("/denoise/converged", test_converged);
+    g_test_add_func("/denoise/error-falls", test_error_falls);
+    g_test_add_func("/denoise/edge-known-to-feature", test_edge_known_to_feature);
+    g_test_add_func("/denoise/texture-known-to-albedo", test_texture_known_to_albedo);
+    g_test_add_func("/denoise/noisy-feature-of-nothing", test_noisy_feature_of_nothing);
+    g_test_add_func("/denoise/not-finite", test_not_finite);
+    g_test_add_func("/denoise/outlier", test_outlier);
+    g_test_add_func("/denoise/black", test_black);
+    g_test_add_func("/denoise/threads", test_threads);
+    g_test_add_func("/denoise/small-pictures", test_small_pictures);
+    g_test_add_func("/denoise/no-memory", test_no_memory);
+    g_test_add_func("/denoise/cancelled", test_cancelled);
+    g_test_add_func("/denoise/distances", test_distances);
+    g_test_add_func("/denoise/regression", test_regression);
+    return g_test_run();
+}
