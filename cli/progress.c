@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 enum { BAR_WIDTH = 30 };
+static const double most_shown = 0.99; /* until the files are written */
 static const int64_t bar_interval = G_USEC_PER_SEC / 10;
 static const int64_t line_interval = 10 * G_USEC_PER_SEC;
 
@@ -59,7 +60,7 @@ bool progress_show(double fraction, const NephStatistics *statistics, void *data
     progress *p = data;
     const int64_t now = g_get_monotonic_time();
     const int64_t quiet_for = now - (p->shown_at ? p->shown_at : p->start);
-    const double done = CLAMP(fraction, 0.0, 1.0);
+    const double done = CLAMP(fraction, 0.0, most_shown);
     const int tenths = (int)(10.0 * done + 1e-9);
     const bool due = p->on_terminal
                          ? quiet_for >= bar_interval
@@ -74,6 +75,12 @@ bool progress_show(double fraction, const NephStatistics *statistics, void *data
     p->shown_at = now;
     p->shown_tenths = tenths;
     return true;
+}
+
+void progress_done(const progress *p, int64_t passes)
+{
+    if (!p->quiet && !p->on_terminal)
+        say("100 %%, passes: %" G_GINT64_FORMAT, passes);
 }
 
 void progress_end(progress *p)

@@ -17,5 +17,7 @@ typedef struct progress {
 progress progress_begin(bool quiet);
 /** @brief A NephProgressFunc; data: progress. Never stops the render. */
 bool progress_show(double fraction, const NephStatistics *statistics, void *data);
-/** @brief Removes the bar. */
+/** @brief Removes the bar: other things are told now. */
 void progress_end(progress *p);
+/** @brief All is done and written; on a terminal that is told by what was written. */
+void progress_done(const progress *p, int64_t passes);

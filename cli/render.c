@@ -218,12 +218,12 @@ static void report_time(const NephRender *render)
     g_auto(GStrv) repeat = neph_render_repeat(render);
     if (given.quiet || s.passes_wanted > 0)
         return;
+    if (s.passes == 0)
+        tell("note", "time was up in the first pass: %.0f %% of the pixels are rendered",
+             100.0 * s.part);
     if (repeat) {
         g_autofree char *sets = g_strjoinv(" --set ", repeat);
         tell("note", "the same picture without a limit: --set %s", sets);
-    } else if (s.grid > 1) {
-        tell("note", "time was up in the first pass: every %d%s pixel is rendered",
-             s.grid, s.grid == 2 ? "nd" : "th");
     }
 }
 
@@ -268,6 +268,13 @@ static bool look_on(double fraction, const NephStatistics *statistics, void *dat
     return progress_show(fraction, statistics, &w->shown);
 }
 
+static void report_done(const NephRender *render, const progress *shown)
+{
+    NephStatistics s;
+    neph_render_statistics(render, &s);
+    progress_done(shown, s.passes);
+}
+
 /* Passes that time is short for are planned by it: --explain takes of it too. */
 static int explain(NephRender *render)
 {
@@ -295,6 +302,8 @@ static int run(job *j, NephRender *render)
         return ended;
     report_time(render);
     int images = write_images(j, render, false);
+    if (!ended && !images)
+        report_done(render, &w.shown);
     int statistics = write_statistics(render);
     return ended ? ended : images ? images : statistics;
 }

@@ -367,8 +367,8 @@ typedef struct NephStatistics {
     int64_t photons_wanted; /**< a pass by the settings, if fewer are sent since that is
                                worth more; else 0 */
     bool can_look;          /**< neph_render_image may be called now */
-    int grid; /**< while no pass is done: every so manieth pixel is, in both directions;
-                 0: none yet */
+    double part; /**< so many of the pixels, 0..1, have samples of one pass more: of the
+                    first while it is under way, and of the last if time ended it */
     NephStop stopped_by;
 } NephStatistics;
 

@@ -34,7 +34,7 @@ NephStatistics statistics_export(const render_statistics *from)
                           .noise = from->noise,
                           .photons_wanted = from->photons_wanted,
                           .can_look = from->can_look,
-                          .grid = from->grid,
+                          .part = from->part,
                           .stopped_by = (NephStop)from->stopped_by};
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
         out.emitted[c] = from->emitted[c];

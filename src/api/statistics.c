@@ -43,6 +43,7 @@ static char *statistics_json(const NephStatistics *s)
     json j = {0};
     json_object_begin(&j, NULL);
     json_integer(&j, "passes", s->passes);
+    json_number(&j, "part", s->part);
     json_string(&j, "stopped_by", stop_words[s->stopped_by]);
     json_number(&j, "noise", s->noise);
     put_times_json(&j, s);

@@ -229,6 +229,17 @@ static double luminance(const film_sum *sum)
     return y;
 }
 
+int film_cell(const film *f, int x, int y)
+{
+    static const int within[2][2] = {{0, 2}, {3, 1}}; /* [y][x]: the far corner second */
+    int cell = 0;
+    x -= f->x0;
+    y -= f->y0;
+    for (int step = 1; step < FILM_COARSE; step *= 2)
+        cell = 4 * cell + within[y / step % 2][x / step % 2];
+    return cell;
+}
+
 static void end_pixels(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
@@ -252,6 +263,7 @@ void film_end_pass(film *f, unsigned threads)
 {
     parallel_for(n_pixels(f), 1 << 12, threads, NULL, end_pixels, f);
     f->n_passes++;
+    f->n_cells = 0;
 }
 
 /* ---- Its error ---- */
@@ -359,14 +371,21 @@ static void write_sum(const film *f, const film_sum *sum, float *out)
     rest[3] = (float)(sum->depth / weight);
 }
 
+/* Whether the pass under way is part of the picture at this pixel. */
+static bool pass_counts(const film *f, size_t i)
+{
+    int x = (int)(i % (size_t)f->width), y = (int)(i / (size_t)f->width);
+    return film_cell(f, f->x0 + x, f->y0 + y) < f->n_cells;
+}
+
 static void write_groups(const film *f, size_t i, double weight, float *out)
 {
+    bool counts = pass_counts(f, i);
     for (int k = 0; k < f->n_groups; k++) {
         size_t at = group_offset(f, i) + 3 * (size_t)k;
         double sum[3];
-        for (int c = 0; c < 3; c++)
-            sum[c] = f->n_passes ? f->groups[at + (size_t)c]
-                                 : (double)f->pass_groups[at + (size_t)c];
+        for (size_t c = 0; c < 3; c++)
+            sum[c] = f->groups[at + c] + (counts ? (double)f->pass_groups[at + c] : 0.0);
         film_to_rgb(f, sum, weight, out + 3 * k);
         for (int c = 0; c < 3; c++)
             out[3 * k + c] *= f->scale;
@@ -378,10 +397,9 @@ static void write_groups(const film *f, size_t i, double weight, float *out)
 static size_t pixel_put(const film *f, size_t i)
 {
     size_t width = (size_t)f->width, x = i % width, y = i / width;
-    const size_t weight = offsetof(film_sum, weight) / sizeof(double);
-    for (size_t step = (size_t)MAX(f->grid, 1); step <= FILM_COARSE; step *= 2) {
-        size_t at = (y - y % FILM_TILE % step) * width + x - x % FILM_TILE % step;
-        if (fabsf(f->pass[at].number[weight]) > 0.0f)
+    for (size_t step = 1; step <= FILM_COARSE; step *= 2) {
+        size_t at = (y - y % step) * width + x - x % step;
+        if (pass_counts(f, at))
             return at;
     }
     return i;
@@ -391,17 +409,19 @@ static void write_pixel(const film *f, size_t i, float *out)
 {
     if (f->n_passes == 0)
         i = pixel_put(f, i);
-    film_sum begun = {0};
-    if (f->n_passes == 0)
-        add_numbers(&begun, &f->pass[i]);
-    const film_sum *sum = f->n_passes ? &f->pixels[i].sum : &begun;
-    write_sum(f, sum, out);
+    film_sum sum = f->pixels[i].sum;
+    surface_sum surface = f->surfaces ? f->surfaces[i] : (surface_sum){0};
+    if (pass_counts(f, i)) {
+        add_numbers(&sum, &f->pass[i]);
+        gbuffer_sum(f, i, &surface);
+    }
+    write_sum(f, &sum, out);
     out += 3 + 3 * FILM_COLORS + 4;
     double scale2 = (double)f->scale * (double)f->scale;
     if (has_variance(f))
         *out++ = (float)(scale2 * pixel_variance(&f->pixels[i], f->n_passes));
-    write_groups(f, i, sum->weight, out);
-    gbuffer_write(f, i, sum, out + 3 * f->n_groups);
+    write_groups(f, i, sum.weight, out);
+    gbuffer_write(f, &surface, &sum, out + 3 * f->n_groups);
 }
 
 typedef struct image_loop {

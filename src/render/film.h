@@ -21,8 +21,9 @@
 enum {
     FILM_COLORS = N_LAYERS + 1 /* albedo */,
     FILM_TILE = 16,  /**< pixels are rendered in squares of this size */
-    FILM_COARSE = 8, /**< of whose first pass every so manieth comes first, then the half,
-                        and so on */
+    FILM_COARSE = 8, /**< and may come in an order in which every so manieth in both
+                        directions is first, then the half, and so on */
+    FILM_CELLS = FILM_COARSE * FILM_COARSE, /**< numbers in that order: see film_cell */
 };
 
 /** @brief Sums of one pixel in one pass, weighed by the pixel filter. Zero to begin. */
@@ -64,8 +65,8 @@ typedef struct film {
     double *groups;            /**< of the passes done */
     const char *const *group_names; /**< the scene's */
     int64_t n_passes;               /**< done */
-    int grid;      /**< of the first pass every so manieth pixel is done in
-                      both directions; 0: none of these grids is whole */
+    int n_cells;   /**< of the pass under way all pixels of so many cells are part of the
+                      picture: film_cell(pixel) < n_cells */
     float scale;   /**< the sensor's: view_imaging_ratio */
     float most;    /**< film_settings.most */
     bool balanced; /**< by this matrix of XYZ */
@@ -101,6 +102,10 @@ void film_put_groups(film *f, const film_pass *pass, int x, int y, const spectru
  * splat in their order, by the pixel filter. */
 void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
                      splat_list splats);
+/** @brief When a pixel of the whole picture comes where a pass is rendered in parts,
+ * 0..FILM_CELLS - 1: after 1, 4, 16 and 64 cells a grid of every 8th, 4th, 2nd and every
+ * pixel is whole, and in between what there is lies evenly. */
+int film_cell(const film *f, int x, int y);
 /** @brief Adds the pass, of which every pixel was put, to the picture. */
 void film_end_pass(film *f, unsigned threads);
 
@@ -119,8 +124,8 @@ void film_to_rgb(const film *f, const double sum[3], double weight, float out[3]
 /** @brief The picture: R G B, the layers' R G B, albedo, normal, depth; linear, film's
  * space. With two passes or more also variance.Y, the square of the standard error of
  * the luminance; with light groups their layers light.NAME; then those of a gbuffer.
- * Before the first pass is done, its finest grid that is whole, pixels that are still to
- * come looking like those beside. */
+ * Of the pass under way, too, what its n_cells say; where that is all there is, pixels
+ * that are still to come look like those beside. */
 image *film_image(const film *f, unsigned threads, GError **error);
 /** @brief Some of its rows only, from y on. */
 image *film_image_rows(const film *f, int y, int rows, unsigned threads, GError **error);

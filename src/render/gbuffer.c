@@ -127,15 +127,25 @@ void gbuffer_put(film *f, int x, int y, const surface_sum *sum)
             *sum;
 }
 
-void gbuffer_end_pass(const film *f, size_t begin, size_t end)
+static void add_surface(surface_sum *sum, const surface_sum *more)
 {
     enum { N = sizeof(surface_sum) / sizeof(double) };
-    if (!f->surfaces)
-        return;
-    const double *pass = (const double *)(f->pass_surfaces + begin);
-    double *sums = (double *)(f->surfaces + begin);
-    for (size_t i = 0; i < (end - begin) * N; i++)
-        sums[i] += pass[i];
+    double *to = (double *)sum;
+    const double *from = (const double *)more;
+    for (size_t i = 0; i < N; i++)
+        to[i] += from[i];
+}
+
+void gbuffer_end_pass(const film *f, size_t begin, size_t end)
+{
+    for (size_t i = begin; i < end && f->surfaces; i++)
+        add_surface(&f->surfaces[i], &f->pass_surfaces[i]);
+}
+
+void gbuffer_sum(const film *f, size_t i, surface_sum *sum)
+{
+    if (f->surfaces)
+        add_surface(sum, &f->pass_surfaces[i]);
 }
 
 void gbuffer_add_names(const film *f, GPtrArray *names)
@@ -170,11 +180,10 @@ static float *write_variance(float *out, const surface_sum *of)
     return out + 6;
 }
 
-void gbuffer_write(const film *f, size_t i, const film_sum *sum, float *out)
+void gbuffer_write(const film *f, const surface_sum *of, const film_sum *sum, float *out)
 {
     if (!f->surfaces)
         return;
-    const surface_sum *of = f->n_passes ? &f->surfaces[i] : &f->pass_surfaces[i];
     double weight = fabs(sum->surface_weight) > 0.0 ? sum->surface_weight : 1.0;
     film_to_rgb(f, sum->color[N_LAYERS], sum->weight, out);
     out = write_mean(out + 3, of->p, 3, weight);

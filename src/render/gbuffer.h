@@ -41,5 +41,7 @@ void gbuffer_add(surface_sum *sum, const film *f, const view *v, const film_pass
 void gbuffer_put(film *f, int x, int y, const surface_sum *sum);
 void gbuffer_end_pass(const film *f, size_t begin, size_t end);
 void gbuffer_add_names(const film *f, GPtrArray *names);
-/** @brief Values of pixel i under those names. @param sum its other sums */
-void gbuffer_write(const film *f, size_t i, const film_sum *sum, float *out);
+/** @brief Adds what the pass under way made of pixel i. */
+void gbuffer_sum(const film *f, size_t i, surface_sum *sum);
+/** @brief Values of a pixel under those names. @param sum its other sums */
+void gbuffer_write(const film *f, const surface_sum *of, const film_sum *sum, float *out);

@@ -22,6 +22,9 @@ enum {
 #define TRIAL_SHARE 0.02
 #define TRIAL_SECONDS 0.1
 
+/* Of the time are photons sent at most before the eye looks, where passes are few. */
+#define PHOTON_SHARE 0.08
+
 /* Time is never as short as that: a picture there must be. */
 #define LEAST_LEFT 0.05
 
@@ -184,12 +187,14 @@ settings pace_choose(const settings *how, const pace_costs *costs, double n_pixe
         look *= (double)out.spp;
         /* Photons in proportion, and no longer than the camera; but where not even one
            pass will be whole, there must be time for the eye to see something. */
-        double time_for_photons = fmax(most, fmin(look, 0.25 * left));
+        double time_for_photons = fmax(most, fmin(look, PHOTON_SHARE * left));
         photons = fmin((double)out.spp / (double)how->spp,
                        costs->photons > 0.0 ? time_for_photons / costs->photons : 1.0);
         scale_photons(&out, photons);
         whole = costs->pass + photons * costs->photons + look;
     }
+    if (out.spp > 1 && how->first_spp == 0)
+        out.first_spp = 1;
     double usual = settings_planned_passes(how) * (double)how->spp / (double)out.spp;
     if (!(how->planned_passes > 0.0))
         out.planned_passes = fmax(floor(PARTS * fmin(left / whole, usual)), 1.0) / PARTS;
@@ -211,21 +216,32 @@ static void fill_with_noise(image *img)
     }
 }
 
-double pace_write_seconds(const film *f, unsigned threads, char **paths)
+/* Makes the picture's middle rows and writes them. @return s */
+static double time_writing(const film *f, int rows, unsigned threads, char **paths)
 {
-    int rows =
-        (int)MIN(ROWS_A_THREAD * MIN(threads, MOST_TRIAL_THREADS), (unsigned)f->height);
     double start = clock_seconds();
-    if (!paths)
-        return 0.0;
     g_autoptr(image) some =
         film_image_rows(f, (f->height - rows) / 2, rows, threads, NULL);
     if (!some)
         return 0.0;
     double took = clock_seconds() - start;
-    if (f->n_passes == 0)
+    if (f->n_passes == 0 && f->n_cells == 0)
         fill_with_noise(some);
     for (char **path = paths; *path; path++)
         took += image_write_seconds(some, *path);
+    return took;
+}
+
+double pace_write_seconds(const film *f, unsigned threads, char **paths, double budget)
+{
+    unsigned few = ROWS_A_THREAD * MIN(threads, MOST_TRIAL_THREADS);
+    int rows = (int)MIN(few, (unsigned)f->height);
+    if (!paths)
+        return 0.0;
+    double took = time_writing(f, rows, threads, paths);
+    for (double spent = took; spent < budget && rows < f->height; spent += took) {
+        rows = MIN(4 * rows, f->height);
+        took = time_writing(f, rows, threads, paths);
+    }
     return took * f->height / rows;
 }

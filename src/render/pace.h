@@ -31,5 +31,6 @@ settings pace_choose(const settings *how, const pace_costs *costs, double n_pixe
                      double left);
 
 /** @brief About how long it takes to make the picture and write it to files of these
- * names, s: tries it with a few rows. @param paths NULL-terminated; NULL: none */
-double pace_write_seconds(const film *f, unsigned threads, char **paths);
+ * names, s: tries it with a few rows, and with more while there are seconds left of the
+ * budget. @param paths NULL-terminated; NULL: none */
+double pace_write_seconds(const film *f, unsigned threads, char **paths, double budget);

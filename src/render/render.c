@@ -1,26 +1,25 @@
 #include "render/render.h"
-#include "base/clock.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
-#include "render/gbuffer.h"
+#include "render/look.h"
 #include "render/pace.h"
 #include "render/stop.h"
 
 #include <string.h>
 
-enum {
-    SAMPLES_BETWEEN_PROGRESS = 64,
-    TIMED_SHARE = 16, /* one camera sample in so many is timed: the clock is not free */
-};
-
 /* The caller hears of progress no more often than this, s. */
 #define PROGRESS_INTERVAL 0.1
+
+/* Of the time given so much goes into finding out how long writing takes, each time. */
+#define WRITE_SHARE 0.01
 
 /* Nothing is done before it is. */
 #define LARGEST_FRACTION 0.99
 
 struct render {
-    transport_plan plan; /* by settings that may be paced */
+    transport_plan plan;       /* by settings that may be paced */
+    transport_plan first_plan; /* of the first pass: borrows from plan */
     settings asked;
     const transport_kind *transport;
     film film;
@@ -28,7 +27,8 @@ struct render {
     bool given_up; /* the pass under way, since the time is over */
     double before; /* see render_set_time_around */
     char **paths;
-    double after; /* s that writing to these takes */
+    double after;    /* s that writing to these takes */
+    double timed_at; /* s: when it was asked last */
     uint32_t passes_done;
     render_statistics statistics;
     cancel_flag cancel;
@@ -41,10 +41,10 @@ struct render {
     double last_progress; /* clock */
 
     /* Of the pass under way: how far it is. */
-    double pass_start, last_pass; /* clock; s */
-    double photon_share;          /* of the last pass, before the camera looked */
-    size_t n_tiles;               /* 0: the camera does not look yet */
-    atomic_size_t tiles_done;
+    double pass_start;   /* clock */
+    double last_pass;    /* s that the last one took, or would have if it were as large */
+    double photon_share; /* of it, before the camera looked */
+    look *look;          /* NULL: the camera does not look yet */
 };
 
 render *render_new(const view *v, const settings *how, GError **error)
@@ -56,7 +56,7 @@ render *render_new(const view *v, const settings *how, GError **error)
     r->asked = r->plan.how;
     r->statistics.noise = (double)INFINITY;
     bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
-    r->statistics.passes_wanted = open_end ? 0 : settings_most_passes(how);
+    r->statistics.passes_wanted = open_end ? 0 : (int64_t)ceil(settings_most_passes(how));
     if (film_open(&r->film, v, error))
         return r;
     render_free(r);
@@ -84,10 +84,8 @@ void render_cancel(render *r)
    as the last pass spent it. */
 static double pass_fraction(const render *r)
 {
-    if (r->n_tiles > 0)
-        return r->photon_share + (1.0 - r->photon_share) *
-                                     (double)atomic_load(&r->tiles_done) /
-                                     (double)r->n_tiles;
+    if (r->look)
+        return r->photon_share + (1.0 - r->photon_share) * look_fraction(r->look);
     if (!(r->last_pass > 0.0))
         return 0.0;
     return fmin((clock_seconds() - r->pass_start) / r->last_pass, r->photon_share);
@@ -99,6 +97,7 @@ static stop_state state_of(const render *r, double pass_fraction)
         .passes = (double)r->passes_done + pass_fraction,
         .elapsed = clock_seconds() - r->start,
         .last_pass = r->last_pass,
+        .last_photons = r->photon_share * r->last_pass,
         .noise = r->statistics.noise,
         .after = r->after,
     };
@@ -121,7 +120,7 @@ static void tell(render *r, double pass_fraction)
 static void watch_time(render *r)
 {
     stop_state now = state_of(r, 0.0);
-    bool has_picture = r->passes_done > 0 || r->film.grid > 0;
+    bool has_picture = r->passes_done > 0 || r->film.n_cells > 0;
     if (r->prepared && has_picture && stop_at_once(&r->plan.how, &now)) {
         r->given_up = true;
         render_cancel(r);
@@ -140,170 +139,11 @@ static void on_progress(void *data)
 
 /* ---- One pass ---- */
 
-/* Which camera samples of a thread are timed. */
-typedef struct sample_clock {
-    uint64_t n_samples;
-    double time; /* s, of those that were timed */
-} sample_clock;
-
-/* The camera's half of a pass, shared by all threads. */
-typedef struct camera_loop {
-    render *render;
-    int step;  /* of every step-th pixel in both directions ... */
-    bool fill; /* ... those that are not at every 2 step-th, which are done */
-    const void *pass;
-    film_pass film_pass;
-    uint32_t index;
-    int n_tiles_x;
-    transport_scratch *scratch; /* one a thread */
-    sample_clock *clocks;       /* likewise */
-    spectrum *groups; /* 2 n_groups a thread: of a sample, and their sums over a pixel */
-} camera_loop;
-
-/* What a pixel gets by light groups. */
-typedef struct group_sums {
-    size_t n;
-    spectrum *sample, *sum; /* NULL if n is 0 */
-} group_sums;
-
-/* A thread's, zeroed. */
-static group_sums groups_of(const camera_loop *loop, unsigned thread)
+/* So much of the pass under way is part of the picture. */
+static void set_part(render *r, int n_cells)
 {
-    size_t n = (size_t)loop->render->film.n_groups;
-    if (n == 0)
-        return (group_sums){0};
-    spectrum *own = loop->groups + 2 * n * thread;
-    memset(own, 0, 2 * n * sizeof *own);
-    return (group_sums){n, own, own + n};
-}
-
-/* What a pixel gets in a pass, groups apart. */
-typedef struct pixel_sums {
-    film_sum film;
-    surface_sum surface;
-} pixel_sums;
-
-/* Where in the pixel and on the lens, and when, a sample looks. */
-typedef struct pixel_look {
-    vec2 offset, u_lens;
-    float time, weight;
-} pixel_look;
-
-static pixel_look look_at(const view *v, sampler *random)
-{
-    pixel_look look;
-    look.offset = filter_sample(&v->filter, sampler_2d(random), &look.weight);
-    look.u_lens = sampler_2d(random);
-    look.time = sampler_1d(random);
-    if (v->scene->switches.fixed_pixels)
-        look = (pixel_look){{0.0f, 0.0f}, {0.5f, 0.5f}, 0.5f, 1.0f};
-    return look;
-}
-
-/* What a ray from the eye finds. Within a timed sample all gathers are: so their part of
-   it is never more than the whole. */
-static void find_radiance(camera_loop *loop, const ray *from_eye, sampler *random,
-                          unsigned thread, radiance_sample *sample)
-{
-    transport_scratch *scratch = &loop->scratch[thread];
-    sample_clock *clock = &loop->clocks[thread];
-    scratch->timed = clock->n_samples++ % TIMED_SHARE == 0;
-    double start = scratch->timed ? clock_seconds() : 0.0;
-    loop->render->transport->radiance(loop->pass, from_eye, random, scratch, sample);
-    if (scratch->timed)
-        clock->time += clock_seconds() - start;
-}
-
-/* One camera sample of a pixel, random already told which. */
-static void render_sample(camera_loop *loop, vec2 pixel, sampler *random, unsigned thread,
-                          pixel_sums *sums, const group_sums *groups)
-{
-    render *r = loop->render;
-    const view *v = r->plan.view;
-    pixel_look look = look_at(v, random);
-    float weight = look.weight;
-    vec2 raster = {pixel.x + 0.5f + look.offset.x, pixel.y + 0.5f + look.offset.y};
-    ray from_eye = camera_ray(&v->camera, raster, look.u_lens, look.time);
-    radiance_sample sample = {.groups = groups->sample};
-    for (size_t k = 0; k < groups->n; k++)
-        groups->sample[k] = (spectrum){0};
-    find_radiance(loop, &from_eye, random, thread, &sample);
-    gbuffer_turn(v, from_eye.time, &sample);
-    float dimmed = film_add(&sums->film, &loop->film_pass, &sample, weight);
-    const gbuffer_sample seen = {raster, look.u_lens, from_eye, weight, dimmed};
-    gbuffer_add(&sums->surface, &r->film, v, &loop->film_pass, &seen, &sample);
-    for (size_t k = 0; k < groups->n; k++)
-        groups->sum[k] += weight * dimmed * groups->sample[k];
-}
-
-static void render_pixel(camera_loop *loop, int x, int y, unsigned thread)
-{
-    render *r = loop->render;
-    const settings *how = &r->plan.how;
-    uint64_t pixel = (uint64_t)y * (uint64_t)r->plan.view->film.width + (uint64_t)x;
-    uint64_t key = hash_mix((uint64_t)how->seed, hash_mix(pixel, 0x7069786cu));
-    pixel_sums sums = {0};
-    group_sums groups = groups_of(loop, thread);
-    for (int64_t i = 0; i < how->spp; i++) {
-        if (cancelled(&r->cancel))
-            return;
-        if (thread == 0 && i % SAMPLES_BETWEEN_PROGRESS == 0)
-            on_progress(r);
-        sampler random =
-            sampler_make(key, loop->index * (uint64_t)how->spp + (uint64_t)i);
-        render_sample(loop, (vec2){(float)x, (float)y}, &random, thread, &sums, &groups);
-    }
-    if (cancelled(&r->cancel)) /* then the last sample is not whole */
-        return;
-    film_put(&r->film, x, y, &sums.film);
-    gbuffer_put(&r->film, x, y, &sums.surface);
-    film_put_groups(&r->film, &loop->film_pass, x, y, groups.sum);
-}
-
-static void render_tile(size_t begin, size_t end, unsigned thread, void *data)
-{
-    (void)end;
-    camera_loop *loop = data;
-    render *r = loop->render;
-    const film *f = &r->film;
-    int x0 = f->x0 + FILM_TILE * (int)(begin % (size_t)loop->n_tiles_x);
-    int y0 = f->y0 + FILM_TILE * (int)(begin / (size_t)loop->n_tiles_x);
-    int x1 = MIN(x0 + FILM_TILE, f->x0 + f->width),
-        y1 = MIN(y0 + FILM_TILE, f->y0 + f->height);
-    int step = loop->step, coarse = 2 * step;
-    for (int y = y0; y < y1; y += step) {
-        for (int x = x0; x < x1; x += step) {
-            bool done = loop->fill && (x - x0) % coarse == 0 && (y - y0) % coarse == 0;
-            if (!done)
-                render_pixel(loop, x, y, thread);
-        }
-    }
-    if (step == 1)
-        atomic_fetch_add(&r->tiles_done, 1);
-}
-
-/* @param time s, that the camera looked */
-static bool collect(camera_loop *loop, double time, GError **error)
-{
-    bool failed = false;
-    render *r = loop->render;
-    render_statistics *st = &r->statistics;
-    double timed = 0.0, gathering = 0.0;
-    for (unsigned i = 0; i < r->n_threads; i++) {
-        const transport_scratch *scratch = &loop->scratch[i];
-        st->camera_rays += scratch->camera_rays;
-        st->shadow_rays += scratch->shadow_rays;
-        st->n_not_finite += scratch->n_not_finite;
-        timed += loop->clocks[i].time;
-        gathering += scratch->time_gather;
-        failed |= scratch->estimate.failed;
-    }
-    st->time_camera += time;
-    if (timed > 0.0)
-        st->time_gather += time * (gathering / timed);
-    if (failed)
-        error_set(error, ERROR_FAILED, "out of memory for radiance estimates");
-    return !failed;
+    r->film.n_cells = n_cells;
+    r->statistics.part = (double)n_cells / FILM_CELLS;
 }
 
 static void add_counts(render_statistics *st, const transport_counts *counts)
@@ -320,83 +160,79 @@ static void add_counts(render_statistics *st, const transport_counts *counts)
     }
 }
 
-/* Memory of the threads. */
-static bool open_loop(camera_loop *loop, GError **error)
+/* How long writing takes is asked at the start, of the first pictures, and again when
+   half of the time is over: it depends on what the picture shows and what else the
+   machine does. */
+static void time_writing(render *r)
 {
-    const render *r = loop->render;
-    size_t n_groups = (size_t)r->film.n_groups;
-    loop->scratch =
-        big_alloc(r->n_threads, sizeof *loop->scratch, "thread scratch", error);
-    loop->clocks = g_new0(sample_clock, r->n_threads);
-    bool ok = loop->scratch != NULL;
-    for (unsigned i = 0; i < r->n_threads && ok; i++)
-        ok = transport_scratch_init(&loop->scratch[i], n_groups, error);
-    if (ok && n_groups > 0) {
-        loop->groups = big_alloc(2 * n_groups * r->n_threads, sizeof *loop->groups,
-                                 "light groups", error);
-        ok = loop->groups != NULL;
-    }
-    return ok;
-}
-
-static void close_loop(camera_loop *loop)
-{
-    for (unsigned i = 0; i < loop->render->n_threads && loop->scratch; i++)
-        transport_scratch_clear(&loop->scratch[i]);
-    big_free(loop->scratch);
-    big_free(loop->groups);
-    g_free(loop->clocks);
+    double time = r->plan.how.time, elapsed = clock_seconds() - r->start;
+    bool is_due = r->passes_done <= 1 || !(r->after > 0.0) ||
+                  (elapsed > 0.5 * time && r->timed_at < 0.5 * time);
+    if (!(time > 0.0) || !is_due)
+        return;
+    r->after = pace_write_seconds(&r->film, r->n_threads, r->paths, WRITE_SHARE * time);
+    r->timed_at = elapsed;
 }
 
 /* Nobody works on the film just now, and of the first pass there is a coarse picture. */
-static void tell_coarse(render *r)
+static void tell_coarse(render *r, int n_cells)
 {
+    set_part(r, n_cells);
+    time_writing(r);
     watch_time(r);
     r->statistics.can_look = true;
     tell(r, pass_fraction(r));
     r->statistics.can_look = false;
 }
 
-/* Renders all pixels; in the first pass every eighth comes first, then the fourth and so
-   on, so that the whole picture can be seen soon. */
-static bool render_tiles(camera_loop *loop)
+/* How many cells of the pass come next, so that the whole picture can be seen soon and
+   the pass ends in time. */
+static int next_cells(const render *r, int done, int wanted)
 {
-    render *r = loop->render;
-    const int first_step = r->passes_done == 0 ? FILM_COARSE : 1;
-    bool done = true;
-    for (loop->step = first_step; loop->step >= 1 && done; loop->step /= 2) {
-        loop->fill = loop->step < first_step;
-        atomic_store(&r->tiles_done, 0);
-        done = parallel_for(r->n_tiles, 1, r->n_threads, &r->cancel, render_tile, loop);
-        if (done && r->passes_done == 0)
-            r->film.grid = r->statistics.grid = loop->step;
-        if (done && loop->step > 1)
-            tell_coarse(r);
-    }
-    return done;
+    stop_state now = state_of(r, 0.0);
+    stop_part part = {.done = done, .wanted = wanted, .is_first = r->passes_done == 0};
+    part.cell = done > 0 ? look_seconds(r->look) / done
+                         : (now.last_pass - now.last_photons) / FILM_CELLS;
+    return stop_next_cells(&r->plan.how, &now, &part);
 }
 
-static bool look(render *r, const void *pass, GError **error)
+/* The camera looks, at so many cells. @return false: cancelled, but not for want of time
+ */
+static bool look_on(render *r, int wanted, int *done)
 {
-    const film *f = &r->film;
-    camera_loop loop = {
-        .render = r,
-        .pass = pass,
-        .film_pass = film_pass_for(&r->film, r->transport->pass_wavelengths(pass)),
-        .index = r->passes_done,
-        .n_tiles_x = (f->width + FILM_TILE - 1) / FILM_TILE,
-    };
-    bool ready = open_loop(&loop, error);
-    double start = clock_seconds();
-    r->n_tiles =
-        (size_t)loop.n_tiles_x * (size_t)((f->height + FILM_TILE - 1) / FILM_TILE);
-    bool done = ready && render_tiles(&loop);
-    r->n_tiles = 0;
-    bool collected = ready && collect(&loop, clock_seconds() - start, error);
-    close_loop(&loop);
-    if (collected && !done)
+    for (int n; (n = next_cells(r, *done, wanted)) > 0; *done += n) {
+        if (!look_cells(r->look, *done, *done + n))
+            return r->given_up;
+        if (r->passes_done == 0 && *done + n < wanted)
+            tell_coarse(r, *done + n);
+    }
+    return true;
+}
+
+static void add_look(render_statistics *st, double seconds,
+                     const transport_counts *counts)
+{
+    st->camera_rays += counts->camera_rays;
+    st->shadow_rays += counts->shadow_rays;
+    st->n_not_finite += counts->n_not_finite;
+    st->time_camera += seconds;
+    st->time_gather += counts->time_gather;
+}
+
+static bool look_through(render *r, const look_task *task, int wanted, int *done,
+                         GError **error)
+{
+    transport_counts counts = {0};
+    r->look = look_open(task, error);
+    if (!r->look)
+        return false;
+    bool goes_on = look_on(r, wanted, done);
+    double seconds = look_seconds(r->look);
+    bool well = look_close(g_steal_pointer(&r->look), &counts, error);
+    add_look(&r->statistics, seconds, &counts);
+    if (well && !goes_on)
         error_set(error, ERROR_CANCELLED, "cancelled");
-    return collected && done;
+    return well && goes_on;
 }
 
 static void add_splats(render *r, const void *pass)
@@ -410,36 +246,55 @@ static void add_splats(render *r, const void *pass)
 static void note_pass(render *r, double photons_done)
 {
     render_statistics *st = &r->statistics;
-    double now = clock_seconds();
-    r->last_pass = now - r->pass_start;
-    r->photon_share = r->last_pass > 0.0 ? photons_done / r->last_pass : 0.0;
+    const settings *how = &r->plan.how;
+    double took = clock_seconds() - r->pass_start;
+    bool is_small = r->passes_done == 0 && how->first_spp > 0;
+    r->photon_share = took > 0.0 ? photons_done / took : 0.0;
+    r->last_pass = is_small ? took * (double)how->spp / (double)how->first_spp : took;
     st->passes = ++r->passes_done;
     st->can_look = true;
-    if (r->plan.how.time > 0.0 && r->passes_done == 1)
-        r->after = pace_write_seconds(&r->film, r->n_threads, r->paths);
-    if (r->plan.how.noise > 0.0)
+    time_writing(r);
+    if (how->noise > 0.0)
         st->noise = film_noise(&r->film);
 }
 
-static bool run_pass(render *r, GError **error)
+/* The pass is whole, or what there is of it when it ended early becomes part of the
+   picture. */
+static void end_pass(render *r, int done, int wanted, double photons_done)
+{
+    if (done == FILM_CELLS) {
+        film_end_pass(&r->film, r->n_threads);
+        set_part(r, 0);
+        note_pass(r, photons_done);
+        return;
+    }
+    set_part(r, done);
+    if (done < wanted)
+        r->statistics.stopped_by = RENDER_TIME_UP;
+}
+
+/* @param wanted cells */
+static bool run_pass(render *r, int wanted, GError **error)
 {
     transport_counts counts = {0};
+    const transport_plan *plan = r->passes_done == 0 ? &r->first_plan : &r->plan;
+    int done = 0;
     r->pass_start = clock_seconds();
     void *pass =
-        r->transport->begin_pass(&r->plan, r->passes_done, &r->cancel, &counts, error);
+        r->transport->begin_pass(plan, r->passes_done, &r->cancel, &counts, error);
     if (!pass)
         return false;
     double photons_done = clock_seconds() - r->pass_start;
     add_counts(&r->statistics, &counts);
-    bool ok = look(r, pass, error);
+    const look_task task = {plan,           r->transport, pass,
+                            r->passes_done, &r->film,     &r->cancel};
+    bool ok = look_through(r, &task, wanted, &done, error);
     if (ok)
         add_splats(r, pass);
     r->transport->end_pass(pass);
-    if (!ok)
-        return false;
-    film_end_pass(&r->film, r->n_threads);
-    note_pass(r, photons_done);
-    return true;
+    if (ok)
+        end_pass(r, done, wanted, photons_done);
+    return ok;
 }
 
 /* ---- All passes ---- */
@@ -472,6 +327,20 @@ static void note_photons(render *r)
         fewer && settings_reads(how, settings_find("photons")) ? how->photons : 0;
 }
 
+/* Of the first pass: with fewer samples, and photons likewise. */
+static transport_plan first_plan_of(const transport_plan *plan)
+{
+    transport_plan first = *plan;
+    if (plan->how.first_spp == 0 || plan->how.first_spp >= plan->how.spp)
+        return first;
+    double share = (double)plan->how.first_spp / (double)plan->how.spp;
+    first.how.spp = plan->how.first_spp;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        if (plan->n_photons[c] > 0)
+            first.n_photons[c] = MAX((uint64_t)((double)plan->n_photons[c] * share), 1);
+    return first;
+}
+
 static bool prepare(render *r, GError **error)
 {
     double start = clock_seconds();
@@ -483,26 +352,34 @@ static bool prepare(render *r, GError **error)
         error_set(error, ERROR_CANCELLED, "cancelled");
         r->prepared = false;
     }
+    r->first_plan = first_plan_of(&r->plan);
     r->statistics.time_prepare += clock_seconds() - start;
     note_photons(r);
     return r->prepared;
+}
+
+/* Of the next pass, which may be the last. */
+static int cells_wanted(const render *r)
+{
+    double passes = settings_most_passes(&r->plan.how) - (double)r->passes_done;
+    return passes < 1.0 ? (int)lrint(passes * FILM_CELLS) : FILM_CELLS;
 }
 
 /* The next pass; true also where it was given up for want of time. */
 static bool try_pass(render *r, GError **error)
 {
     GError *failed = NULL;
-    r->film.grid = r->statistics.grid = 0;
-    if (run_pass(r, &failed))
-        return true;
-    if (r->given_up && g_error_matches(failed, NEPH_ERROR, ERROR_CANCELLED)) {
+    set_part(r, 0);
+    bool done = run_pass(r, cells_wanted(r), &failed);
+    if (r->given_up && (done || g_error_matches(failed, NEPH_ERROR, ERROR_CANCELLED))) {
         g_clear_error(&failed);
         atomic_store(&r->cancel.set, false);
         r->statistics.stopped_by = RENDER_TIME_UP;
         return true;
     }
-    g_propagate_error(error, failed);
-    return false;
+    if (failed)
+        g_propagate_error(error, failed);
+    return done;
 }
 
 /* Renders until a rule says stop. */
@@ -513,10 +390,10 @@ static bool run_passes(render *r, GError **error)
     while (r->statistics.stopped_by == RENDER_GOES_ON) {
         if (!try_pass(r, error))
             return false;
-        now = state_of(r, 0.0);
+        now = state_of(r, r->statistics.part);
         if (r->statistics.stopped_by == RENDER_GOES_ON)
             r->statistics.stopped_by = stop_decide(&r->plan.how, &now);
-        tell(r, 0.0);
+        tell(r, r->statistics.part);
     }
     return true;
 }
@@ -538,14 +415,19 @@ bool render_run(render *r, render_progress progress, void *data, GError **error)
     r->progress_data = data;
     r->start = clock_seconds() - MAX(r->statistics.time_total, r->before);
     r->given_up = false;
-    if (r->plan.how.time > 0.0)
-        r->after = pace_write_seconds(&r->film, r->n_threads, r->paths);
+    time_writing(r);
     r->cancel.progress = on_progress;
     r->cancel.progress_data = r;
     r->statistics.stopped_by = RENDER_GOES_ON;
     bool ok = prepare(r, error) && run_passes(r, error);
     end_run(r);
     return ok;
+}
+
+/* That the picture is made of. */
+static double passes_shown(const render *r)
+{
+    return (double)r->passes_done + r->statistics.part;
 }
 
 static void describe(const render *r, image *img)
@@ -557,7 +439,8 @@ static void describe(const render *r, image *img)
         g_autofree char *value = settings_get(&r->plan.how, &rows[i]);
         image_header_set(img, key, value);
     }
-    g_autofree char *passes = g_strdup_printf("%u", r->passes_done);
+    char passes[G_ASCII_DTOSTR_BUF_SIZE];
+    g_ascii_dtostr(passes, sizeof passes, passes_shown(r));
     image_header_set(img, "nephroid:passes_done", passes);
 }
 
@@ -578,10 +461,10 @@ void render_set_time_around(render *r, double before, const char *const *paths)
 
 GStrv render_repeat(const render *r)
 {
-    if (r->passes_done == 0)
-        return NULL;
     settings same = r->plan.how;
-    same.passes = r->passes_done;
+    same.passes = passes_shown(r);
+    if (!(same.passes > 0.0))
+        return NULL;
     same.planned_passes = settings_planned_passes(&r->plan.how);
     g_autoptr(GStrvBuilder) builder = g_strv_builder_new();
     size_t n;

@@ -32,14 +32,15 @@ typedef struct render_statistics {
     double noise; /**< relative error of the picture (film_noise), INFINITY if unknown */
     int64_t photons_wanted; /**< a pass by the settings, if the plan has fewer; else 0 */
     bool can_look;          /**< render_image may be called now */
-    int grid; /**< of the first pass every so manieth pixel is done in both directions;
-                 0: none yet */
+    double part; /**< of the pixels of the pass under way are in the picture, if it ended
+                    early or is the first */
     render_stop stopped_by;
 } render_statistics;
 
 /** @brief Told on the thread that called, after every pass and now and then within one;
  * fraction 0..1. It may call render_image where statistics->can_look says so: once a pass
- * is done, and when the first has reached the next finer grid. @return false to stop. */
+ * is done, and when the first has the whole picture on a
+ * finer grid. @return false to stop. */
 typedef bool (*render_progress)(double fraction, const render_statistics *statistics,
                                 void *data);
 

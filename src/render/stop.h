@@ -14,10 +14,21 @@ typedef struct stop_state {
     double last_pass; /**< s that the last pass took */
     double noise;     /**< film_noise, INFINITY if unknown */
     double after;     /**< s of the time asked for that are kept for what comes later */
+    double last_photons; /**< s of it, before the camera looked */
 } stop_state;
 
 /** @brief Why to stop now, or RENDER_GOES_ON. One pass is always rendered. */
 render_stop stop_decide(const settings *how, const stop_state *now);
+/** @brief Where a pass is that is rendered cell by cell (film_cell). */
+typedef struct stop_part {
+    int done, wanted; /**< cells */
+    double cell;      /**< s that one will take, 0: unknown */
+    bool is_first;    /**< pass: the whole picture is to be seen soon */
+} stop_part;
+
+/** @brief How many cells come next. 0: all wanted are done, or the time is over; but
+ * there will be at least one of the first pass. */
+int stop_next_cells(const settings *how, const stop_state *now, const stop_part *part);
 /** @brief Whether the time is over, so that a pass under way is to be given up. */
 bool stop_at_once(const settings *how, const stop_state *now);
 /** @brief How much is done, 0..1, by the rule that will stop first. */

@@ -79,16 +79,16 @@ GStrv settings_unread(const settings *s, const settings *given)
     return g_strv_builder_end(builder);
 }
 
-int64_t settings_most_passes(const settings *s)
+double settings_most_passes(const settings *s)
 {
     bool other_rule = s->time > 0.0 || s->noise > 0.0;
-    return s->passes > 0 ? s->passes : other_rule ? MOST_PASSES : USUAL_PASSES;
+    return s->passes > 0.0 ? s->passes : other_rule ? MOST_PASSES : USUAL_PASSES;
 }
 
 double settings_planned_passes(const settings *s)
 {
     return s->planned_passes > 0.0 ? s->planned_passes
-           : s->passes > 0         ? (double)s->passes
+           : s->passes > 0.0       ? s->passes
                                    : USUAL_PASSES;
 }
 

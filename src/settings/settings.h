@@ -46,11 +46,12 @@ enum { MOST_TIME_SLICES = 64 };
 /** @brief Every knob. Arrays are indexed by photon class. A plain value: copy it. */
 typedef struct settings {
     int integrator;        /**< integrator_choice */
-    int64_t passes;        /**< 0: see settings_most_passes */
+    double passes;         /**< 0: see settings_most_passes */
     double time;           /**< s; 0: no limit */
     double noise;          /**< relative error to stop at; 0: none */
     double planned_passes; /**< 0: see settings_planned_passes */
     int64_t spp;           /**< camera samples a pixel in each pass */
+    int64_t first_spp;     /**< the same in the first pass; 0: spp */
     int64_t max_backward_bounces, max_forward_bounces; /**< -1: unlimited */
     bool final_gather;
     int64_t gather_rays;
@@ -115,8 +116,9 @@ char *settings_unread_note(const settings *s, const setting_row *row);
 /** @brief That of each row that was set in `given`; owned by the caller. */
 GStrv settings_unread(const settings *s, const settings *given);
 settings settings_default(void);
-/** @brief Passes after which a render ends at the latest. */
-int64_t settings_most_passes(const settings *s);
+/** @brief Passes after which a render ends at the latest; of the last one may be wanted
+ * only a part of the pixels. */
+double settings_most_passes(const settings *s);
 /** @brief Passes that decisions taken before the first one count on. It does not depend
  * on when `time` and `noise` end the render, so neither does what a pass renders. Less
  * than one where there is no time for a whole one. */

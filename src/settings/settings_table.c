@@ -34,9 +34,10 @@ static const setting_row table[] = {
      INTEGRATOR_AUTO, integrator_words, "", "all",
      "The algorithm that carries light from the lamps to the eye. sppm is photonmap with "
      "spp = 1, all nearest = 0, final_gather off and alpha = 2/3: set it first."},
-    {"passes", SETTING_COUNT, AT(passes), "", 0, MOST_PASSES, 0, NULL,
+    {"passes", SETTING_REAL, AT(passes), "", 0, MOST_PASSES, 0, NULL,
      "iterations numiterations", "all",
-     "Independent passes whose mean is the image; 1 is classic photon mapping. 0: as "
+     "Independent passes whose mean is the image; 1 is classic photon mapping. Of a last "
+     "fraction of a pass so many of the pixels are rendered, evenly spread. 0: as "
      "many as time and noise ask for, or 16 if neither is given."},
     {"time", SETTING_REAL, AT(time), "s", 0, 1e9, 0, NULL, "", "all",
      "The render ends then, with passes of fewer samples and photons where it is short; "
@@ -50,10 +51,17 @@ static const setting_row table[] = {
      "those are not known, or what there is time for."},
     {"spp", SETTING_COUNT, AT(spp), "samples/pixel", 1, 65536, 4, NULL,
      "pixelsamples samples_per_pixel", "all", "Camera rays a pixel in each pass."},
+    {"first_spp", SETTING_COUNT, AT(first_spp), "samples/pixel", 0, 65536, 0, NULL, "",
+     "all",
+     "Camera rays a pixel in the first pass, if fewer than spp, and photons in "
+     "proportion, "
+     "so that there is a picture soon; 0: spp, or where time is given 1."},
     {"max_backward_bounces", SETTING_COUNT, AT(max_backward_bounces), "", 0, 1e6, -1,
      unlimited, "maxBackwardBounces maxdepth", "all",
-     "Scattering events of a path from the eye, to the light it finds or to where photons "
-     "are gathered, which is one; interfaces are none. Unlimited (-1): chance alone ends paths. The alias "
+     "Scattering events of a path from the eye, to the light it finds or to where "
+     "photons "
+     "are gathered, which is one; interfaces are none. Unlimited (-1): chance alone ends "
+     "paths. The alias "
      "maxdepth d bounds photons too, by d - 1."},
     {"max_forward_bounces", SETTING_COUNT, AT(max_forward_bounces), "", 0, 1e6, -1,
      unlimited, "maxForwardBounces MAX_PHOTON_BOUNCES", "photonmap auto",

@@ -49,6 +49,42 @@ static void test_samples(void)
     g_assert_cmpuint(a.camera_rays, ==, 8 * 8 * 3 * 5);
 }
 
+/* The first pass has fewer samples and photons, in proportion, and no other has. */
+static void test_first_pass(void)
+{
+    g_autoptr(view) sky =
+        view_of(ROOM_CAMERA SIZE(8) "WorldBegin LightSource \"infinite\"\n");
+    g_autoptr(view) v = view_of(FURNACE);
+    render_statistics a = counted(sky, "integrator=path passes=3 spp=5 first_spp=2");
+    render_statistics same = counted(sky, "integrator=path passes=3 spp=5 first_spp=9");
+    render_statistics b = counted(v, "integrator=photonmap passes=3 spp=4 first_spp=1 "
+                                     "indirect_photons=1000 radius=.1");
+    g_assert_cmpuint(a.camera_rays, ==, 8 * 8 * (2 + 5 + 5));
+    g_assert_cmpuint(same.camera_rays, ==, 8 * 8 * 3 * 5);
+    g_assert_cmpuint(b.emitted[PHOTON_INDIRECT], ==, 250 + 1000 + 1000);
+}
+
+/* Of a part of a pass so many of the pixels are rendered, and the picture is whole. */
+static void test_part(void)
+{
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(8) "WorldBegin LightSource \"infinite\"\n");
+    static const double passes[] = {0.015625, 0.25, 0.5, 1.0, 2.75};
+    for (size_t i = 0; i < G_N_ELEMENTS(passes); i++) {
+        g_autofree char *words =
+            g_strdup_printf("integrator=path passes=%g spp=3", passes[i]);
+        g_autoptr(render) r = render_of(v, words);
+        g_assert_true(render_run(r, NULL, NULL, NULL));
+        render_statistics n = render_get_statistics(r);
+        g_autoptr(image) img = image_of(r);
+        double mean = mean_of(img, "");
+        g_test_message("%g passes: %g", passes[i], mean);
+        g_assert_cmpuint(n.camera_rays, ==, (uint64_t)(8 * 8 * 3 * passes[i]));
+        g_assert_cmpfloat(n.part, ==, passes[i] - floor(passes[i]));
+        g_assert_cmpfloat(fabs(mean - 1.0), <, 0.05);
+    }
+}
+
 /* Rays of a gather: so many more with the number. */
 static void test_gather_rays(void)
 {
@@ -237,11 +273,12 @@ static const struct {
     const char *proofs; /* a test here or elsewhere, each */
 } meanings[] = {
     {"integrator", "/knob-meanings/integrator"},
-    {"passes", "/knob-meanings/samples"},
+    {"passes", "/knob-meanings/samples /knob-meanings/part"},
     {"time", "/render/stop/time"},
     {"noise", "/render/stop/noise"},
     {"planned_passes", "/pace/plans"},
     {"spp", "/knob-meanings/samples"},
+    {"first_spp", "/knob-meanings/first-pass"},
     {"max_backward_bounces", "/knob-meanings/bounces"},
     {"max_forward_bounces", "/knob-meanings/bounces"},
     {"final_gather", "/transport/furnace/final-gather"},
@@ -283,6 +320,8 @@ static const struct {
 } own[] = {
     {"/knob-meanings/bounces", test_bounces},
     {"/knob-meanings/samples", test_samples},
+    {"/knob-meanings/part", test_part},
+    {"/knob-meanings/first-pass", test_first_pass},
     {"/knob-meanings/gather-rays", test_gather_rays},
     {"/knob-meanings/photons", test_photons},
     {"/knob-meanings/alpha", test_radius_shrinks},

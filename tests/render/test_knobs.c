@@ -56,6 +56,7 @@ static const struct {
     {"vcm_strategies", "bpt", ""},
     {"alpha", "0.9", ""},
     {"seed", "3", ""},
+    {"first_spp", "1", "spp=2 "},
 };
 
 /* What changes when or how fast the same picture is there; and two that act where it

@@ -80,6 +80,80 @@ static void test_too_late(void)
     g_assert_cmpint(stop_decide(&how, &now), ==, RENDER_TIME_UP);
 }
 
+/* ---- Ending in time, by a clock that is counted ---- */
+
+/* A render of which only the time is there. */
+typedef struct clocked {
+    settings how;
+    pace_costs costs; /* of what was asked for */
+    double photons;   /* of these so many are sent */
+    double n_pixels;
+    GRand *random;
+    stop_state now;
+} clocked;
+
+/* What a machine does takes now more, now less. */
+static void spend(clocked *c, double seconds)
+{
+    c->now.elapsed += seconds * g_rand_double_range(c->random, 0.85, 1.15);
+}
+
+/* @return whether it is whole */
+static bool clocked_pass(clocked *c)
+{
+    bool is_first = c->now.passes < 1.0;
+    double size = is_first && c->how.first_spp > 0
+                      ? (double)c->how.first_spp / (double)c->how.spp
+                      : 1.0;
+    double cell = size * c->costs.sample * c->n_pixels * (double)c->how.spp / FILM_CELLS;
+    double start = c->now.elapsed, last_cell = c->now.last_pass - c->now.last_photons;
+    stop_part part = {0, FILM_CELLS, last_cell / FILM_CELLS, is_first};
+    spend(c, c->costs.pass + size * c->photons * c->costs.photons);
+    double looked = c->now.elapsed, photons = looked - start;
+    for (int n; (n = stop_next_cells(&c->how, &c->now, &part)) > 0;) {
+        spend(c, n * cell);
+        bool too_late = stop_at_once(&c->how, &c->now);
+        if (too_late && (!is_first || part.done > 0)) { /* it is given up then */
+            c->now.elapsed = fmin(c->now.elapsed, 1.02 * c->how.time + 0.1);
+            return false;
+        }
+        part.done += n;
+        part.cell = (c->now.elapsed - looked) / part.done;
+    }
+    c->now.passes += part.done == FILM_CELLS;
+    c->now.last_pass = (c->now.elapsed - start) / size;
+    c->now.last_photons = photons / size;
+    return part.done == FILM_CELLS;
+}
+
+/* Whatever a pass takes, all ends within 5 % and half a second of the time. */
+static void test_ends_in_time(void)
+{
+    g_autoptr(GRand) random = g_rand_new_with_seed(6);
+    double worst = 0.0;
+    for (int i = 0; i < 10000; i++) {
+        settings asked = settings_default();
+        clocked c = {.random = random};
+        c.costs = (pace_costs){g_rand_double_range(random, 0.0, 0.02),
+                               pow(10.0, g_rand_double_range(random, -2.0, 0.5)),
+                               pow(10.0, g_rand_double_range(random, -7.0, -5.0))};
+        c.n_pixels = pow(10.0, g_rand_double_range(random, 3.0, 6.3));
+        asked.time = pow(10.0, g_rand_double_range(random, 0.3, 2.0));
+        asked.spp = g_rand_int_range(random, 1, 16);
+        c.how = pace_choose(&asked, &c.costs, c.n_pixels, asked.time);
+        c.photons = (double)settings_photons(&c.how) / (double)settings_photons(&asked);
+        while (clocked_pass(&c) && stop_decide(&c.how, &c.now) == RENDER_GOES_ON)
+            ;
+        double off = fabs(c.now.elapsed - asked.time);
+        worst = fmax(worst, off / (0.05 * asked.time + 0.5));
+        if (worst > 1.0)
+            g_test_message("%g s of %g, %g passes, %g s each", c.now.elapsed, asked.time,
+                           c.now.passes, c.now.last_pass);
+        g_assert_cmpfloat(worst, <=, 1.0);
+    }
+    g_test_message("at worst %g of what is allowed", worst);
+}
+
 /* ---- Rendering ---- */
 
 static view *subject(void)
@@ -157,16 +231,15 @@ static void test_too_large(void)
     g_autoptr(image) picture = image_of(r);
     g_assert_cmpint(st.passes, ==, 0);
     g_assert_cmpint(st.stopped_by, ==, RENDER_TIME_UP);
-    g_assert_cmpint(st.grid, ==, FILM_COARSE);
+    g_assert_cmpfloat(st.part, >=, 1.0 / FILM_CELLS);
+    g_assert_cmpfloat(st.part, <, 1.0);
     g_assert_cmpfloat(mean_of(picture, ""), >, 0.0);
-    g_auto(GStrv) repeat = render_repeat(r);
-    g_assert_null(repeat);
 }
 
-static bool stop_at_grid(double fraction, const render_statistics *st, void *data)
+static bool stop_at_part(double fraction, const render_statistics *st, void *data)
 {
     (void)fraction;
-    return st->grid != *(const int *)data;
+    return fabs(st->part - *(const double *)data) > 1e-9;
 }
 
 /* Of a grid that is not whole nothing is seen, so that the picture is the same however
@@ -175,14 +248,14 @@ static void test_grids(void)
 {
     g_autoptr(view) v = subject();
     view_resize(v, 61, 47);
-    for (int grid = FILM_COARSE; grid > 1; grid /= 2) {
+    for (double part = 1.0 / FILM_CELLS; part < 1.0; part *= 4.0) {
         g_autoptr(image) first = NULL;
         for (int threads = 1; threads <= 3; threads++) {
             g_autofree char *words =
                 g_strdup_printf("integrator=path spp=1 threads=%d", threads);
             g_autoptr(render) r = render_of(v, words);
-            g_assert_false(render_run(r, stop_at_grid, &grid, NULL));
-            g_assert_cmpint(render_get_statistics(r).grid, ==, grid);
+            g_assert_false(render_run(r, stop_at_part, &part, NULL));
+            g_assert_cmpfloat(render_get_statistics(r).part, ==, part);
             g_autoptr(image) picture = image_of(r);
             if (first)
                 assert_same_bits(first, picture);
@@ -202,13 +275,12 @@ static bool stop_in_grid(double fraction, const render_statistics *st, void *dat
 static void test_begun_grid(void)
 {
     g_autoptr(view) v = subject();
-    int grid = 0;
     g_autoptr(render) r = render_of(v, "integrator=path spp=400 passes=1 threads=1");
     g_assert_false(render_run(r, stop_in_grid, NULL, NULL));
-    grid = render_get_statistics(r).grid;
-    g_assert_cmpint(grid, >, 1);
+    double part = render_get_statistics(r).part;
+    g_assert_cmpfloat(part, >, 0.0);
     g_autoptr(render) whole = render_of(v, "integrator=path spp=400 passes=1 threads=2");
-    g_assert_false(render_run(whole, stop_at_grid, &grid, NULL));
+    g_assert_false(render_run(whole, stop_at_part, &part, NULL));
     g_autoptr(image) begun = image_of(r), done = image_of(whole);
     assert_same_bits(begun, done);
 }
@@ -237,6 +309,7 @@ int main(int argc, char **argv)
     g_test_add_func("/pace/plenty", test_plenty);
     g_test_add_func("/pace/short", test_short);
     g_test_add_func("/pace/too-late", test_too_late);
+    g_test_add_func("/pace/ends-in-time", test_ends_in_time);
     g_test_add_data_func("/pace/repeats/auto", "auto", test_repeats);
     g_test_add_data_func("/pace/repeats/path", "path", test_repeats);
     g_test_add_data_func("/pace/repeats/photonmap", "photonmap", test_repeats);

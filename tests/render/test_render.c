@@ -26,23 +26,26 @@ static void test_rules(void)
         stop_state now;
         render_stop expected;
     } cases[] = {
-        {&five, {4, 1e9, 1, 0, 0}, RENDER_GOES_ON},
-        {&five, {5, 0, 0, INFINITY, 0}, RENDER_PASSES_DONE},
-        {&none, {15, 0, 0, INFINITY, 0}, RENDER_GOES_ON},
-        {&none, {16, 0, 0, INFINITY, 0}, RENDER_PASSES_DONE},
+        {&five, {4, 1e9, 1, 0, 0, 0}, RENDER_GOES_ON},
+        {&five, {5, 0, 0, INFINITY, 0, 0}, RENDER_PASSES_DONE},
+        {&none, {15, 0, 0, INFINITY, 0, 0}, RENDER_GOES_ON},
+        {&none, {16, 0, 0, INFINITY, 0, 0}, RENDER_PASSES_DONE},
         {&second,
-         {0, 7, 0, INFINITY, 0},
+         {0, 7, 0, INFINITY, 0, 0},
          RENDER_GOES_ON}, /* one pass is always rendered */
-        {&second, {1, 7, 7, INFINITY, 0}, RENDER_TIME_UP},
-        {&second, {1000, 0.99, 0.001, INFINITY, 0}, RENDER_GOES_ON},
-        {&second, {1000, 1.0, 0.001, INFINITY, 0}, RENDER_TIME_UP},
-        {&second, {2, 0.6, 0.3, INFINITY, 0}, RENDER_GOES_ON},
-        {&second, {1, 0.6, 0.6, INFINITY, 0}, RENDER_TIME_UP}, /* would take 1.2 s */
-        {&still, {3, 1e9, 1, 0.01, 0}, RENDER_GOES_ON},        /* too few to know */
-        {&still, {4, 0, 1, 0.1, 0}, RENDER_NOISE_REACHED},
-        {&still, {1e6, 0, 1, 0.11, 0}, RENDER_GOES_ON},
-        {&all, {50, 0.5, 0.01, 0.2, 0}, RENDER_GOES_ON},
-        {&all, {50, 0.5, 0.01, 0.05, 0}, RENDER_NOISE_REACHED},
+        {&second, {1, 7, 7, INFINITY, 0, 0}, RENDER_TIME_UP},
+        {&second, {1000, 0.99, 0.001, INFINITY, 0, 0}, RENDER_GOES_ON},
+        {&second, {1000, 1.0, 0.001, INFINITY, 0, 0}, RENDER_TIME_UP},
+        {&second, {2, 0.6, 0.3, INFINITY, 0, 0}, RENDER_GOES_ON},
+        /* One that would take too long ends early, if it is worth it. */
+        {&second, {1, 0.6, 0.6, INFINITY, 0, 0.3}, RENDER_GOES_ON},
+        {&second, {1, 0.95, 0.6, INFINITY, 0, 0}, RENDER_TIME_UP},
+        {&second, {1, 0.6, 0.6, INFINITY, 0, 0.5}, RENDER_TIME_UP},
+        {&still, {3, 1e9, 1, 0.01, 0, 0}, RENDER_GOES_ON}, /* too few to know */
+        {&still, {4, 0, 1, 0.1, 0, 0}, RENDER_NOISE_REACHED},
+        {&still, {1e6, 0, 1, 0.11, 0, 0}, RENDER_GOES_ON},
+        {&all, {50, 0.5, 0.01, 0.2, 0, 0}, RENDER_GOES_ON},
+        {&all, {50, 0.5, 0.01, 0.05, 0, 0}, RENDER_NOISE_REACHED},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         g_test_message("case %zu", i);
@@ -50,11 +53,47 @@ static void test_rules(void)
     }
 }
 
+/* Cells of a pass: the first shows the whole picture soon; where time is short there are
+   few at once, and none any more when it is over. */
+static void test_cells(void)
+{
+    const settings four = with_rules(4, 0, 0), second = with_rules(0, 1.0, 0);
+    const stop_state early = {1, 0.1, 0.2, INFINITY, 0, 0},
+                     late = {1, 0.9, 0.2, INFINITY, 0, 0},
+                     over = {1, 1.1, 0.2, INFINITY, 0, 0};
+    const struct {
+        const settings *how;
+        const stop_state *now;
+        stop_part part;
+        int least, most;
+    } cases[] = {
+        {&four, &over, {0, 64, 0.1, false}, 64, 64},
+        {&four, &over, {0, 64, 0, true}, 1, 1},
+        {&four, &over, {4, 64, 0.1, true}, 12, 12},
+        {&four, &over, {16, 40, 0.1, true}, 24, 24},
+        {&four, &over, {40, 40, 0.1, true}, 0, 0},
+        {&second, &early, {0, 64, 0.001, false}, 64, 64},
+        {&second, &early, {0, 64, 0.1, false}, 1, 8},
+        {&second, &late, {0, 64, 0.02, false}, 1, 4},
+        {&second, &late, {60, 64, 0.02, false}, 1, 4},
+        {&second, &late, {9, 64, 0.2, false}, 0, 0},
+        {&second, &over, {9, 64, 0.001, false}, 0, 0},
+        {&second, &over, {0, 64, 0.1, true}, 1, 1},
+        {&second, &over, {1, 64, 0.1, true}, 0, 0},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        int n = stop_next_cells(cases[i].how, cases[i].now, &cases[i].part);
+        g_test_message("case %zu: %d", i, n);
+        g_assert_cmpint(n, >=, cases[i].least);
+        g_assert_cmpint(n, <=, cases[i].most);
+    }
+}
+
 static void test_fraction(void)
 {
     const settings four = with_rules(4, 0, 0), all = with_rules(100, 10, 0.1);
-    const stop_state middle = {2.5, 0, 0, INFINITY, 0}, by_time = {1, 8, 1, 1.0, 0},
-                     by_noise = {1, 1, 1, 0.2, 0}, late = {1, 99, 1, INFINITY, 0};
+    const stop_state middle = {2.5, 0, 0, INFINITY, 0, 0}, by_time = {1, 8, 1, 1.0, 0, 0},
+                     by_noise = {1, 1, 1, 0.2, 0, 0}, late = {1, 99, 1, INFINITY, 0, 0};
     g_assert_cmpfloat_with_epsilon(stop_fraction(&four, &middle), 0.625, 1e-12);
     g_assert_cmpfloat_with_epsilon(stop_fraction(&all, &by_time), 0.8, 1e-12);
     g_assert_cmpfloat_with_epsilon(stop_fraction(&all, &by_noise), 0.25, 1e-12);
@@ -579,6 +618,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/render/stop/rules", test_rules);
+    g_test_add_func("/render/stop/cells", test_cells);
     g_test_add_func("/render/stop/fraction", test_fraction);
     g_test_add_func("/render/parts-of-time", test_no_part_takes_longer_than_the_whole);
     g_test_add_func("/render/stop/time", test_time_is_kept);

@@ -179,7 +179,7 @@ static void test_words_of_counts(void)
            "setting 'maxdepth': expected a whole number from 0 to 1000000, found "
            "'unlimited'");
     refuse("passes", "unlimited",
-           "setting 'passes': expected a whole number from 0 to 1000000000, found "
+           "setting 'passes': expected a number from 0 to 1000000000, found "
            "'unlimited'");
 }
 
@@ -214,7 +214,7 @@ static void test_refusals(void)
            "expected a setting's name, found 'pases'; did you mean 'passes'?");
     refuse("xyzzy", "3", "expected a setting's name, found 'xyzzy'");
     refuse("passes", "-1",
-           "setting 'passes': expected a whole number from 0 to 1000000000, found '-1'");
+           "setting 'passes': expected a number from 0 to 1000000000, found '-1'");
     refuse("spp", "2.5",
            "setting 'spp': expected a whole number from 1 to 65536 samples/pixel, found "
            "'2.5'");

@@ -335,8 +335,7 @@ static void apply_path(pbrt_parser *parser, const path_integrator *kind,
                  kind->name);
     }
     note(parser, in->place,
-         "integrator '%s' becomes %s with %" G_GINT64_FORMAT
-         " passes of %" G_GINT64_FORMAT " samples a pixel and maxdepth %d%s",
+         "integrator '%s' becomes %s with %g passes of %" G_GINT64_FORMAT " samples a pixel and maxdepth %d%s",
          kind->name, kind->integrator, settings_most_passes(s), s->spp, depth,
          kind->hint);
 }
