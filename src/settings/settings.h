@@ -68,6 +68,7 @@ typedef struct settings {
     int photon_map; /**< map_choice */
     double flatten; /**< height of the neighbourhood over its radius, 0..1; 1: a ball */
     bool edges;     /**< estimates are corrected at edges, corners and thin walls */
+    bool gather_indirect; /**< auto may take indirect light from photons */
     bool bright_spots;    /**< auto looks aside at brightly lit places */
     int64_t time_slices;  /**< of the shutter, where something moves */
     int roulette;         /**< roulette_choice */

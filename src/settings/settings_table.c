@@ -151,6 +151,9 @@ static const setting_row table[] = {
     {"bright_spots", SETTING_BOOL, AT(bright_spots), "", 0, 1, 1, NULL, "", "auto",
      "Camera paths look aside at brightly lit places, such as what the sun throws "
      "through a window, as they do at lamps, where that pays."},
+    {"gather_indirect", SETTING_BOOL, AT(gather_indirect), "", 0, 1, 1, NULL, "", "auto",
+     "Photons carry indirect light too where trials say that a picture of the passes "
+     "planned has less error so: smooth, and blurred at first. Off: paths carry it."},
     {"time_slices", SETTING_COUNT, AT(time_slices), "", 1, MOST_TIME_SLICES, 8, NULL, "",
      "photonmap auto vcm",
      "In so many parts the time of the shutter is cut where something moves: what is "

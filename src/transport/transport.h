@@ -145,6 +145,7 @@ typedef struct transport_plan {
     photon_store lit;      /**< places that light sampling found lit (path_effort_measure)
                             */
     float p_spots;         /**< path_pass.p_spots */
+    bool gathers; /**< auto: photons carry indirect light too (plan/gather.h) */
     double sample_rays;    /**< that a sample costs, photons apart ... */
     double photon_rays;    /**< and its part of the photons of a pass */
     float p_blurred;       /**< probability of a gather that is seen by way of a diffuse

@@ -97,7 +97,8 @@ static double known_mean(const view *v, known_irradiance known)
    what paths do as indirect. */
 static double shared_light(const view *v, const char *words)
 {
-    g_autoptr(image) img = render_with(v, words);
+    g_autofree char *all = g_strconcat(words, " gather_indirect=off", NULL);
+    g_autoptr(image) img = render_with(v, all);
     return mean_of(img, "caustic") + mean_of(img, "indirect");
 }
 

@@ -304,6 +304,7 @@ static const struct {
     {"flatten", "/estimate/flatten"},
     {"edges", "/knob-pictures/edges"},
     {"bright_spots", "/spots/density /spots/layers"},
+    {"gather_indirect", "/gather/pays/room /gather/converges"},
     {"time_slices", "/knob-pictures/time-slices"},
     {"roulette", "/knob-meanings/roulette"},
     {"caustic_emission", "/knob-meanings/caustic-emission"},

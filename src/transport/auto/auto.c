@@ -3,6 +3,7 @@
 #include "transport/path/path.h"
 #include "transport/photonmap/photonmap.h"
 #include "transport/plan/caustics.h"
+#include "transport/plan/gather.h"
 #include "transport/plan/work.h"
 #include "transport/visible.h"
 
@@ -64,7 +65,7 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
 {
     path_pass *pass = transport_path.begin_pass(plan, index, cancel, counts, error);
     bool ok = true;
-    if (plan->n_photons[PHOTON_CAUSTIC] > 0) {
+    if (plan->gathers || plan->n_photons[PHOTON_CAUSTIC] > 0) {
         pass->caustics =
             transport_photonmap.begin_pass(plan, index, cancel, counts, error);
         ok = pass->caustics;
@@ -116,22 +117,31 @@ static transport_plan small_pass(const transport_plan *plan)
     return small;
 }
 
-/* Whether and how often paths look at bright spots. */
-static bool try_spots(transport_plan *plan, const cancel_flag *cancel, GError **error)
+/* Whether there may be bright spots to look at, and it can be known what they are worth.
+ */
+static bool may_look(const transport_plan *plan)
 {
     bool sends = plan->n_photons[PHOTON_CAUSTIC] > 0;
-    if (!plan->how.bright_spots || !spots_fit(plan) || !(sends || plan->lit.n > 0))
-        return true;
+    return plan->how.bright_spots && spots_fit(plan) && (sends || plan->lit.n > 0);
+}
+
+/* With a small pass as it would be: whether and how often paths look at bright spots, and
+   whether photons had better carry indirect light altogether. */
+static bool try_pass(transport_plan *plan, const cancel_flag *cancel, GError **error)
+{
     transport_plan small = small_pass(plan);
     transport_counts counts = {0};
-    small.p_spots = 1.0f;
+    small.p_spots = may_look(plan) ? 1.0f : 0.0f;
     path_pass *pass = begin_pass(&small, 0, cancel, &counts, error);
     if (!pass)
         return false;
     plan->planning += (double)counts.photon_rays;
-    spots_decide(plan, pass);
+    if (small.p_spots > 0.0f)
+        spots_decide(plan, pass);
+    pass->p_spots = plan->p_spots;
+    bool ok = gather_decide(plan, pass, cancel, error);
     end_pass(pass);
-    return true;
+    return ok;
 }
 
 /* Photons a pass that somebody wants, whatever the plan would send: work that was asked
@@ -153,8 +163,6 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
     plan->uses_mis = plan->n_photons[PHOTON_CAUSTIC] > 0;
     if (plan_is_tiny(plan))
         caustics_settle(plan);
-    if (!plan->uses_mis && !plan->how.bright_spots)
-        return true;
     if (plan->uses_mis)
         plan->mis = trial_mis(plan);
     if (!plan_is_tiny(plan) && !try_photons(plan, &paths, cancel, error))
@@ -162,7 +170,17 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
     if (plan->n_photons[PHOTON_CAUSTIC] > 0 &&
         !photonmap_choose_radii(plan, cancel, error))
         return false;
-    return try_spots(plan, cancel, error);
+    return plan_is_tiny(plan) || try_pass(plan, cancel, error);
+}
+
+static void auto_radiance(const void *data, const ray *r, sampler *random,
+                          transport_scratch *scratch, radiance_sample *out)
+{
+    const path_pass *pass = data;
+    if (pass->plan->gathers)
+        photonmap_radiance(pass->caustics, r, random, scratch, out);
+    else
+        path_radiance(pass, r, random, scratch, out);
 }
 
 static const wavelengths *pass_wavelengths(const void *pass)
@@ -174,7 +192,7 @@ const transport_kind transport_auto = {
     .name = "auto",
     .prepare = prepare,
     .begin_pass = begin_pass,
-    .radiance = path_radiance,
+    .radiance = auto_radiance,
     .pass_wavelengths = pass_wavelengths,
     .end_pass = end_pass,
     .photons = &photonmap_photons,

@@ -27,8 +27,7 @@ static bool class_needed(const transport_plan *plan, photon_class c)
     }
 }
 
-/* Classes with a budget of their own keep it; the rest share `photons` evenly. */
-static void share_photons(transport_plan *plan)
+void photonmap_share_photons(transport_plan *plan)
 {
     unsigned n_sharing = 0;
     int64_t shared = settings_photons(&plan->how);
@@ -47,7 +46,7 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
 {
     if (!transport_plan_find_casters(plan, error))
         return false;
-    share_photons(plan);
+    photonmap_share_photons(plan);
     double n_photons = 0.0;
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         n_photons += (double)plan->n_photons[c];

@@ -87,6 +87,10 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
 bool irradiance_cache_build(photonmap_pass *pass, int slice, const trace_result *points,
                             size_t n, GError **error);
 
+/** @brief Sets plan->n_photons: classes with a budget of their own keep it, the rest share
+ * `photons` evenly. The casters must have been found. */
+void photonmap_share_photons(transport_plan *plan);
+
 /** @brief Chooses plan->radius of each class that is needed. */
 bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,
                             GError **error);

@@ -2,11 +2,6 @@
 
 #include "transport/plan/work.h"
 
-enum {
-    MOST_PAIRS = 1024
-}; /* of a trial: its variance is then known within a tenth where
-      no sample stands out */
-
 /* A sample of plain path tracing through a place of the film: mean over wavelengths. */
 static double path_sample(const path_pass *pass, vec2 raster, sampler random,
                           transport_scratch *scratch)

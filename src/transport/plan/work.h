@@ -40,6 +40,10 @@ enum { LEAST_TRIALS = 16 };
  * measured by, some for each of a thousand places. */
 enum { MOST_PILOTS = 20000 };
 
+/** Pairs of samples of a trial: a variance is then known within a tenth where no sample
+ * stands out. */
+enum { MOST_PAIRS = 1024 };
+
 /** @brief Camera samples of all passes that are planned. */
 double plan_samples(const transport_plan *plan);
 

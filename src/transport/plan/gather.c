@@ -1,0 +1,338 @@
+#include "transport/plan/gather.h"
+
+#include "transport/photonmap/photonmap.h"
+#include "transport/plan/work.h"
+#include "transport/visible.h"
+
+#include <math.h>
+
+/* How much wider the second radius is: its square is twice the first one's. */
+#define WIDER M_SQRT2
+
+/* What two maps, each with two radii, and two paths say of a place of the film. */
+typedef struct gather_place {
+    double path[2];
+    double map[2];   /* each with a sampler of its own */
+    double other;    /* of the second map, with the sampler of the first one */
+    double wider[2]; /* map[] again, with the wider radius */
+} gather_place;
+
+/* The trial of gathering. */
+typedef struct gather_trial {
+    transport_plan plan; /* of photons, as it would be */
+    transport_plan few[2];
+    photonmap_pass *maps[2];
+    double fewer;       /* photons than the plan's, over them */
+    double photon_rays; /* of a whole pass */
+    double sample_rays;
+    uint32_t n;
+    gather_place *places;
+} gather_trial;
+
+/* Mean squared errors of a sample, relative to what is there; and of a whole picture. */
+typedef struct gather_errors {
+    double path, samples, photons, bias2;
+} gather_errors;
+
+/* ---- Trial passes ---- */
+
+/* In a medium the bias is not known: its discs have one radius for good. Bounds on
+   bounces bound different paths where photons meet the eye's. */
+static bool may_gather(const transport_plan *plan)
+{
+    const settings *how = &plan->how;
+    return how->gather_indirect && how->direct_illumination &&
+           !scene_has_media(plan->scene) && how->max_backward_bounces < 0 &&
+           how->max_forward_bounces < 0 && scene_is_lit(plan->scene) &&
+           plan_grant(plan, 1.0) >= LEAST_TRIALS * 8.0 * SAMPLE_RAYS;
+}
+
+/* Photons as of photon mapping, but all of them together take no longer than the camera.
+ */
+static void set_photons(const transport_plan *plan, transport_plan *to)
+{
+    double passes = settings_planned_passes(&plan->how);
+    double rays = plan->sample_rays * plan_samples(plan) / passes;
+    to->how.photons = MIN(settings_photons(&plan->how), (int64_t)(rays / PHOTON_RAYS));
+    photonmap_share_photons(to);
+}
+
+/* What auto does not read is as usual. */
+static void set_usual(settings *how)
+{
+    const settings usual = settings_default();
+    const int c = PHOTON_INDIRECT;
+    how->final_gather = usual.final_gather;
+    how->class_photons[c] = usual.class_photons[c];
+    how->class_nearest[c] = usual.class_nearest[c];
+    how->class_kernel[c] = usual.class_kernel[c];
+    how->class_cone_k[c] = usual.class_cone_k[c];
+}
+
+/* The plan that it would be; what it shares with the one that is stays that one's. */
+static bool plan_to_gather(transport_plan *plan, transport_plan *out,
+                           const cancel_flag *cancel, GError **error)
+{
+    plan_look(plan);
+    *out = *plan;
+    set_usual(&out->how);
+    out->uses_mis = false;
+    out->p_spots = 0.0f;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        out->radius_cache[c] = out->radius_cache_in_media[c] = NULL;
+        out->radius[c] = out->radius_in_media[c] = 0.0;
+    }
+    set_photons(plan, out);
+    bool ok = photonmap_choose_radii(out, cancel, error);
+    plan->planning = out->planning;
+    return ok;
+}
+
+static double n_photons(const transport_plan *plan)
+{
+    double n = 0.0;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        n += (double)plan->n_photons[c];
+    return n;
+}
+
+static void widen(photonmap_pass *pass, double by)
+{
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        pass->estimates[c].radius *= (float)by;
+}
+
+/* A pass of few photons, whose radii hold as many as those of the plan. */
+static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError **error)
+{
+    transport_plan *few = &t->few[i];
+    transport_counts counts = {0};
+    *few = t->plan;
+    few->how.seed =
+        (int64_t)(hash_mix((uint64_t)t->plan.how.seed, 0x676174686572u + (uint64_t)i) >>
+                  1);
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        if (few->n_photons[c] > 0)
+            few->n_photons[c] = (uint64_t)MAX((double)few->n_photons[c] / t->fewer, 1.0);
+    t->maps[i] = transport_photonmap.begin_pass(few, 0, cancel, &counts, error);
+    if (!t->maps[i])
+        return false;
+    widen(t->maps[i], sqrt(t->fewer));
+    t->photon_rays += 0.5 * (double)counts.photon_rays * t->fewer;
+    t->plan.planning += (double)counts.photon_rays;
+    return true;
+}
+
+/* ---- Trial samples ---- */
+
+typedef void radiance_function(const void *pass, const ray *r, sampler *random,
+                               transport_scratch *scratch, radiance_sample *out);
+
+/* What is compared: mean over wavelengths, without the caustics that either way are
+   photons'. */
+static double sample(radiance_function *radiance, const void *pass,
+                     const transport_plan *plan, vec2 raster, sampler random,
+                     transport_scratch *scratch)
+{
+    radiance_sample out = {.groups = NULL};
+    spectrum sum = {0};
+    vec2 u_lens = sampler_2d(&random);
+    ray r = camera_ray(&plan->view->camera, raster, u_lens, sampler_1d(&random));
+    radiance(pass, &r, &random, scratch, &out);
+    for (int i = 0; i < N_LAYERS; i++)
+        if (i != LAYER_CAUSTIC || plan->n_photons[PHOTON_CAUSTIC] == 0)
+            sum += out.layers[i];
+    double mean = (double)spectrum_mean(sum);
+    return isfinite(mean) ? mean : 0.0;
+}
+
+/* Asks both maps at all places. */
+static void ask_maps(gather_trial *t, const transport_plan *plan, uint64_t key,
+                     bool wider, transport_scratch *scratch)
+{
+    const film_settings *film = &plan->view->film;
+    for (uint32_t i = 0; i < t->n; i++) {
+        gather_place *at = &t->places[i];
+        sampler random = sampler_make(key, i);
+        vec2 u = sampler_2d(&random);
+        vec2 raster = {u.x * (float)film->width, u.y * (float)film->height};
+        for (unsigned k = 0; k < 2; k++)
+            (wider ? at->wider : at->map)[k] =
+                sample(photonmap_radiance, t->maps[k], plan, raster,
+                       sampler_split(&random, k), scratch);
+        if (!wider)
+            at->other = sample(photonmap_radiance, t->maps[1], plan, raster,
+                               sampler_split(&random, 0), scratch);
+    }
+}
+
+static void ask_paths(gather_trial *t, const transport_plan *plan, const path_pass *paths,
+                      uint64_t key, transport_scratch *scratch)
+{
+    const film_settings *film = &plan->view->film;
+    for (uint32_t i = 0; i < t->n; i++) {
+        sampler random = sampler_make(key, i);
+        vec2 u = sampler_2d(&random);
+        vec2 raster = {u.x * (float)film->width, u.y * (float)film->height};
+        for (unsigned k = 0; k < 2; k++)
+            t->places[i].path[k] = sample(path_radiance, paths, plan, raster,
+                                          sampler_split(&random, k), scratch);
+    }
+}
+
+/* Rays, and queries of the maps at each surface met, twice as many where edges are
+ * probed.
+ */
+static double rays_of(const transport_plan *plan, const transport_scratch *scratch)
+{
+    int n_maps = 0;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        n_maps += plan->n_photons[c] > 0;
+    double queries = 2.0 * n_maps * (double)scratch->camera_rays;
+    return (double)(scratch->camera_rays + scratch->shadow_rays) + GATHER_RAYS * queries;
+}
+
+static void run_places(gather_trial *t, transport_plan *plan, const path_pass *paths)
+{
+    transport_scratch by_maps = {0}, by_paths = {0};
+    uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x706c61636573u);
+    double each = 2.0 * plan->sample_rays + 5.0 * 4.0 * GATHER_RAYS;
+    t->n = plan_trials_for(plan, 1.0, each, MOST_PAIRS);
+    t->places = g_new0(gather_place, t->n);
+    ask_maps(t, plan, key, false, &by_maps);
+    t->sample_rays = rays_of(&t->plan, &by_maps) / (3.0 * t->n);
+    for (int i = 0; i < 2; i++)
+        widen(t->maps[i], WIDER);
+    ask_maps(t, plan, key, true, &by_maps);
+    ask_paths(t, plan, paths, key, &by_paths);
+    plan->planning += (double)(by_maps.camera_rays + by_maps.shadow_rays +
+                               by_paths.camera_rays + by_paths.shadow_rays);
+    transport_scratch_clear(&by_maps);
+    transport_scratch_clear(&by_paths);
+}
+
+/* ---- What they say ---- */
+
+/* A place counts by how bright it is, in the dark by how bright the picture is. */
+static double weight_of(const gather_place *at, double mean)
+{
+    double here = (at->map[0] + at->map[1]) / 2.0;
+    return 1.0 / (here * here + 0.1 * mean * mean);
+}
+
+static gather_errors errors_of(const gather_trial *t)
+{
+    gather_errors sum = {0};
+    double mean = 0.0;
+    for (uint32_t i = 0; i < t->n; i++)
+        mean += (t->places[i].map[0] + t->places[i].map[1]) / (2.0 * t->n);
+    for (uint32_t i = 0; i < t->n && mean > 0.0; i++) {
+        const gather_place *at = &t->places[i];
+        double w = weight_of(at, mean) / t->n;
+        double path = at->path[0] - at->path[1], both = at->map[0] - at->map[1];
+        double photons = at->map[0] - at->other;
+        sum.path += 0.5 * w * path * path;
+        sum.samples += 0.5 * w * both * both;
+        sum.photons += 0.5 * w * photons * photons;
+        sum.bias2 += w * (at->wider[0] - at->map[0]) * (at->wider[1] - at->map[1]);
+    }
+    sum.samples = fmax(sum.samples - sum.photons, 0.0);
+    sum.bias2 = fmax(sum.bias2, 0.0) / (t->fewer * t->fewer);
+    return sum;
+}
+
+/* Of so many passes whose radii shrink the variance is, and the bias, over that of the
+   first. */
+static double variance_of_passes(double alpha, double passes)
+{
+    return tgamma(alpha) * pow(passes, 1.0 - alpha) / (2.0 - alpha) / passes;
+}
+
+static double bias_of_passes(double alpha, double passes)
+{
+    return pow(passes, alpha - 1.0) / tgamma(1.0 + alpha);
+}
+
+/* Squared error of the picture times the passes there are: comparable to the variance of
+   a sample. */
+static double error_of(const transport_plan *plan, const gather_errors *e)
+{
+    double passes = settings_planned_passes(&plan->how);
+    double bias = bias_of_passes(plan->how.alpha, passes);
+    return e->samples +
+           passes * (e->photons * variance_of_passes(plan->how.alpha, passes) +
+                     e->bias2 * bias * bias);
+}
+
+static bool gathering_pays(transport_plan *plan, const gather_trial *t)
+{
+    double per_sample = settings_planned_passes(&plan->how) / plan_samples(plan);
+    const gather_errors e = errors_of(t);
+    plan_cost without = {e.path, plan->sample_rays + plan->photon_rays};
+    plan_cost with = {error_of(plan, &e), t->sample_rays + t->photon_rays * per_sample};
+    bool pays = with.variance * with.rays < without.variance * without.rays;
+    plan_note(plan, "gathered indirect light", without, with, pays);
+    return pays;
+}
+
+/* ---- Deciding ---- */
+
+static void free_radii(transport_plan *plan)
+{
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        g_clear_pointer(&plan->radius_cache[c], radius_cache_free);
+        g_clear_pointer(&plan->radius_cache_in_media[c], radius_cache_free);
+    }
+}
+
+static void take(transport_plan *plan, gather_trial *t)
+{
+    double per_sample = settings_planned_passes(&plan->how) / plan_samples(plan);
+    transport_plan *from = &t->plan;
+    free_radii(plan);
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        plan->n_photons[c] = from->n_photons[c];
+        plan->radius[c] = from->radius[c];
+        plan->radius_in_media[c] = from->radius_in_media[c];
+        plan->radius_cache[c] = g_steal_pointer(&from->radius_cache[c]);
+        plan->radius_cache_in_media[c] = g_steal_pointer(&from->radius_cache_in_media[c]);
+    }
+    set_usual(&plan->how);
+    plan->uses_mis = false;
+    plan->p_spots = 0.0f;
+    plan->gathers = true;
+    plan->sample_rays = t->sample_rays;
+    plan->photon_rays = t->photon_rays * per_sample;
+}
+
+static void gather_trial_clear(gather_trial *t)
+{
+    for (int i = 0; i < 2; i++)
+        if (t->maps[i])
+            transport_photonmap.end_pass(t->maps[i]);
+    free_radii(&t->plan);
+    g_free(t->places);
+}
+
+bool gather_decide(transport_plan *plan, const path_pass *paths,
+                   const cancel_flag *cancel, GError **error)
+{
+    if (!may_gather(plan))
+        return true;
+    gather_trial *t = g_aligned_alloc0(1, sizeof *t, 64);
+    bool ok = plan_to_gather(plan, &t->plan, cancel, error);
+    double n = n_photons(&t->plan);
+    double most = plan_trials_for(plan, 0.5, PHOTON_RAYS, UINT32_MAX);
+    t->fewer = fmax(n / most, 1.0);
+    for (int i = 0; i < 2 && ok; i++)
+        ok = send_few(t, i, cancel, error);
+    if (ok) {
+        plan->planning = t->plan.planning;
+        run_places(t, plan, paths);
+        if (gathering_pays(plan, t))
+            take(plan, t);
+    }
+    gather_trial_clear(t);
+    g_aligned_free(t);
+    return ok;
+}
