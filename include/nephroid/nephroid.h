@@ -399,6 +399,23 @@ NEPH_API void neph_render_set_time_around(NephRender *render, double before,
  * make a render give the very same picture: the passes done, and what was chosen to fit
  * into the time. NULL-terminated, freed with g_strfreev; NULL: no pass is done. */
 NEPH_API char **neph_render_repeat(const NephRender *render);
+/** @brief Writes what has been rendered, and all that another process needs to go on with
+ * it, to a file, under another name until it is whole and on the disk. Where
+ * neph_render_image may be called and a pass is done, else NEPH_ERROR_USAGE.
+ * NEPH_ERROR_INPUT or NEPH_ERROR_FAILED if the file can not be written; then the old one
+ * is still there. */
+NEPH_API bool neph_render_save_checkpoint(NephRender *render, const char *path,
+                                          GError **error);
+/** @brief Before the run: takes over the passes of a checkpoint. What comes then is what
+ * an unbroken render gives, bit for bit. Of its settings only `passes`, `time`, `noise` and
+ * `threads` may be others; `time` counts from the beginning of the first process.
+ * NEPH_ERROR_INPUT with the reason if the file is damaged, cut off, or of another program,
+ * scene, camera, size or settings; the render is then as new. */
+NEPH_API bool neph_render_resume(NephRender *render, const char *path, GError **error);
+/** @brief The settings that a checkpoint's render was asked for, and the size of its
+ * picture, which may be NULL. Owned by the caller; NULL with NEPH_ERROR_INPUT. */
+NEPH_API NephSettings *neph_checkpoint_settings(const char *path, int *width, int *height,
+                                                GError **error);
 /** @brief Asks neph_render_run to stop soon. Any thread; also from a signal handler. */
 NEPH_API void neph_render_cancel(NephRender *render);
 /** @brief The mean of the passes so far, with layers; owned by the caller.

@@ -26,7 +26,10 @@ NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options
                                 GError **error)
 {
     NephScene *s = g_new(NephScene, 1);
-    *s = (NephScene){.log = options->log, .log_data = options->log_data};
+    *s = (NephScene){.lenient = options->lenient,
+                     .thin_glass = options->thin_glass,
+                     .log = options->log,
+                     .log_data = options->log_data};
     const log_sink sink = {forward_log, s};
     asking a;
     s->sources = scene_sources_new(options->file, options->file_data);
@@ -95,6 +98,8 @@ NephScene *neph_scene_share(const NephScene *s)
                          .scene = s->scene,
                          .sources = s->sources,
                          .shares = true,
+                         .lenient = s->lenient,
+                         .thin_glass = s->thin_glass,
                          .log = s->log,
                          .log_data = s->log_data};
     return other;

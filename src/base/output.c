@@ -156,11 +156,25 @@ bool output_close(output *out, GError **error)
     return (written && closed) || refuse(out, error);
 }
 
+/* The file's new name, too, is on the disk then. Not every file system knows that. */
+static void sync_folder(const char *path)
+{
+    g_autofree char *folder = g_path_get_dirname(path);
+    int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0)
+        return;
+    if (fsync(fd) != 0)
+        errno = 0;
+    close(fd);
+}
+
 bool output_commit(output *out, GError **error)
 {
     bool done = output_close(out, error);
     if (done && out->temporary && rename(out->temporary, out->path) != 0)
         done = refuse(out, error);
+    if (done && out->temporary)
+        sync_folder(out->path);
     if (!done && out->temporary)
         unlink(out->temporary);
     output_free(out);

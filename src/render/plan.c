@@ -25,3 +25,19 @@ render_plan render_plan_of(const transport_plan *plan)
         out.trials[i] = plan->trials[i];
     return out;
 }
+
+char *render_plan_digest(const render_plan *plan)
+{
+    GString *out = g_string_new(NULL);
+    g_string_append_printf(out, "%d %d %d %d", (int)plan->integrator, plan->radius_is_set,
+                           plan->guided, plan->time_slices);
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        g_string_append_printf(out, " %" G_GUINT64_FORMAT " %a", plan->photons[c],
+                               plan->radius[c]);
+    g_string_append_printf(out, " %a %a %a %a", plan->discs, plan->p_spots,
+                           plan->p_blurred, plan->work);
+    for (int i = 0; i < plan->n_trials; i++)
+        g_string_append_printf(out, " %a %a %d", plan->trials[i].without.variance,
+                               plan->trials[i].with.variance, plan->trials[i].taken);
+    return g_string_free(out, FALSE);
+}

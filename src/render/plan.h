@@ -26,3 +26,5 @@ typedef struct render_plan {
 
 /** @brief Of a plan that is prepared. */
 render_plan render_plan_of(const transport_plan *plan);
+/** @brief Its numbers in a line, the same of equal plans only; owned by the caller. */
+char *render_plan_digest(const render_plan *plan);

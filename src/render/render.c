@@ -2,8 +2,8 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "render/look.h"
 #include "render/pace.h"
+#include "render/render_state.h"
 #include "render/stop.h"
 
 #include <string.h>
@@ -16,36 +16,6 @@
 
 /* Nothing is done before it is. */
 #define LARGEST_FRACTION 0.99
-
-struct render {
-    transport_plan plan;       /* by settings that may be paced */
-    transport_plan first_plan; /* of the first pass: borrows from plan */
-    settings asked;
-    const transport_kind *transport;
-    film film;
-    bool paced, prepared;
-    bool given_up; /* the pass under way, since the time is over */
-    double before; /* see render_set_time_around */
-    char **paths;
-    double after;    /* s that writing to these takes */
-    double timed_at; /* s: when it was asked last */
-    uint32_t passes_done;
-    render_statistics statistics;
-    cancel_flag cancel;
-    unsigned n_threads;
-
-    /* Of the call under way. */
-    render_progress progress;
-    void *progress_data;
-    double start;         /* clock when it would have begun without pauses */
-    double last_progress; /* clock */
-
-    /* Of the pass under way: how far it is. */
-    double pass_start;   /* clock */
-    double last_pass;    /* s that the last one took, or would have if it were as large */
-    double photon_share; /* of it, before the camera looked */
-    look *look;          /* NULL: the camera does not look yet */
-};
 
 render *render_new(const view *v, const settings *how, GError **error)
 {
@@ -70,6 +40,7 @@ void render_free(render *r)
     film_clear(&r->film);
     transport_plan_clear(&r->plan);
     g_strfreev(r->paths);
+    g_free(r->expected);
     g_aligned_free(r);
 }
 
@@ -341,13 +312,27 @@ static transport_plan first_plan_of(const transport_plan *plan)
     return first;
 }
 
+/* What goes on from a checkpoint must be planned as that was. */
+static bool plan_is_expected(const render *r, GError **error)
+{
+    const render_plan plan = render_plan_of(&r->plan);
+    g_autofree char *found = render_plan_digest(&plan);
+    if (!r->expected || strcmp(r->expected, found) == 0)
+        return true;
+    error_set(error, ERROR_FAILED,
+              "the plan of this render is not that of its checkpoint: another kind of "
+              "processor made it");
+    return false;
+}
+
 static bool prepare(render *r, GError **error)
 {
     double start = clock_seconds();
     if (r->prepared)
         return true;
-    r->prepared =
-        set_pace(r, error) && transport_plan_prepare(&r->plan, &r->cancel, error);
+    r->prepared = set_pace(r, error) &&
+                  transport_plan_prepare(&r->plan, &r->cancel, error) &&
+                  plan_is_expected(r, error);
     if (r->prepared && cancelled(&r->cancel)) { /* what was measured is worth nothing */
         error_set(error, ERROR_CANCELLED, "cancelled");
         r->prepared = false;
@@ -409,11 +394,17 @@ static void end_run(render *r)
         st->stopped_by = RENDER_CANCELLED;
 }
 
+/* What was done before, in this process or another, counts. */
+static void start_clock(render *r)
+{
+    r->start = clock_seconds() - MAX(r->statistics.time_total, r->earlier + r->before);
+}
+
 bool render_run(render *r, render_progress progress, void *data, GError **error)
 {
     r->progress = progress;
     r->progress_data = data;
-    r->start = clock_seconds() - MAX(r->statistics.time_total, r->before);
+    start_clock(r);
     r->given_up = false;
     time_writing(r);
     r->cancel.progress = on_progress;
@@ -484,7 +475,7 @@ bool render_get_plan(render *r, render_plan *out, GError **error)
     if (!r->prepared && r->cancel.progress) /* it is being made */
         return false;
     if (!r->prepared) {
-        r->start = clock_seconds() - MAX(r->statistics.time_total, r->before);
+        start_clock(r);
         if (!prepare(r, error))
             return false;
         r->statistics.time_total = clock_seconds() - r->start;

@@ -71,6 +71,22 @@ GStrv render_repeat(const render *r);
  * thread while it runs; from its progress function once planning is over, before that
  * false without an error. */
 bool render_get_plan(render *r, render_plan *out, GError **error);
+/** @brief What a checkpoint says of who wrote it; both must be the same to go on. */
+typedef struct render_identity {
+    char *program; /**< which program, of which version */
+    char *scene;   /**< fingerprint of what is rendered */
+} render_identity;
+/** @brief Writes the passes done to a file (checkpoint.h); where render_image may be
+ * called. ERROR_USAGE if no pass is done. */
+bool render_save_checkpoint(const render *r, const render_identity *who, const char *path,
+                            GError **error);
+/** @brief Before the first run: takes over the passes of a file, after which the next
+ * ones are as if there had been no break. Settings must be those of the file, but for
+ * `passes`, `time`, `noise` and `threads`; time goes on from where it was.
+ * ERROR_INPUT with the reason if the file is damaged or of something else; then the
+ * render is as new. */
+bool render_resume(render *r, const render_identity *who, const char *path,
+                   GError **error);
 render_statistics render_get_statistics(const render *r);
 /** @brief film_noise of the passes done. */
 double render_noise(const render *r);

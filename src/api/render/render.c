@@ -1,5 +1,6 @@
 #include "api/objects.h"
 
+#include "api/render/render.h"
 #include "api/statistics.h"
 
 _Static_assert(NEPH_MOST_PLAN_TRIALS == (int)MOST_PLAN_TRIALS, "lists are as long");
@@ -8,12 +9,6 @@ _Static_assert(NEPH_PASSES_DONE == (int)RENDER_PASSES_DONE, "reasons are one lis
 _Static_assert(NEPH_TIME_UP == (int)RENDER_TIME_UP, "reasons are one list");
 _Static_assert(NEPH_NOISE_REACHED == (int)RENDER_NOISE_REACHED, "reasons are one list");
 _Static_assert(NEPH_CANCELLED == (int)RENDER_CANCELLED, "reasons are one list");
-
-struct NephRender {
-    render *render;
-    NephProgressFunc progress; /* of the run under way */
-    void *progress_data;
-};
 
 NephStatistics statistics_export(const render_statistics *from)
 {
@@ -51,6 +46,7 @@ NephRender *neph_render_new(const NephScene *s, const NephSettings *how, GError 
         return NULL;
     NephRender *r = g_new0(NephRender, 1);
     r->render = made;
+    r->scene = s;
     return r;
 }
 
@@ -59,6 +55,7 @@ void neph_render_free(NephRender *r)
     if (!r)
         return;
     render_free(r->render);
+    g_free(r->fingerprint);
     g_free(r);
 }
 

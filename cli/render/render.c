@@ -3,6 +3,7 @@
  * checked before the render is checked before it, and what has been rendered is written.
  */
 #include "arguments.h"
+#include "checkpoints.h"
 #include "command.h"
 #include "exposure.h"
 #include "loading.h"
@@ -16,7 +17,7 @@
 
 static struct {
     char **outputs;
-    char *size, *exposure, *stats, *every;
+    char *size, *exposure, *stats, *every, *checkpoint, *checkpoint_every, *resume;
     gboolean quiet, explain;
     overrides settings;
 } given;
@@ -39,6 +40,12 @@ static const GOptionEntry entries[] = {
      "Stop when the estimated relative error is below this", "X"},
     {"every", 0, 0, G_OPTION_ARG_STRING, &given.every,
      "Write the image every N passes, or as 30s every so many seconds", "N|Ns"},
+    {"checkpoint", 0, 0, G_OPTION_ARG_FILENAME, &given.checkpoint,
+     "Write there what another process needs to go on with the render", "FILE"},
+    {"checkpoint-every", 0, 0, G_OPTION_ARG_STRING, &given.checkpoint_every,
+     "Write it every so many seconds, after a pass (60)", "SECONDS"},
+    {"resume", 0, 0, G_OPTION_ARG_FILENAME, &given.resume,
+     "Go on from such a file, with its settings and size", "FILE"},
     {"integrator", 0, 0, G_OPTION_ARG_STRING, &given.settings.integrator,
      "How light is followed; settings has them all", "NAME"},
     {"threads", 'j', 0, G_OPTION_ARG_STRING, &given.settings.threads,
@@ -69,7 +76,10 @@ static const usage how = {
         "and --seed.\n'nephroid settings' lists them all. With --time or --noise the "
         "scene's own number of\npasses is no limit; --passes N is.\n\n"
         "Ctrl-C (SIGTERM, SIGHUP) writes the passes that are done and exits with 3; "
-        "before the\nfirst is done it writes nothing. A second one ends at once.\n",
+        "before the\nfirst is done it writes nothing. A second one ends at once.\n\n"
+        "--resume takes the settings of the checkpoint in place of the scene's; only "
+        "passes, time,\nnoise and threads may be changed. Time counts from the first "
+        "start.\n",
     .entries = entries,
     .loads_scene = true};
 
@@ -81,6 +91,7 @@ typedef struct job {
     exposure_wish exposure;
     unsigned threads;
     snapshots snapshots;
+    checkpoints checkpoints;
 } job;
 
 static bool check_outputs(char **outputs, GError **error)
@@ -100,6 +111,8 @@ static bool job_init(job *j, const char *scene_file, GError **error)
                 (!given.exposure ||
                  argument_real("--exposure", given.exposure, &exposure, error)) &&
                 snapshots_init(&j->snapshots, given.every, error) &&
+                checkpoints_init(&j->checkpoints, given.checkpoint,
+                                 given.checkpoint_every, error) &&
                 overrides_check(&given.settings, &j->threads, error) &&
                 check_outputs(j->outputs, error) &&
                 (!given.stats || neph_file_can_write(given.stats, error));
@@ -130,13 +143,17 @@ static bool check_distinct(const job *j, const NephScene *scene, GError **error)
     const char *const *others = (const char *const *)inputs;
     for (char **path = j->outputs; *path; path++) {
         const char *const *rest = (const char *const *)path + 1;
-        const char *const text[] = {given.stats, NULL};
+        const char *const text[] = {given.stats ? given.stats : given.checkpoint,
+                                    given.checkpoint, NULL};
         if (!neph_file_spares(*path, others, error) ||
             !neph_file_spares(*path, rest, error) ||
             !neph_file_spares(*path, text, error))
             return false;
     }
-    return !given.stats || neph_file_spares(given.stats, others, error);
+    const char *const checkpoint[] = {given.checkpoint, NULL};
+    return (!given.stats || (neph_file_spares(given.stats, others, error) &&
+                             neph_file_spares(given.stats, checkpoint, error))) &&
+           (!given.checkpoint || neph_file_spares(given.checkpoint, others, error));
 }
 
 static bool choose_outputs(job *j, const NephScene *scene, GError **error)
@@ -152,14 +169,45 @@ static bool choose_outputs(job *j, const NephScene *scene, GError **error)
     return false;
 }
 
+/* The scene's, or those of the render that goes on, with the size of its picture. */
+static NephSettings *settings_before(job *j, const NephScene *scene, GError **error)
+{
+    int width, height;
+    if (!given.resume)
+        return neph_scene_settings(scene);
+    NephSettings *settings =
+        neph_checkpoint_settings(given.resume, &width, &height, error);
+    if (settings && !j->width) {
+        j->width = width;
+        j->height = height;
+    }
+    return settings;
+}
+
+static bool resume(job *j, NephRender *render, GError **error)
+{
+    NephStatistics s;
+    if (!given.resume)
+        return true;
+    if (!neph_render_resume(render, given.resume, error))
+        return false;
+    neph_render_statistics(render, &s);
+    if (!given.quiet)
+        tell("note", "going on after %" G_GINT64_FORMAT " passes", s.passes);
+    j->checkpoints.saved_passes = s.passes;
+    return true;
+}
+
 static NephRender *prepare(job *j, NephScene *scene, GError **error)
 {
-    g_autoptr(NephSettings) settings = neph_scene_settings(scene);
+    g_autoptr(NephSettings) settings = settings_before(j, scene, error);
     NephRender *render = NULL;
-    if (overrides_apply(&given.settings, settings, error) &&
+    if (settings && overrides_apply(&given.settings, settings, error) &&
         (!j->width || neph_scene_resize(scene, j->width, j->height, error)) &&
         choose_outputs(j, scene, error))
         render = neph_render_new(scene, settings, error);
+    if (render && !resume(j, render, error))
+        g_clear_pointer(&render, neph_render_free);
     if (render && !given.quiet)
         overrides_tell_unread(&given.settings, settings);
     return render;
@@ -256,7 +304,7 @@ static bool report_end(const NephRender *render, const GError *error, int *exit_
 /* What is told of a render under way. */
 typedef struct watch {
     job *job;
-    const NephRender *render;
+    NephRender *render;
     progress shown;
 } watch;
 
@@ -265,6 +313,7 @@ static bool look_on(double fraction, const NephStatistics *statistics, void *dat
     watch *w = data;
     if (snapshots_due(&w->job->snapshots, statistics->passes))
         write_images(w->job, w->render, true);
+    checkpoints_show(&w->job->checkpoints, w->render, statistics->passes);
     return progress_show(fraction, statistics, &w->shown);
 }
 
@@ -305,7 +354,8 @@ static int run(job *j, NephRender *render)
     if (!ended && !images)
         report_done(render, &w.shown);
     int statistics = write_statistics(render);
-    return ended ? ended : images ? images : statistics;
+    int checkpoint = checkpoints_end(&j->checkpoints, render);
+    return ended ? ended : images ? images : statistics ? statistics : checkpoint;
 }
 
 static int render_scene(job *j)

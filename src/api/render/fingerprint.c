@@ -1,0 +1,62 @@
+#include "api/render/fingerprint.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { PIECE = 1 << 16 };
+
+static void add_text(GChecksum *sum, const char *text)
+{
+    g_checksum_update(sum, (const guchar *)text, (gssize)strlen(text) + 1);
+}
+
+static void add_numbers(GChecksum *sum, const double *numbers, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        char text[G_ASCII_DTOSTR_BUF_SIZE];
+        add_text(sum, g_ascii_dtostr(text, sizeof text, numbers[i]));
+    }
+}
+
+/* Its contents, not its name: the scene may have been moved. What is missing is part of a
+   scene that does without. */
+static void add_file(GChecksum *sum, const char *path)
+{
+    g_autofree guchar *piece = g_malloc(PIECE);
+    FILE *from = fopen(path, "rb");
+    add_text(sum, from ? "file" : "missing");
+    if (!from)
+        return;
+    size_t n, size = 0;
+    for (; (n = fread(piece, 1, PIECE, from)) > 0; size += n)
+        g_checksum_update(sum, piece, (gssize)n);
+    fclose(from);
+    const double end = (double)size;
+    add_numbers(sum, &end, 1);
+}
+
+static void add_camera(GChecksum *sum, const NephScene *of)
+{
+    NephCamera c;
+    neph_scene_camera(of, &c);
+    const double rest[] = {c.mirrored ? 1.0 : 0.0, c.fov, c.lens_radius,
+                           c.focal_distance};
+    add_text(sum, c.kind);
+    add_numbers(sum, c.position, 3);
+    add_numbers(sum, c.direction, 3);
+    add_numbers(sum, c.up, 3);
+    add_numbers(sum, c.screen, 4);
+    add_numbers(sum, rest, G_N_ELEMENTS(rest));
+}
+
+char *scene_fingerprint(const NephScene *of)
+{
+    g_autoptr(GChecksum) sum = g_checksum_new(G_CHECKSUM_SHA256);
+    const char *const *files = neph_scene_files(of);
+    const double how[] = {of->lenient ? 1.0 : 0.0, of->thin_glass ? 1.0 : 0.0};
+    add_numbers(sum, how, G_N_ELEMENTS(how));
+    for (; *files; files++)
+        add_file(sum, *files);
+    add_camera(sum, of);
+    return g_strdup(g_checksum_get_string(sum));
+}

@@ -1,0 +1,102 @@
+#include "render/film_planes.h"
+
+#include <string.h>
+
+size_t film_planes(const film *f, film_plane out[FILM_MOST_PLANES])
+{
+    size_t n_pixels = (size_t)f->width * (size_t)f->height, n = 0;
+    out[n++] = (film_plane){"pixels", f->pixels, n_pixels, 0,
+                            sizeof *f->pixels / sizeof(double)};
+    if (f->groups)
+        out[n++] =
+            (film_plane){"groups", f->groups, n_pixels, 0, 3 * (size_t)f->n_groups};
+    if (f->surfaces)
+        out[n++] = (film_plane){"surfaces", f->surfaces, n_pixels, 0,
+                                sizeof *f->surfaces / sizeof(double)};
+    return n;
+}
+
+static size_t pixel_bytes(const film_plane *plane)
+{
+    return plane->n_floats * sizeof(float) + plane->n_doubles * sizeof(double);
+}
+
+size_t film_plane_bytes(const film_plane *plane)
+{
+    return plane->n * pixel_bytes(plane);
+}
+
+size_t film_count_sums(const film *f)
+{
+    film_plane planes[FILM_MOST_PLANES];
+    size_t n = film_planes(f, planes), count = 0;
+    for (size_t i = 0; i < n; i++)
+        count += planes[i].n * (planes[i].n_floats + planes[i].n_doubles);
+    return count;
+}
+
+/* ---- Numbers, counted through all planes ---- */
+
+/* One of them; NULL, what is not at its address. */
+typedef struct number {
+    float *f;
+    double *d;
+} number;
+
+static number number_at(const film_plane *plane, size_t i)
+{
+    size_t each = plane->n_floats + plane->n_doubles, k = i % each;
+    char *pixel = (char *)plane->data + i / each * pixel_bytes(plane);
+    double *doubles = (double *)(void *)(pixel + plane->n_floats * sizeof(float));
+    return k < plane->n_floats ? (number){.f = (float *)(void *)pixel + k}
+                               : (number){.d = doubles + (k - plane->n_floats)};
+}
+
+/* Calls for each number of [first, first + n). */
+static void visit(const film *f, size_t first, size_t n,
+                  void (*each)(number at, size_t i, void *data), void *data)
+{
+    film_plane planes[FILM_MOST_PLANES];
+    size_t n_planes = film_planes(f, planes), begin = 0;
+    for (size_t p = 0; p < n_planes; p++) {
+        size_t count = planes[p].n * (planes[p].n_floats + planes[p].n_doubles);
+        size_t from = MAX(first, begin), to = MIN(first + n, begin + count);
+        for (size_t i = from; i < to; i++)
+            each(number_at(&planes[p], i - begin), i - first, data);
+        begin += count;
+    }
+}
+
+static void get(number at, size_t i, void *data)
+{
+    ((double *)data)[i] = at.f ? (double)*at.f : *at.d;
+}
+
+static void add(number at, size_t i, void *data)
+{
+    double more = ((const double *)data)[i];
+    if (at.f)
+        *at.f += (float)more;
+    else
+        *at.d += more;
+}
+
+void film_get_sums(const film *f, size_t first, size_t n, double *out)
+{
+    visit(f, first, n, get, out);
+}
+
+void film_add_sums(film *f, size_t first, size_t n, const double *more)
+{
+    visit(f, first, n, add, (void *)more);
+}
+
+void film_reset(film *f)
+{
+    film_plane planes[FILM_MOST_PLANES];
+    size_t n = film_planes(f, planes);
+    for (size_t i = 0; i < n; i++)
+        memset(planes[i].data, 0, film_plane_bytes(&planes[i]));
+    f->n_passes = 0;
+    f->n_cells = 0;
+}

@@ -1,0 +1,29 @@
+/*
+ * The film as plain numbers: all that is kept of the passes done, plane by plane, to be
+ * written to a file or sent to another process. A plane of the film that is not listed
+ * here is lost in a checkpoint.
+ */
+#pragma once
+
+#include "render/film.h"
+
+/** @brief Sums over passes, pixel by pixel: first floats, then doubles. */
+typedef struct film_plane {
+    const char *name; /**< static; one word */
+    void *data;       /**< n pixels of so many numbers */
+    size_t n, n_floats, n_doubles;
+} film_plane;
+
+enum { FILM_MOST_PLANES = 4 };
+
+/** @brief What the film has, borrowed. @return how many */
+size_t film_planes(const film *f, film_plane out[FILM_MOST_PLANES]);
+size_t film_plane_bytes(const film_plane *plane);
+/** @brief How many numbers are in all of them. */
+size_t film_count_sums(const film *f);
+/** @brief Copies numbers [first, first + n), counted through all planes. */
+void film_get_sums(const film *f, size_t first, size_t n, double *out);
+/** @brief Adds to them. */
+void film_add_sums(film *f, size_t first, size_t n, const double *more);
+/** @brief Forgets the passes. */
+void film_reset(film *f);
