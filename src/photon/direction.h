@@ -1,8 +1,8 @@
 /*
- * The point on the octahedron that a packed direction means, one or eight at a time.
+ * The point on the octahedron that a packed direction means, one or some at a time.
  *
  * Its coordinates are small integers, exact as floats: not yet of unit length, but enough
- * to tell on which side of a plane the direction points, and eight cost little more than
+ * to tell on which side of a plane the direction points, and some cost little more than
  * one.
  */
 #pragma once
@@ -36,28 +36,28 @@ static inline unsigned direction_flags(uint32_t packed)
     return packed >> 30;
 }
 
-/** @brief Eight points on the octahedron. */
-typedef struct directions8 {
-    floats8 x, y, z;
-} directions8;
+/** @brief A lane each: points on the octahedron. */
+typedef struct lane_directions {
+    lane_floats x, y, z;
+} lane_directions;
 
-static inline directions8 directions8_load(const uint32_t *packed)
+static inline lane_directions lane_directions_of(lane_ints w)
 {
     const float steps = (float)OCTAHEDRON_STEPS;
-    ints8 w = load8_int(packed), sign = fill8_int(INT32_MIN);
-    floats8 u = __builtin_convertvector((w & 0x7fff) - OCTAHEDRON_STEPS, floats8);
-    floats8 v = __builtin_convertvector((w >> 15 & 0x7fff) - OCTAHEDRON_STEPS, floats8);
-    floats8 norm = abs8(u) + abs8(v);
-    ints8 fold = (ints8)max8(norm - steps, fill8(0.0f));
-    return (directions8){
-        .x = u - (floats8)(fold | ((ints8)u & sign)),
-        .y = v - (floats8)(fold | ((ints8)v & sign)),
+    lane_floats u = __builtin_convertvector((w & 0x7fff) - OCTAHEDRON_STEPS, lane_floats);
+    lane_floats v =
+        __builtin_convertvector((w >> 15 & 0x7fff) - OCTAHEDRON_STEPS, lane_floats);
+    lane_floats norm = abs_lanes(u) + abs_lanes(v);
+    lane_ints fold = (lane_ints)max_lanes(norm - steps, fill_lanes(0.0f));
+    return (lane_directions){
+        .x = u - (lane_floats)(fold | ((lane_ints)u & INT32_MIN)),
+        .y = v - (lane_floats)(fold | ((lane_ints)v & INT32_MIN)),
         .z = steps - norm,
     };
 }
 
-static inline floats8 directions8_dot(directions8 d, vec3 n)
+static inline lane_floats lane_directions_dot(lane_directions d, vec3 n)
 {
-    floats8 nx = fill8(n[0]), ny = fill8(n[1]), nz = fill8(n[2]);
-    return fused8(d.z, nz, fused8(d.y, ny, d.x * nx));
+    lane_floats nx = fill_lanes(n[0]), ny = fill_lanes(n[1]), nz = fill_lanes(n[2]);
+    return fused_lanes(d.z, nz, fused_lanes(d.y, ny, d.x * nx));
 }

@@ -24,7 +24,7 @@
    for no further than this many times as far as lie so many of all. */
 #define CURVE_REACH 3.0f
 
-enum { BLOCK = 64 }; /* size: of photons that are weighed at a time */
+enum { BLOCK = 256 }; /* size: of photons that are weighed at a time */
 
 typedef struct gather gather;
 
@@ -36,9 +36,9 @@ struct gather {
     float r2, inv_r2;
     /* Of photons begin .. end - 1 of the block. */
     spectrum (*weigh)(const gather *g, size_t begin, size_t end);
-    size_t n_block; /* photons in the block below, found but not yet weighed */
-    size_t index[BLOCK + LANES];
-    float weight[BLOCK + LANES]; /* κ */
+    size_t n_block; /* photons in the block below */
+    uint32_t index[BLOCK + 2 * LANES];
+    float weight[BLOCK + 2 * LANES]; /* κ; before that d² */
     spectrum sum;
     spectrum *groups; /* the sum, apart by tags */
     size_t n_groups;
@@ -48,19 +48,23 @@ struct gather {
 
 /* ---- Weighing a block ---- */
 
-/* Σ κ Φ */
+/* Σ κ Φ, in four sums: one alone would wait for itself. */
 static spectrum weigh_plain(const gather *g, size_t begin, size_t end)
 {
     const spectrum *flux = g->query.store->flux;
-    spectrum even = {0}, odd = {0};
+    const uint32_t *index = g->index;
+    const float *weight = g->weight;
+    spectrum a = {0}, b = {0}, c = {0}, d = {0};
     size_t i = begin;
-    for (; i + 2 <= end; i += 2) {
-        even += g->weight[i] * flux[g->index[i]];
-        odd += g->weight[i + 1] * flux[g->index[i + 1]];
+    for (; i + 4 <= end; i += 4) {
+        a += weight[i] * flux[index[i]];
+        b += weight[i + 1] * flux[index[i + 1]];
+        c += weight[i + 2] * flux[index[i + 2]];
+        d += weight[i + 3] * flux[index[i + 3]];
     }
-    if (i < end)
-        even += g->weight[i] * flux[g->index[i]];
-    return even + odd;
+    for (; i < end; i++)
+        a += weight[i] * flux[index[i]];
+    return (a + b) + (c + d);
 }
 
 /* |wi·n| / |wi·n_geom|; of a curve, over what it showed to the light. wi need not be
@@ -144,35 +148,90 @@ static void flush(gather *g)
 
 /* ---- Finding ---- */
 
-/* Fetches the flux of photons i .. i + 7, soon to be weighed. */
-static void prefetch_flux(const photon_store *s, size_t i)
+/* Of photons in the block that are within the radius, weight[] holding d², keeps those
+ * that are accepted, and gives them their weights. */
+static inline __attribute__((always_inline)) void weigh_block(gather *g,
+                                                              const point_query *query)
 {
-    for (size_t j = 0; j < LANES; j += 2)
-        __builtin_prefetch(s->flux + i + j);
+    const kernel kappa = g->options->kernel;
+    const float inv_r2 = g->inv_r2;
+    const bool selects = query_selects(query);
+    size_t n = g->n_block, kept = 0;
+    for (size_t i = 0; i < n; i++)
+        __builtin_prefetch(query->store->flux + g->index[i]);
+    memset(g->index + n, 0, LANES * sizeof *g->index);
+    for (size_t i = 0; i < n; i += LANES) {
+        unsigned bits = bits_first(n - i);
+        lane_floats weight = kernel_eval_lanes(&kappa, load_lanes(g->weight + i), inv_r2);
+        if (selects)
+            bits = query_accepted(query, g->index + i, bits);
+        kept += pack_lane_pairs(weight, g->index + i, bits, g->weight + kept,
+                                g->index + kept);
+    }
+    g->n_block = kept;
+    flush(g);
 }
 
-/* Runs of photons, within the fixed radius. What does not change is copied: the compiler
- * can not know that writing to the block leaves it as it is. */
+/* Runs of photons, within the fixed radius, by the query, a copy: what does not change
+ * must not seem to when the block is written to. What the caller knows of it falls out of
+ * the loop. */
+static inline __attribute__((always_inline)) void
+gather_by(gather *g, point_query query, const photon_run *runs, size_t n)
+{
+    const float r2 = g->r2;
+    size_t n_block = 0;
+    for (const photon_run *run = runs; run < runs + n; run++) {
+        for (size_t i = run->begin; i < run->end; i += LANES) {
+            lane_floats d2;
+            unsigned bits = query_nearer(&query, i, run->end, r2, &d2);
+            if (HAS_WIDE_LANES || bits)
+                n_block += pack_lanes(d2, bits, (uint32_t)i, g->weight + n_block,
+                                      g->index + n_block);
+            if (n_block >= BLOCK) {
+                g->n_block = n_block;
+                weigh_block(g, &query);
+                n_block = 0;
+            }
+        }
+    }
+    g->n_block = n_block;
+    weigh_block(g, &query);
+}
+
 static void gather_runs(const photon_run *runs, size_t n, void *data)
 {
     gather *g = data;
-    const point_query query = g->query;
-    const kernel kappa = g->options->kernel;
-    const float r2 = g->r2, inv_r2 = g->inv_r2;
-    for (const photon_run *run = runs; run < runs + n; run++) {
-        for (size_t i = run->begin; i < run->end; i += LANES) {
-            floats8 distance2;
-            unsigned bits = query_block(&query, i, run->end, r2, &distance2);
-            if (!bits)
-                continue;
-            prefetch_flux(query.store, i);
-            floats8 weight = kernel_eval8(&kappa, distance2, inv_r2);
-            g->n_block +=
-                pack8(weight, bits, i, g->weight + g->n_block, g->index + g->n_block);
-            if (g->n_block >= BLOCK)
-                flush(g);
-        }
-    }
+    gather_by(g, g->query, runs, n);
+}
+
+/* The common kinds: on surfaces that do not transmit, ... */
+static void gather_runs_one_sided(const photon_run *runs, size_t n, void *data)
+{
+    gather *g = data;
+    point_query query = g->query;
+    query.one_sided = true;
+    query.flat = false;
+    query.face = 0;
+    query.normal = query.curve = NULL;
+    gather_by(g, query, runs, n);
+}
+
+/* ... and where photons keep normals. */
+static void gather_runs_alike(const photon_run *runs, size_t n, void *data)
+{
+    gather *g = data;
+    point_query query = g->query;
+    query.one_sided = true;
+    query.face = 0;
+    query.curve = NULL;
+    gather_by(g, query, runs, n);
+}
+
+static photon_run_visitor visitor_for(const point_query *query)
+{
+    if (!query->one_sided || query->face || query->curve)
+        return gather_runs;
+    return query->normal || query->flat ? gather_runs_alike : gather_runs_one_sided;
 }
 
 /* Photons listed in hits. */
@@ -182,9 +241,9 @@ static void gather_hits(gather *g, const photon_hits *hits)
         g->n_block = MIN(BLOCK, hits->n - begin);
         memcpy(g->index, hits->index + begin, g->n_block * sizeof *g->index);
         for (size_t i = 0; i < g->n_block; i += LANES) {
-            floats8 distance2 = load8(hits->distance2 + begin + i);
-            store8(g->weight + i,
-                   kernel_eval8(&g->options->kernel, distance2, g->inv_r2));
+            lane_floats distance2 = load_lanes(hits->distance2 + begin + i);
+            store_lanes(g->weight + i,
+                        kernel_eval_lanes(&g->options->kernel, distance2, g->inv_r2));
         }
         flush(g);
     }
@@ -204,7 +263,7 @@ static bool gather_within(gather *g, const photon_map *map, estimate_scratch *sc
     if (map->store.n == 0)
         return true;
     if (map->kind->runs)
-        map->kind->runs(map, g->query.p, radius, gather_runs, g);
+        map->kind->runs(map, g->query.p, radius, visitor_for(&g->query), g);
     else if (!map->kind->within(map, &g->query, radius, &scratch->hits))
         return false;
     gather_hits(g, &scratch->hits);

@@ -35,32 +35,33 @@ float kernel_eval(const kernel *k, float d2, float r2);
 float kernel_area(const kernel *k, float r2);
 
 /** @brief e^-x for 0 <= x < 1, to 1e-7: Taylor's series around the middle. */
-static inline floats8 exp_negative8(floats8 x)
+static inline lane_floats exp_negative_lanes(lane_floats x)
 {
     /* math: the series */
     static const float inverse_factorial[] = {
         1.0f, 1.0f, 1.0f / 2, 1.0f / 6, 1.0f / 24, 1.0f / 120, 1.0f / 720, 1.0f / 5040};
-    floats8 y = 0.5f - x, sum = fill8(inverse_factorial[7]);
+    lane_floats y = 0.5f - x, sum = fill_lanes(inverse_factorial[7]);
     for (int i = 6; i >= 0; i--)
-        sum = fused8(sum, y, fill8(inverse_factorial[i]));
+        sum = fused_lanes(sum, y, fill_lanes(inverse_factorial[i]));
     return 0.60653066f * sum;
 }
 
-/** @brief kernel_eval of eight photons, to rounding. Lanes with d2 > r2 mean nothing. */
-static inline floats8 kernel_eval8(const kernel *k, floats8 d2, float inv_r2)
+/** @brief kernel_eval of a lane each, to rounding. Lanes with d2 > r2 mean nothing. */
+static inline lane_floats kernel_eval_lanes(const kernel *k, lane_floats d2,
+                                            float inv_r2)
 {
-    floats8 t = d2 * inv_r2;
+    lane_floats t = d2 * inv_r2;
     switch (k->choice) {
     case KERNEL_CONE:
-        return 1.0f - sqrt8(t) * (1.0f / k->cone_k);
+        return 1.0f - sqrt_lanes(t) * (1.0f / k->cone_k);
     case KERNEL_GAUSSIAN:
         return GAUSSIAN_ALPHA *
-               (1.0f - (1.0f - exp_negative8(t * (0.5f * GAUSSIAN_BETA))) *
+               (1.0f - (1.0f - exp_negative_lanes(t * (0.5f * GAUSSIAN_BETA))) *
                            (1.0f / GAUSSIAN_RANGE));
     case KERNEL_EPANECHNIKOV:
         return 1.0f - t;
     case KERNEL_CONSTANT:
     default:
-        return fill8(1.0f);
+        return fill_lanes(1.0f);
     }
 }

@@ -12,7 +12,7 @@
  *
  * 48 bytes a photon, and four more each for normals, tags and homes where they are asked
  * for.
- * Indices are size_t throughout: 2³² photons are a matter of patience.
+ * Stores count in size_t; a map names its photons in 32 bits.
  */
 #pragma once
 

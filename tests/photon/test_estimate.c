@@ -37,17 +37,17 @@ static void test_kernel_integrates_to_one(void)
     }
 }
 
-static void test_kernel_wavelengths(void)
+static void test_kernel_lanes(void)
 {
     for (size_t i = 0; i < N_TRIED_KERNELS; i++) {
         for (int step = 0; step < 1000; step += LANES) {
-            floats8 d2;
-            for (int wavelength = 0; wavelength < LANES; wavelength++)
-                d2[wavelength] = 4.0f * (float)(step + wavelength) / 1000.0f;
-            floats8 eight = kernel_eval8(&kernels[i], d2, 1.0f / 4.0f);
-            for (int wavelength = 0; wavelength < LANES; wavelength++) {
-                float one = kernel_eval(&kernels[i], d2[wavelength], 4.0f);
-                g_assert_cmpfloat(fabsf(eight[wavelength] - one), <, 1e-6f);
+            lane_floats d2;
+            for (int lane = 0; lane < LANES; lane++)
+                d2[lane] = 4.0f * (float)(step + lane) / 1000.0f;
+            lane_floats eight = kernel_eval_lanes(&kernels[i], d2, 1.0f / 4.0f);
+            for (int lane = 0; lane < LANES; lane++) {
+                float one = kernel_eval(&kernels[i], d2[lane], 4.0f);
+                g_assert_cmpfloat(fabsf(eight[lane] - one), <, 1e-6f);
             }
         }
     }
@@ -561,7 +561,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/estimate/kernel/integrates-to-one", test_kernel_integrates_to_one);
-    g_test_add_func("/estimate/kernel/lanes", test_kernel_wavelengths);
+    g_test_add_func("/estimate/kernel/lanes", test_kernel_lanes);
     g_test_add_func("/estimate/even-field-unbiased", test_even_field_unbiased);
     g_test_add_func("/estimate/nearest-unbiased", test_nearest_unbiased);
     g_test_add_func("/estimate/formula", test_formula);

@@ -60,7 +60,7 @@ static void test_direction_special(void)
                          flags);
 }
 
-/* The eight-lane decoder and dot product give the scalar ones' bits. */
+/* The decoder by lanes and dot product give the scalar ones' bits. */
 static void test_direction_lanes(void)
 {
     for (uint32_t i = 0; i < 20000; i++) {
@@ -69,8 +69,8 @@ static void test_direction_lanes(void)
         uint32_t packed[LANES];
         for (uint32_t lane = 0; lane < LANES; lane++)
             packed[lane] = direction_pack(random_direction(&s), lane % 4);
-        directions8 d = directions8_load(packed);
-        floats8 dot = directions8_dot(d, n);
+        lane_directions d = lane_directions_of(load_lane_ints(packed));
+        lane_floats dot = lane_directions_dot(d, n);
         for (int lane = 0; lane < LANES; lane++) {
             vec3 one = direction_octahedron(packed[lane]);
             float expected = direction_dot(packed[lane], n), found = dot[lane];

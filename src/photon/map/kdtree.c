@@ -210,10 +210,7 @@ size_t *kdtree_sort(const point_arrays *points, unsigned threads, GError **error
 {
     kd_builder b = {.n = points->n, .points = points, .n_levels = levels_over(points->n)};
     if (b.n > UINT32_MAX) {
-        error_set(error, ERROR_FAILED,
-                  "the kdtree holds at most 2^32 photons, not %zu: "
-                  "use the grid",
-                  b.n);
+        error_set(error, ERROR_FAILED, "a tree holds at most 2^32 points, not %zu", b.n);
         return NULL;
     }
     b.items = big_alloc(b.n, sizeof *b.items, "sorting photons", error);

@@ -1,10 +1,12 @@
 /*
- * Eight floats at a time, written with the compilers' vector extensions.
+ * Some floats at a time, written with the compilers' vector extensions: eight, or sixteen
+ * where the processor has AVX-512. What is computed in a lane does not depend on how many
+ * there are.
  *
  * What decides whether a photon is found (distances, sides) is computed with fused() and
- * fused8(), spelled out operation by operation: left to itself a compiler may contract a
- * sum of products one way in the scalar twin and another in the vector, and the maps
- * would no longer agree to the bit.
+ * fused_lanes(), spelled out operation by operation: left to itself a compiler may
+ * contract a sum of products one way in the scalar twin and another in the vector, and
+ * the maps would no longer agree to the bit.
  */
 #pragma once
 
@@ -16,42 +18,23 @@
 #include <immintrin.h>
 #endif
 
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+/* size: 1: of sixteen */
+#define HAS_WIDE_LANES 1
+enum { LANES = 16 }; /* size: of a vector */
+#else
+/* size: of eight */
+#define HAS_WIDE_LANES 0
 enum { LANES = 8 }; /* size: of a vector */
+#endif
+
+typedef float lane_floats __attribute__((vector_size(4 * LANES)));
+typedef int32_t lane_ints __attribute__((vector_size(4 * LANES)));
 
 typedef float floats8 __attribute__((vector_size(32)));
 typedef int32_t ints8 __attribute__((vector_size(32)));
 typedef float floats4 __attribute__((vector_size(16)));
 typedef int32_t ints4 __attribute__((vector_size(16)));
-typedef size_t sizes4 __attribute__((vector_size(32)));
-
-static inline floats8 fill8(float x)
-{
-    return (floats8){x, x, x, x, x, x, x, x};
-}
-
-static inline ints8 fill8_int(int32_t x)
-{
-    return (ints8){x, x, x, x, x, x, x, x};
-}
-
-static inline floats8 load8(const float *a)
-{
-    floats8 v;
-    memcpy(&v, a, sizeof v);
-    return v;
-}
-
-static inline void store8(float *a, floats8 v)
-{
-    memcpy(a, &v, sizeof v);
-}
-
-static inline ints8 load8_int(const void *a)
-{
-    ints8 v;
-    memcpy(&v, a, sizeof v);
-    return v;
-}
 
 /** @brief a b + c, rounded once where the processor can. */
 static inline float fused(float a, float b, float c)
@@ -63,26 +46,20 @@ static inline float fused(float a, float b, float c)
 #endif
 }
 
+/* ---- Eight: boxes of a tree, and the halves of what has no vector of its own ---- */
+
+static inline floats8 fill8(float x)
+{
+    return (floats8){x, x, x, x, x, x, x, x};
+}
+
 /** @brief fused() in each lane, to the bit. */
 static inline floats8 fused8(floats8 a, floats8 b, floats8 c)
 {
     floats8 r;
-    for (int i = 0; i < LANES; i++)
+    for (int i = 0; i < 8; i++)
         r[i] = fused(a[i], b[i], c[i]);
     return r;
-}
-
-static inline floats8 sqrt8(floats8 a)
-{
-    for (int i = 0; i < LANES; i++)
-        a[i] = sqrtf(a[i]);
-    return a;
-}
-
-/** @brief Lanes of a where mask is set, else of b. A mask lane is 0 or -1. */
-static inline floats8 choose8(ints8 mask, floats8 a, floats8 b)
-{
-    return (floats8)(((ints8)a & mask) | ((ints8)b & ~mask));
 }
 
 /** @brief a where it is larger, else b. */
@@ -91,26 +68,100 @@ static inline floats8 max8(floats8 a, floats8 b)
 #ifdef __AVX__
     return (floats8)_mm256_max_ps((__m256)a, (__m256)b);
 #else
-    return choose8(a > b, a, b);
+    ints8 larger = a > b;
+    return (floats8)(((ints8)a & larger) | ((ints8)b & ~larger));
 #endif
 }
 
-static inline floats8 abs8(floats8 a)
-{
-    return (floats8)((ints8)a & fill8_int(0x7fffffff));
-}
-
-/** @brief One bit a lane of a mask, lane 0 lowest. */
+/** @brief One bit a lane of a mask, lane 0 lowest. A mask lane is 0 or -1. */
 static inline unsigned bits8(ints8 mask)
 {
 #ifdef __AVX__
     return (unsigned)_mm256_movemask_ps((__m256)mask);
 #else
     unsigned bits = 0;
-    for (int i = 0; i < LANES; i++)
+    for (int i = 0; i < 8; i++)
         bits |= ((unsigned)mask[i] & 1u) << i;
     return bits;
 #endif
+}
+
+/* ---- As many as there are lanes ---- */
+
+static inline lane_floats fill_lanes(float x)
+{
+    return (lane_floats){0} + x;
+}
+
+static inline lane_floats load_lanes(const float *a)
+{
+    lane_floats v;
+    memcpy(&v, a, sizeof v);
+    return v;
+}
+
+static inline lane_ints load_lane_ints(const void *a)
+{
+    lane_ints v;
+    memcpy(&v, a, sizeof v);
+    return v;
+}
+
+static inline void store_lanes(float *a, lane_floats v)
+{
+    memcpy(a, &v, sizeof v);
+}
+
+/** @brief fused() in each lane, to the bit. */
+static inline lane_floats fused_lanes(lane_floats a, lane_floats b, lane_floats c)
+{
+#if HAS_WIDE_LANES
+    return (lane_floats)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+#else
+    return fused8(a, b, c);
+#endif
+}
+
+static inline lane_floats sqrt_lanes(lane_floats a)
+{
+#if HAS_WIDE_LANES
+    return (lane_floats)_mm512_sqrt_ps((__m512)a);
+#else
+    for (int i = 0; i < LANES; i++)
+        a[i] = sqrtf(a[i]);
+    return a;
+#endif
+}
+
+/** @brief a where it is larger, else b. */
+static inline lane_floats max_lanes(lane_floats a, lane_floats b)
+{
+#if HAS_WIDE_LANES
+    return (lane_floats)_mm512_max_ps((__m512)a, (__m512)b);
+#else
+    return max8(a, b);
+#endif
+}
+
+static inline lane_floats abs_lanes(lane_floats a)
+{
+    return (lane_floats)((lane_ints)a & 0x7fffffff);
+}
+
+/** @brief One bit a lane where a < b, lane 0 lowest. */
+static inline unsigned bits_below(lane_floats a, lane_floats b)
+{
+#if HAS_WIDE_LANES
+    return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
+#else
+    return bits8(a < b);
+#endif
+}
+
+/** @brief Bits of the first n lanes. */
+static inline unsigned bits_first(size_t n)
+{
+    return n < LANES ? (1u << n) - 1u : (1u << LANES) - 1u;
 }
 
 /** @brief Four values in the order named by lanes. */
@@ -125,23 +176,70 @@ static inline floats4 permute4(floats4 values, ints4 lanes)
 }
 
 /** @brief Appends the lanes named by bits, lowest first: their values, and first + lane.
- *  Without branches: both arrays must have room for eight more. @return their number */
-static inline size_t pack8(floats8 values, unsigned bits, size_t first, float *value,
-                           size_t *index)
+ *  Without branches: both arrays must have room for LANES more. @return their number */
+static inline size_t pack_lanes(lane_floats values, unsigned bits, uint32_t first,
+                                float *value, uint32_t *index)
 {
+#if HAS_WIDE_LANES
+    const __m512i lanes =
+        _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    __m512i numbers = _mm512_add_epi32(_mm512_set1_epi32((int32_t)first), lanes);
+    _mm512_storeu_ps(value, _mm512_maskz_compress_ps((__mmask16)bits, (__m512)values));
+    _mm512_storeu_si512(index, _mm512_maskz_compress_epi32((__mmask16)bits, numbers));
+    return (size_t)__builtin_popcount(bits);
+#else
     /* The lanes of each set of four, in order; what follows them is overwritten next. */
-    static const sizes4 lanes[16] = {
+    static const ints4 lanes[16] = {
         {0}, {0},    {1},    {0, 1},    {2},    {0, 2},    {1, 2},    {0, 1, 2},
         {3}, {0, 3}, {1, 3}, {0, 1, 3}, {2, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 2, 3}};
     size_t n = 0;
     for (int half = 0; half < LANES; half += 4) {
         unsigned four = bits >> half & 15u;
         floats4 v = {values[half], values[half + 1], values[half + 2], values[half + 3]};
-        v = permute4(v, __builtin_convertvector(lanes[four], ints4));
-        sizes4 i = lanes[four] + (first + (size_t)half);
+        v = permute4(v, lanes[four]);
+        ints4 i = lanes[four] + (int32_t)(first + (uint32_t)half);
         memcpy(value + n, &v, sizeof v);
         memcpy(index + n, &i, sizeof i);
         n += (size_t)__builtin_popcount(four);
     }
     return n;
+#endif
+}
+
+/** @brief Words from the places that index names. */
+static inline lane_ints gather_lanes(const uint32_t *words, const uint32_t *index)
+{
+#if HAS_WIDE_LANES
+    /* The instruction takes places as signed: they are counted from the middle. */
+    const uint32_t middle = 1u << 31;
+    __m512i numbers =
+        _mm512_xor_epi32(_mm512_loadu_si512(index), _mm512_set1_epi32((int32_t)middle));
+    return (lane_ints)_mm512_i32gather_epi32(numbers, words + middle, 4);
+#else
+    lane_ints v;
+    for (int lane = 0; lane < LANES; lane++)
+        v[lane] = (int32_t)words[index[lane]];
+    return v;
+#endif
+}
+
+/** @brief The same of values that have an index each. The arrays may be those that the
+ * values and indices come from, or begin further ahead. */
+static inline size_t pack_lane_pairs(lane_floats values, const uint32_t *from,
+                                     unsigned bits, float *value, uint32_t *index)
+{
+#if HAS_WIDE_LANES
+    __m512i numbers = _mm512_loadu_si512(from);
+    _mm512_storeu_ps(value, _mm512_maskz_compress_ps((__mmask16)bits, (__m512)values));
+    _mm512_storeu_si512(index, _mm512_maskz_compress_epi32((__mmask16)bits, numbers));
+    return (size_t)__builtin_popcount(bits);
+#else
+    size_t n = 0;
+    for (unsigned left = bits; left; left &= left - 1u) {
+        int lane = __builtin_ctz(left);
+        value[n] = values[lane];
+        index[n++] = from[lane];
+    }
+    return n;
+#endif
 }

@@ -19,6 +19,12 @@ photon_map *photon_map_build(map_choice choice, photon_store *store, float radiu
     map->kind = kinds[choice];
     map->store = *store;
     *store = (photon_store){0};
+    if (map->store.n > UINT32_MAX) {
+        error_set(error, ERROR_FAILED, "a map holds at most 2^32 photons, not %zu",
+                  map->store.n);
+        photon_map_free(map);
+        return NULL;
+    }
     float usable = radius > 0.0f && isfinite(radius) ? radius : 0.0f;
     if (map->store.n > 0 && !map->kind->build(map, usable, threads, error)) {
         photon_map_free(map);

@@ -42,7 +42,7 @@ typedef struct photon_filter {
  * Zero-initialise, clear at the end; reused from query to query. */
 typedef struct photon_hits {
     size_t n, capacity;
-    size_t *index;
+    uint32_t *index;
     float *distance2;
 } photon_hits;
 

@@ -32,7 +32,7 @@ static bool list_within(const photon_map *map, const point_query *query, float r
             continue;
         if (!photon_hits_reserve(hits, hits->n + 1))
             return false;
-        hits->index[hits->n] = i;
+        hits->index[hits->n] = (uint32_t)i;
         hits->distance2[hits->n++] = distance2;
     }
     return true;
@@ -47,7 +47,7 @@ static bool before(const photon_store *s, const photon_hits *heap, size_t a, siz
 
 static void swap(photon_hits *heap, size_t a, size_t b)
 {
-    size_t index = heap->index[a];
+    uint32_t index = heap->index[a];
     float distance2 = heap->distance2[a];
     heap->index[a] = heap->index[b];
     heap->distance2[a] = heap->distance2[b];
@@ -86,11 +86,11 @@ static bool list_nearest(const photon_map *map, const point_query *query, size_t
         if (!(distance2 < radius * radius) || !query_accepts(query, i))
             continue;
         if (hits->n < k) {
-            hits->index[hits->n] = i;
+            hits->index[hits->n] = (uint32_t)i;
             hits->distance2[hits->n++] = distance2;
             sift_up(s, hits);
         } else if (nearest_before(s, i, distance2, hits->index[0], hits->distance2[0])) {
-            hits->index[0] = i;
+            hits->index[0] = (uint32_t)i;
             hits->distance2[0] = distance2;
             sift_down(s, hits);
         }

@@ -64,7 +64,7 @@ static size_t partition(float *a, size_t n, float pivot, bool or_like)
 static float median3(const float *a, size_t n)
 {
     float x = a[0], y = a[n / 2], z = a[n - 1];
-    return fmaxf(fminf(x, y), fminf(fmaxf(x, y), z));
+    return maxf(minf(x, y), minf(maxf(x, y), z));
 }
 
 /* The value that would stand at rank if a were sorted. */
@@ -102,7 +102,7 @@ static int compare_ties(const point_query *query, size_t a, size_t b)
 }
 
 /* Hoare's partition of index[low, high); returns where the upper part begins. */
-static size_t partition_ties(const point_query *query, size_t *index, size_t low,
+static size_t partition_ties(const point_query *query, uint32_t *index, size_t low,
                              size_t high)
 {
     size_t pivot = index[low + (high - low - 1) / 2], i = low, j = high - 1;
@@ -113,14 +113,14 @@ static size_t partition_ties(const point_query *query, size_t *index, size_t low
             j--;
         if (i >= j)
             return j + 1;
-        size_t swapped = index[i];
+        uint32_t swapped = index[i];
         index[i] = index[j];
         index[j] = swapped;
     }
 }
 
 /* Moves the k first of index[0, n) to its front. */
-static void select_ties(const point_query *query, size_t *index, size_t n, size_t k)
+static void select_ties(const point_query *query, uint32_t *index, size_t n, size_t k)
 {
     size_t low = 0, high = n;
     while (high - low > 1 && k > low && k < high) {
@@ -134,11 +134,11 @@ static void select_ties(const point_query *query, size_t *index, size_t n, size_
 
 /* Keeps hits nearer than limit, in their order; those that tie with it follow them.
  * Returns how many are nearer. */
-static size_t keep_nearer(photon_hits *hits, float limit, size_t *ties)
+static size_t keep_nearer(photon_hits *hits, float limit, uint32_t *ties)
 {
     size_t nearer = 0, tied = 0;
     for (size_t i = 0; i < hits->n; i++) {
-        size_t index = hits->index[i];
+        uint32_t index = hits->index[i];
         float distance2 = hits->distance2[i];
         ties[tied] = index;
         tied += !(distance2 < limit) && !(distance2 > limit);
@@ -159,7 +159,7 @@ void nearest_cut(nearest_set *set)
     float *copy = hits->distance2 + room;
     memcpy(copy, hits->distance2, hits->n * sizeof *copy);
     float kth = select_value(copy, hits->n, set->k - 1);
-    size_t *ties = hits->index + room;
+    uint32_t *ties = hits->index + room;
     size_t nearer = keep_nearer(hits, kth, ties);
     size_t wanted = set->k - nearer;
     if (hits->n > set->k)
@@ -169,19 +169,19 @@ void nearest_cut(nearest_set *set)
         hits->distance2[nearer + i] = kth;
     }
     hits->n = set->k;
-    set->limit = fminf(set->limit, nextafterf(kth, INFINITY));
+    set->limit = minf(set->limit, nextafterf(kth, INFINITY));
 }
 
 void nearest_add_run(nearest_set *set, size_t begin, size_t end)
 {
     photon_hits *hits = set->hits;
     for (size_t i = begin; i < end; i += LANES) {
-        floats8 distance2;
+        lane_floats distance2;
         unsigned bits = query_block(set->query, i, end, set->limit, &distance2);
         if (!bits)
             continue;
-        hits->n +=
-            pack8(distance2, bits, i, hits->distance2 + hits->n, hits->index + hits->n);
+        hits->n += pack_lanes(distance2, bits, (uint32_t)i, hits->distance2 + hits->n,
+                              hits->index + hits->n);
         if (hits->n > set->full)
             nearest_cut(set);
     }

@@ -105,7 +105,7 @@ static point_query query_at(const point_index *index, vec3 p)
 static void name_hits(const point_index *index, photon_hits *hits)
 {
     for (size_t i = 0; i < hits->n; i++)
-        hits->index[i] = index->number[hits->index[i]];
+        hits->index[i] = (uint32_t)index->number[hits->index[i]];
 }
 
 bool point_index_within(const point_index *index, vec3 p, float radius, photon_hits *hits)

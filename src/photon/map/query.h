@@ -1,6 +1,6 @@
 /*
  * The query: what each photon is tested with, prepared once a search. The scalar form
- * is what "found" means; the form for eight gives the same bits.
+ * is what "found" means; the form for a lane each gives the same bits.
  *
  *   distance2   (dx² + dy²) + dz², or (d·n / flatten)² where that is larger
  *   accepted    where photons keep curves: it is on the same one, or on none
@@ -50,7 +50,7 @@ static inline point_query point_query_of(const photon_store *store, vec3 p,
         query.one_sided = filter->one_sided;
         query.face = on_curve ? 0 : filter->face;
         query.flat = !on_curve && filter->flatten < 1.0f;
-        query.inv_flatten = 1.0f / fmaxf(filter->flatten, 1e-3f);
+        query.inv_flatten = 1.0f / maxf(filter->flatten, 1e-3f);
     }
     return query;
 }
@@ -108,38 +108,82 @@ static inline bool query_accepts(const point_query *query, size_t i)
     return !query->one_sided || direction_dot(query->wi[i], query->n) > 0.0f;
 }
 
-/** @brief query_distance2 of photons i .. i + 7. */
-static inline floats8 query_distance2_8(const point_query *query, size_t i)
+/** @brief query_distance2 of photons i .. i + LANES - 1. */
+static inline lane_floats query_distance2_lanes(const point_query *query, size_t i)
 {
-    floats8 x = load8(query->x + i) - query->p[0], y = load8(query->y + i) - query->p[1],
-            z = load8(query->z + i) - query->p[2];
-    floats8 d2 = fused8(z, z, fused8(y, y, x * x));
+    lane_floats x = load_lanes(query->x + i) - query->p[0],
+                y = load_lanes(query->y + i) - query->p[1],
+                z = load_lanes(query->z + i) - query->p[2];
+    lane_floats d2 = fused_lanes(z, z, fused_lanes(y, y, x * x));
     if (!query->flat)
         return d2;
-    floats8 nx = fill8(query->n[0]), ny = fill8(query->n[1]), nz = fill8(query->n[2]);
-    floats8 height = fused8(z, nz, fused8(y, ny, x * nx)) * query->inv_flatten;
-    return max8(height * height, d2);
+    lane_floats nx = fill_lanes(query->n[0]), ny = fill_lanes(query->n[1]),
+                nz = fill_lanes(query->n[2]);
+    lane_floats height =
+        fused_lanes(z, nz, fused_lanes(y, ny, x * nx)) * query->inv_flatten;
+    return max_lanes(height * height, d2);
 }
 
-/** @brief Bits of those photons of i .. min(i + 8, end) - 1 that are accepted and nearer
- * than limit; *distance2 of all. */
-static inline unsigned query_block(const point_query *query, size_t i, size_t end,
-                                   float limit, floats8 *distance2)
+/** @brief Bits of packed directions on the side of n. */
+static inline unsigned query_sides(const point_query *query, lane_ints wi)
 {
-    *distance2 = query_distance2_8(query, i);
-    unsigned bits = bits8(*distance2 < limit);
-    if (end - i < LANES)
-        bits &= (1u << (end - i)) - 1u;
-    if (bits && query->one_sided) {
-        directions8 wi = directions8_load(query->wi + i);
-        bits &= bits8(directions8_dot(wi, query->n) > 0.0f);
+    lane_directions d = lane_directions_of(wi);
+    return bits_below(fill_lanes(0.0f), lane_directions_dot(d, query->n));
+}
+
+/** @brief query_is_alike by packed normals. */
+static inline unsigned query_alike(const point_query *query, lane_ints normal)
+{
+    lane_directions n = lane_directions_of(normal);
+    lane_floats dot = lane_directions_dot(n, query->n);
+    lane_floats length2 = fused_lanes(n.z, n.z, fused_lanes(n.y, n.y, n.x * n.x));
+    return bits_below(SAME_SURFACE * length2, dot * dot);
+}
+
+/** @brief Bits of those photons of i .. min(i + LANES, end) - 1 that are nearer than
+ * limit, accepted or not; *distance2 of all. */
+static inline __attribute__((always_inline)) unsigned
+query_nearer(const point_query *query, size_t i, size_t end, float limit,
+             lane_floats *distance2)
+{
+    *distance2 = query_distance2_lanes(query, i);
+    return bits_below(*distance2, fill_lanes(limit)) & bits_first(end - i);
+}
+
+/** @brief True if some photons are not accepted. */
+static inline bool query_selects(const point_query *query)
+{
+    return query->one_sided || query->normal || query->curve || query->face;
+}
+
+/** @brief Of those photons in bits, the bits of those that are accepted; the photon of a
+ * lane is index[lane], also where its bit is not set. */
+static inline __attribute__((always_inline)) unsigned
+query_accepted(const point_query *query, const uint32_t *index, unsigned bits)
+{
+    if (query->one_sided)
+        bits &= query_sides(query, gather_lanes(query->wi, index));
+    if (query->normal)
+        bits &= query_alike(query, gather_lanes(query->normal, index));
+    for (unsigned left = query->curve || query->face ? bits : 0u; left;
+         left &= left - 1u) {
+        int lane = __builtin_ctz(left);
+        bool alike = !query->curve || query->curve[index[lane]] == query->on_curve;
+        if (!alike || (query->face && !query_is_face(query, index[lane])))
+            bits &= ~(1u << lane);
     }
-    if (bits && query->normal) {
-        directions8 n = directions8_load(query->normal + i);
-        floats8 dot = directions8_dot(n, query->n);
-        floats8 length2 = fused8(n.z, n.z, fused8(n.y, n.y, n.x * n.x));
-        bits &= bits8(dot * dot > SAME_SURFACE * length2);
-    }
+    return bits;
+}
+
+/** @brief query_nearer that are accepted. */
+static inline unsigned query_block(const point_query *query, size_t i, size_t end,
+                                   float limit, lane_floats *distance2)
+{
+    unsigned bits = query_nearer(query, i, end, limit, distance2);
+    if (bits && query->one_sided)
+        bits &= query_sides(query, load_lane_ints(query->wi + i));
+    if (bits && query->normal)
+        bits &= query_alike(query, load_lane_ints(query->normal + i));
     for (unsigned left = query->curve || query->face ? bits : 0u; left;
          left &= left - 1u) {
         size_t lane = (size_t)__builtin_ctz(left);

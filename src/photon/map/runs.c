@@ -14,7 +14,7 @@ bool photon_hits_reserve(photon_hits *hits, size_t capacity)
     if (capacity <= hits->capacity)
         return true;
     size_t room = MAX(capacity + LANES, 2 * hits->capacity);
-    size_t *index =
+    uint32_t *index =
         big_grow(hits->index, hits->n, room, sizeof *index, "photons found", NULL);
     if (!index)
         return false;
@@ -28,26 +28,41 @@ bool photon_hits_reserve(photon_hits *hits, size_t capacity)
     return true;
 }
 
-static void within_run(size_t begin, size_t end, within_search *search)
+/* Room is made for a piece at a time, as if all of it were found. */
+enum { PIECE = 1 << 12 }; /* size: photons */
+
+static void within_piece(const point_query *by, size_t begin, size_t end,
+                         within_search *search)
 {
     photon_hits *hits = search->hits;
-    const point_query query = *search->query;
+    const point_query query = *by;
+    const bool selects = query_selects(by);
+    const float radius2 = search->radius2;
+    float *distance2 = hits->distance2;
+    uint32_t *index = hits->index;
+    size_t n = hits->n;
     for (size_t i = begin; i < end; i += LANES) {
-        floats8 distance2;
-        unsigned bits = query_block(&query, i, end, search->radius2, &distance2);
-        if (!bits)
-            continue;
-        if (search->refused || !photon_hits_reserve(hits, hits->n + LANES)) {
-            search->refused = true;
-            return;
-        }
-        hits->n +=
-            pack8(distance2, bits, i, hits->distance2 + hits->n, hits->index + hits->n);
+        lane_floats d2;
+        unsigned bits = selects ? query_block(&query, i, end, radius2, &d2)
+                                : query_nearer(&query, i, end, radius2, &d2);
+        if (HAS_WIDE_LANES || bits)
+            n += pack_lanes(d2, bits, (uint32_t)i, distance2 + n, index + n);
     }
+    hits->n = n;
 }
 
 void within_runs(const photon_run *runs, size_t n, void *data)
 {
-    for (size_t i = 0; i < n; i++)
-        within_run(runs[i].begin, runs[i].end, data);
+    within_search *search = data;
+    for (size_t i = 0; i < n; i++) {
+        for (size_t begin = runs[i].begin; begin < runs[i].end; begin += PIECE) {
+            size_t end = MIN(begin + PIECE, runs[i].end);
+            if (search->refused ||
+                !photon_hits_reserve(search->hits, search->hits->n + end - begin)) {
+                search->refused = true;
+                return;
+            }
+            within_piece(search->query, begin, end, search);
+        }
+    }
 }
