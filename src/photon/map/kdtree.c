@@ -365,6 +365,43 @@ void kdtree_nearest(const kdtree *tree, nearest_set *set)
     nearest_cut(set);
 }
 
+/* The nearest so far: hit 0 of the set. */
+static void take_nearest(nearest_set *set, size_t leaf, size_t n)
+{
+    photon_hits *hits = set->hits;
+    size_t end = MIN((leaf + 1) * LEAF, n);
+    for (size_t i = leaf * LEAF; i < end; i += LANES) {
+        lane_floats d2;
+        unsigned bits = query_nearer(set->query, i, end, set->limit, &d2);
+        float least = bits ? least_lane(d2, bits) : INFINITY;
+        for (bits &= ~bits_below(fill_lanes(least), d2); bits; bits &= bits - 1u) {
+            size_t place = i + (size_t)__builtin_ctz(bits);
+            if (hits->n > 0 && !nearest_before(set->query, place, least, hits->index[0],
+                                               hits->distance2[0]))
+                continue;
+            hits->n = 1;
+            hits->index[0] = (uint32_t)place;
+            hits->distance2[0] = least;
+            set->limit = nextafterf(least, INFINITY);
+        }
+    }
+}
+
+void kdtree_nearest_one(const kdtree *tree, nearest_set *set)
+{
+    kd_entry stack[MAX_STACK];
+    stack[0] = (kd_entry){0.0f, tree->n_levels, 0};
+    for (size_t top = 1; top > 0;) {
+        kd_entry node = stack[--top];
+        if (!(node.distance2 < set->limit))
+            continue;
+        if (node.level > 0)
+            top = push_sorted(tree, set->query->p, node, set->limit, stack, top);
+        else
+            take_nearest(set, node.node, tree->n);
+    }
+}
+
 /* Visits leaves in order, joining neighbours to one run. */
 void kdtree_runs(const kdtree *tree, const point_arrays *points, vec3 p, float radius,
                  photon_run_visitor visit, void *data)

@@ -22,6 +22,9 @@ size_t kdtree_bytes(const kdtree *tree); /**< memory kept */
 
 /** @brief Lets what is nearest enter the set, and cuts it. */
 void kdtree_nearest(const kdtree *tree, nearest_set *set);
+/** @brief The nearest alone, by a query that selects nothing, into the set, which must be
+ * of one. Much faster than kdtree_nearest. */
+void kdtree_nearest_one(const kdtree *tree, nearest_set *set);
 /** @brief Visits runs that hold every point within radius of p, as
  * photon_map_kind.runs. */
 void kdtree_runs(const kdtree *tree, const point_arrays *points, vec3 p, float radius,

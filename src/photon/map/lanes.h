@@ -158,6 +158,19 @@ static inline unsigned bits_below(lane_floats a, lane_floats b)
 #endif
 }
 
+/** @brief The least of the lanes named by bits, one of them at least. */
+static inline float least_lane(lane_floats values, unsigned bits)
+{
+#if HAS_WIDE_LANES
+    return _mm512_mask_reduce_min_ps((__mmask16)bits, (__m512)values);
+#else
+    float least = INFINITY;
+    for (int lane = 0; lane < LANES; lane++)
+        least = (bits >> lane & 1u) && values[lane] < least ? values[lane] : least;
+    return least;
+#endif
+}
+
 /** @brief Bits of the first n lanes. */
 static inline unsigned bits_first(size_t n)
 {

@@ -39,9 +39,9 @@ static bool list_within(const photon_map *map, const point_query *query, float r
 }
 
 /* True if the photon at heap place a comes before the one at place b. */
-static bool before(const photon_store *s, const photon_hits *heap, size_t a, size_t b)
+static bool before(const point_query *by, const photon_hits *heap, size_t a, size_t b)
 {
-    return nearest_before(s, heap->index[a], heap->distance2[a], heap->index[b],
+    return nearest_before(by, heap->index[a], heap->distance2[a], heap->index[b],
                           heap->distance2[b]);
 }
 
@@ -55,19 +55,19 @@ static void swap(photon_hits *heap, size_t a, size_t b)
     heap->distance2[b] = distance2;
 }
 
-static void sift_up(const photon_store *s, photon_hits *heap)
+static void sift_up(const point_query *by, photon_hits *heap)
 {
-    for (size_t i = heap->n - 1; i > 0 && before(s, heap, (i - 1) / 2, i);
+    for (size_t i = heap->n - 1; i > 0 && before(by, heap, (i - 1) / 2, i);
          i = (i - 1) / 2)
         swap(heap, i, (i - 1) / 2);
 }
 
-static void sift_down(const photon_store *s, photon_hits *heap)
+static void sift_down(const point_query *by, photon_hits *heap)
 {
     for (size_t i = 0;;) {
         size_t last = i;
         for (size_t child = 2 * i + 1; child <= 2 * i + 2 && child < heap->n; child++)
-            last = before(s, heap, last, child) ? child : last;
+            last = before(by, heap, last, child) ? child : last;
         if (last == i)
             return;
         swap(heap, i, last);
@@ -88,11 +88,12 @@ static bool list_nearest(const photon_map *map, const point_query *query, size_t
         if (hits->n < k) {
             hits->index[hits->n] = (uint32_t)i;
             hits->distance2[hits->n++] = distance2;
-            sift_up(s, hits);
-        } else if (nearest_before(s, i, distance2, hits->index[0], hits->distance2[0])) {
+            sift_up(query, hits);
+        } else if (nearest_before(query, i, distance2, hits->index[0],
+                                  hits->distance2[0])) {
             hits->index[0] = (uint32_t)i;
             hits->distance2[0] = distance2;
-            sift_down(s, hits);
+            sift_down(query, hits);
         }
     }
     return true;

@@ -24,10 +24,23 @@ static int compare_photons(const photon_store *s, size_t a, size_t b)
     return order;
 }
 
-bool nearest_before(const photon_store *s, size_t a, float da, size_t b, float db)
+/* Of those at one distance: photons by all that they are, other points by place and
+   number. */
+static int compare_ties(const point_query *query, size_t a, size_t b)
+{
+    if (query->store)
+        return compare_photons(query->store, a, b);
+    int order = compare(query->x[a], query->x[b]);
+    order = order ? order : compare(query->y[a], query->y[b]);
+    order = order ? order : compare(query->z[a], query->z[b]);
+    size_t i = query->number[a], j = query->number[b];
+    return order ? order : (i > j) - (i < j);
+}
+
+bool nearest_before(const point_query *query, size_t a, float da, size_t b, float db)
 {
     int order = compare(da, db);
-    return (order ? order : compare_photons(s, a, b)) < 0;
+    return (order ? order : compare_ties(query, a, b)) < 0;
 }
 
 bool nearest_begin(nearest_set *set, const point_query *query, size_t k, float radius,
@@ -86,19 +99,6 @@ static float select_value(float *a, size_t n, size_t rank)
         rank -= below;
         n -= below;
     }
-}
-
-/* Of those at one distance: photons by all that they are, other points by place and
-   number. */
-static int compare_ties(const point_query *query, size_t a, size_t b)
-{
-    if (query->store)
-        return compare_photons(query->store, a, b);
-    int order = compare(query->x[a], query->x[b]);
-    order = order ? order : compare(query->y[a], query->y[b]);
-    order = order ? order : compare(query->z[a], query->z[b]);
-    size_t i = query->number[a], j = query->number[b];
-    return order ? order : (i > j) - (i < j);
 }
 
 /* Hoare's partition of index[low, high); returns where the upper part begins. */

@@ -27,6 +27,6 @@ void nearest_restart(nearest_set *set, float radius);
 void nearest_add_run(nearest_set *set, size_t begin, size_t end);
 /** @brief Keeps only the k nearest and lowers the limit to the k-th. */
 void nearest_cut(nearest_set *set);
-/** @brief True if photon a, at distance2 da, comes before b: by distance, then x, y, z,
- * wi, flux. */
-bool nearest_before(const photon_store *s, size_t a, float da, size_t b, float db);
+/** @brief True if point a of the query's arrays, at distance2 da, comes before b: by
+ * distance, then x, y, z; then photons by wi and flux or number, others by number. */
+bool nearest_before(const point_query *query, size_t a, float da, size_t b, float db);

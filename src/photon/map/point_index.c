@@ -131,7 +131,10 @@ static bool find_nearest(const point_index *index, const point_query *query, siz
         return true;
     if (!nearest_begin(&set, query, wanted, radius, hits))
         return false;
-    kdtree_nearest(index->tree, &set);
+    if (wanted == 1 && !query_selects(query))
+        kdtree_nearest_one(index->tree, &set);
+    else
+        kdtree_nearest(index->tree, &set);
     name_hits(index, hits);
     return true;
 }
