@@ -17,7 +17,7 @@ import pathlib
 import re
 import sys
 
-MOST = 72
+MOST = 62
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ["src/photon", "src/transport"]

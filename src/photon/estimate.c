@@ -20,10 +20,6 @@
  * the variance would not be finite; the light cut off is below 1/2000. */
 #define MAX_GRAZING_RATIO 1000.0f
 
-/* A thin curve may hold fewer photons than are asked for: the nearest of it are looked
-   for no further than this many times as far as lie so many of all. */
-#define CURVE_REACH 3.0f
-
 enum { BLOCK = 256 }; /* size: of photons that are weighed at a time */
 
 typedef struct gather gather;
@@ -279,7 +275,8 @@ static size_t furthest(const photon_hits *hits)
     return last;
 }
 
-/* How far the k nearest are looked for. */
+/* How far the k nearest are looked for. A thin curve may hold fewer: of it, as far as lie
+   so many of all. */
 static bool search_radius(const gather *g, const photon_map *map, size_t k,
                           photon_hits *hits, float *radius)
 {
@@ -291,7 +288,7 @@ static bool search_radius(const gather *g, const photon_map *map, size_t k,
     if (!map->kind->nearest(map, &any, k, *radius, hits))
         return false;
     if (hits->n == k)
-        *radius = minf(*radius, CURVE_REACH * sqrtf(hits->distance2[furthest(hits)]));
+        *radius = minf(*radius, sqrtf(hits->distance2[furthest(hits)]));
     hits->n = 0;
     return true;
 }

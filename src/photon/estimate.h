@@ -30,9 +30,9 @@ typedef struct estimate_options {
                        one used when fewer than k are found in it */
     float flatten;  /**< photons further than flatten * r from the tangent plane are left
                        out, without shrinking r (see photon_filter); 1: a ball */
-    const scene *scene;      /**< to probe edges, corners and thin walls with (see
+    const scene *scene;      /**< to find edges, corners and thin walls with (see
                                 neighbourhood.h); NULL: the disc is taken as whole */
-    float time;              /**< of the shutter, at which they are probed */
+    float time;              /**< of the shutter, at which they are looked for */
     const flat_curve *curve; /**< that the point is on; NULL: on none */
     unsigned lobes;          /**< used for all photons, e.g. LOBE_GATHERED */
     unsigned

@@ -4,20 +4,22 @@
  *
  * The estimate divides by the area of a disc. Near an edge or a corner part of that disc
  * is no surface, and behind a thin wall it is another room: the estimate would be too
- * dark there, or leak. So the disc is probed with short rays from a point lifted off the
- * surface,
+ * dark there, or leak. So short rays look around from a point lifted off the surface,
  *
  *        lifted ·───────────►· along the surface: is there a wall between?
  *               │            │ down: is there a surface, in the plane?
  *     ──────────x────────────q──────
  *
- * (less where something lies close above it, as the foot of a glass does above a table)
- * and where a probe fails, photons are held to the same test and the area is that of the
- * part that passes it.
+ * Four of them, to the rim, tell whether anything is amiss; where it is, photons are held
+ * to the same test and the area is that of the part that passes it.
  *
  * A surface that bends evenly is whole too: a ball of radius r cuts π r² out of a sphere
- * of any size. Its probes meet it above or below the plane, where both normals make the
- * same angle with the chord, as on an arc.
+ * of any size. It is met above or below the plane, where both normals make the same angle
+ * with the chord, as on an arc.
+ *
+ * Without the down of it /neighbourhood/edge and /knob-pictures/edges fail, without the
+ * along /neighbourhood/wall, without the arc /neighbourhood/bent. bench/edges says what
+ * it is worth.
  */
 #pragma once
 
@@ -31,15 +33,14 @@ typedef struct horizon_side {
     float nx, ny, c;
 } horizon_side;
 
-/** @brief A disc to be probed. Those before frame are the caller's; thread-safe. */
+/** @brief A disc to be looked at. Those before frame are the caller's; thread-safe. */
 typedef struct neighbourhood {
     const scene *scene;
     vec3 p, n;    /**< centre, unit geometric normal on the side that is seen */
     float radius; /**< m */
-    float time;   /**< of the shutter, at which it is probed */
-    float lift;   /**< m; how far probes are lifted off the surface */
+    float time;   /**< of the shutter, at which it is looked at */
     frame frame;  /**< turned by an angle of its own for every place */
-    float offset; /**< of the probes, 0..1, of its own for every place */
+    float offset; /**< of the places looked at, 0..1, of its own for every place */
     /** How far one sees along the surface, in the frame's plane: the sides of a polygon
      * around the centre, one a sector. */
     horizon_side side[NEIGHBOURHOOD_SECTORS];
@@ -48,11 +49,10 @@ typedef struct neighbourhood {
 /** Height over radius within which a surface counts as the disc's. */
 #define NEIGHBOURHOOD_FLATTEN 0.03f
 
-/** @brief True if a few probes around the rim find nothing amiss; comes before the other
- * calls. */
+/** @brief True if looks at the rim find nothing amiss; comes before the other calls. */
 bool neighbourhood_is_whole(neighbourhood *hood);
 
-/** @brief Probes the horizon, and gives the share of the kernel's area that is surface in
+/** @brief Finds the horizon, and gives the share of the kernel's area that is surface in
  * sight, in (0, 1]. After it neighbourhood_sees may be asked. */
 float neighbourhood_coverage(neighbourhood *hood, const kernel *k);
 
