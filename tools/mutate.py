@@ -522,7 +522,7 @@ def main():
     parser.add_argument('--only', type=int)
     parser.add_argument('--keep', default='mutate-found')
     parser.add_argument('--jobs', type=int, default=os.cpu_count())
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     options.limiter = memory_limiter()
     examples = all_examples(options.sources)
     numbers = [options.only] if options.only is not None else range(options.cases)

@@ -3,7 +3,7 @@
 # puts each picture beside one that is made otherwise: the reference that came with the
 # scene, and another algorithm of ours (paths alone where nothing casts caustics, else
 # vertex connection and merging). Writes FOLDER/index.html and FOLDER/sheet.png.
-# usage: gallery.sh NEPHROID FOLDER [SECONDS]   SECONDS for each picture, 20
+# usage: beside.sh NEPHROID FOLDER [SECONDS]   SECONDS for each picture, 20
 set -euo pipefail
 nephroid=$1
 folder=$2

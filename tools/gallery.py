@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+"""Renders every scene and makes the gallery of them.
+
+usage: tools/gallery.py PROGRAM FOLDER [--quick] [--seconds S] [SCENE...]
+
+Each scenes/*/*.pbrt with a WorldBegin is rendered as the program does it without being told
+anything but the time, S seconds (60; 10 if quick, at half the size), and written to FOLDER as
+EXR and JPEG. A run that was stopped goes on where it was. FOLDER/index.html shows all, with
+settings, times and statistics; without --quick and SCENE, so do docs/gallery.md and the pictures
+beside the scenes.
+"""
+import argparse
+import html
+import pathlib
+import re
+import shutil
+import sys
+
+from renders import ROOT, Kept
+
+MOST_BYTES = 400000  # of a picture in the repository
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("scenes", nargs="*")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--seconds", type=float)
+    return parser.parse_intermixed_args()
+
+
+def all_scenes():
+    """Scenes that are whole; those whose model was not fetched are said and left out."""
+    for path in sorted((ROOT / "scenes").glob("*/*.pbrt")):
+        text = path.read_text()
+        if not re.search(r"^WorldBegin", text, re.M):
+            continue
+        missing = missing_models(path)
+        if missing:
+            print(f"{path.stem}: left out, {missing} is not here (./dev models)", file=sys.stderr)
+            continue
+        yield path
+
+
+def missing_models(path):
+    for name in re.findall(r'"(\w+\.(?:ply|pbrt))"', path.read_text()):
+        file = path.parent / name
+        if not file.exists():
+            return name
+        if name.endswith(".pbrt"):
+            inside = missing_models(file)
+            if inside:
+                return inside
+    return None
+
+
+def film_size(path):
+    """Of the scene's own file, or of the view that it includes."""
+    text = path.read_text()
+    for name in re.findall(r'^Include "(view[\w-]*\.pbrt)"', text, re.M):
+        text += (path.parent / name).read_text()
+    width = re.search(r'"integer xresolution" (\d+)', text)
+    height = re.search(r'"integer yresolution" (\d+)', text)
+    return int(width[1]), int(height[1])
+
+
+def options_for(path, quick, seconds):
+    width, height = film_size(path)
+    scale = 2 if quick else 1
+    return ["--size", f"{width // scale}x{height // scale}", "--time", f"{seconds:g}"]
+
+
+def first_sentences(path):
+    """The comment that a scene begins with, without its commands."""
+    lines = []
+    for line in path.read_text().split("\n"):
+        if not line.startswith("#"):
+            break
+        lines.append(line[1:].strip())
+    blocks = "\n".join(lines).split("\n\n")
+    return " ".join(b.replace("\n", " ") for b in blocks if "nephroid " not in b and "./dev" not in b)
+
+
+def figures(kept, exr):
+    """What the statistics say, in a few words."""
+    stats = kept.statistics(exr)
+    return f"{stats['passes'] + stats.get('part', 0):.3g} passes, {stats['time']['total']:.0f} s"
+
+
+def page(kept, made):
+    rows = []
+    for path, exr in made:
+        name = html.escape(path.stem)
+        rows.append(f"<figure><img src='{name}.jpg' alt='{name}'><figcaption><b>{name}</b> "
+                    f"{html.escape(first_sentences(path))}<br><code>{path.relative_to(ROOT)}</code>, "
+                    f"{figures(kept, exr)}</figcaption></figure>")
+    return ("<!doctype html><meta charset='utf-8'><title>Nephroid: gallery</title><style>"
+            "body{font:16px/1.5 sans-serif;max-width:70rem;margin:2rem auto;background:#151515;"
+            "color:#ddd}figure{margin:0 0 3rem}img{max-width:100%}</style><h1>Gallery</h1>\n"
+            + "\n".join(rows) + "\n")
+
+
+def write_document(kept, made):
+    lines = ["# Gallery", "",
+             "Each picture is what the program makes of its scene without being told anything but",
+             "the time. Made by `./dev gallery`.", ""]
+    for path, exr in made:
+        lines += [f"## {path.stem}", "", first_sentences(path), "",
+                  f"![{path.stem}](../{path.relative_to(ROOT).with_suffix('.jpg')})", "",
+                  f"[`{path.relative_to(ROOT)}`](../{path.relative_to(ROOT)}), {figures(kept, exr)}.",
+                  ""]
+    (ROOT / "docs/gallery.md").write_text("\n".join(lines))
+
+
+def main():
+    asked = arguments()
+    seconds = asked.seconds or (10 if asked.quick else 60)
+    kept = Kept(asked.program, asked.folder)
+    scenes = [p for p in all_scenes() if not asked.scenes or p.stem in asked.scenes]
+    if not scenes:
+        sys.exit("gallery: no such scene")
+    made = []
+    for i, path in enumerate(scenes):
+        print(f"{i + 1} of {len(scenes)}", file=sys.stderr)
+        exr = kept.render(path.stem, path, *options_for(path, asked.quick, seconds))
+        kept.picture([exr], asked.folder / f"{path.stem}.jpg")
+        made.append((path, exr))
+    (asked.folder / "index.html").write_text(page(kept, made))
+    if not asked.quick and not asked.scenes:
+        for path, _ in made:
+            picture = asked.folder / f"{path.stem}.jpg"
+            if picture.stat().st_size > MOST_BYTES:
+                sys.exit(f"gallery: {picture} is too large to keep")
+            shutil.copy(picture, path.with_suffix(".jpg"))
+        write_document(kept, made)
+    print(asked.folder / "index.html")
+
+
+if __name__ == "__main__":
+    main()
