@@ -188,6 +188,17 @@ def maps(r):
 
 
 @experiment
+def bsdfs(r):
+    """Four materials"""
+    r.say("How aluminium foil, opaque purple plastic, green cloth and green glass scatter light that "
+          "comes from 45 degrees, for red, green and blue.")
+    for name in ("aluminium-foil", "purple-plastic", "green-cloth", "green-glass"):
+        r.kept.run("bsdf", name, "--scene", ROOT / "docs/report/materials.pbrt", "-o",
+                   r.folder / "figures" / f"{name}.svg")
+        r.say(f"![{name}](figures/{name}.svg)")
+
+
+@experiment
 def classes(r):
     """Each map alone"""
     base = [*ALL_BY_PHOTONS, *r.size(320, 320), *setting("photons", 450000)]
