@@ -199,6 +199,20 @@ def bsdfs(r):
 
 
 @experiment
+def failures(r):
+    """Two failures worth seeing"""
+    right, wrong = [r.kept.render("bubble", scene, *r.size(320, 240), "--time", 6 if r.quick else 20)
+                    for scene in ("scenes/egg/egg.pbrt", "docs/report/bubble.pbrt")]
+    r.say("A surface whose normals point inward makes glass a bubble of air in an endless block of "
+          "glass: the egg's own shadow has no light in it. It looks nearly right.")
+    r.sheet("bubble", [right, wrong], 2, "The egg, and the egg inside out")
+    leak = [*ALL_BY_PHOTONS, *r.size(320, 240), *setting("photons", 400000), *setting("radius", 0.12)]
+    r.sheet("leak", [r.kept.render("leak", CORNER, *leak),
+                     r.kept.render("leak", CORNER, *leak, *setting("edges", "false"))], 2,
+            "A wide radius at a thin wall, with and without a look at the edges")
+
+
+@experiment
 def classes(r):
     """Each map alone"""
     base = [*ALL_BY_PHOTONS, *r.size(320, 320), *setting("photons", 450000)]
