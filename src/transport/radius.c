@@ -68,7 +68,7 @@ static double least_radius(const radius_rule *rule, vec3 p, photon_hits *hits)
     return (double)(LEAST_PIXELS * by->plan->sight[hits->index[0]].pixel);
 }
 
-/* By the distance to the k-th nearest photon of the pilot; 0: there are too few. */
+/* By the distance to the k-th nearest photon of the pilot; 0: there are none. */
 static float radius_by(const void *data, vec3 p, float distance, photon_hits *hits)
 {
     const radius_rule *rule = data;
@@ -85,9 +85,7 @@ static bool nearest_photons(const void *data, vec3 p, photon_hits *hits)
 }
 
 /* The median over the places where the camera looks or, for caustics and in media, where
-   photons are. Where there are too few to tell, light that is smooth is faint, and its
-   radius as wide as may be; a caustic may be sharp all the same, and where none landed
-   nothing asks for width. */
+   photons are. Where no two of them landed nothing asks for width. */
 static double typical_radius(const radius_rule *rule, bool at_photons)
 {
     float radii[PROBES];
@@ -95,7 +93,7 @@ static double typical_radius(const radius_rule *rule, bool at_photons)
     const photon_store *store = photon_map_store(rule->map);
     size_t n = 0, n_probes = at_photons ? PROBES : MIN(plan->n_sight, PROBES);
     photon_hits hits = {0};
-    for (size_t i = 0; i < n_probes && store->n >= RADIUS_NEAREST; i++) {
+    for (size_t i = 0; i < n_probes && store->n > 0; i++) {
         vec3 at = at_photons ? photon_store_get(store, i * store->n / n_probes).p
                              : plan->sight[i].p;
         float d = nearest_photons(rule, at, &hits) ? radius_of_nearest(&hits) : 0.0f;
@@ -103,9 +101,7 @@ static double typical_radius(const radius_rule *rule, bool at_photons)
             radii[n++] = radius_by(rule, at, d, &hits);
     }
     photon_hits_clear(&hits);
-    bool is_narrow = at_photons || store->n == 0;
-    double unknown = is_narrow ? 0.2 * rule->largest : rule->largest;
-    return n > 0 ? (double)median(radii, n) : unknown;
+    return n > 0 ? (double)median(radii, n) : 0.2 * rule->largest;
 }
 
 /* Radii at some of the photons. */

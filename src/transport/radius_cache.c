@@ -12,11 +12,9 @@ struct radius_cache {
 float radius_of_nearest(const photon_hits *nearest)
 {
     float furthest2 = 0.0f;
-    if (nearest->n < RADIUS_NEAREST)
-        return 0.0f;
     for (size_t i = 0; i < nearest->n; i++)
         furthest2 = maxf(furthest2, nearest->distance2[i]);
-    return sqrtf(furthest2);
+    return sqrtf(furthest2 * RADIUS_NEAREST / (float)MAX(nearest->n, 1));
 }
 
 typedef struct radius_loop {

@@ -11,8 +11,8 @@ enum { RADIUS_NEAREST = 16 };
 
 typedef struct radius_cache radius_cache;
 
-/** @brief Distance to the furthest of the RADIUS_NEAREST points found nearest; 0 if there
- * are not so many. */
+/** @brief Distance to the furthest of the RADIUS_NEAREST points found nearest; of fewer,
+ * the distance at which there would be so many, spread as those are; 0 of none. */
 float radius_of_nearest(const photon_hits *nearest);
 
 /** @brief What radii are made from. Both calls are thread-safe. */
