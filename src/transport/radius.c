@@ -21,10 +21,6 @@
 #include "transport/plan/work.h"
 #include "transport/visible.h"
 
-enum {
-    PROBES = 512, /* places that the typical radius is a median of */
-};
-
 /* Photons wanted within the radius, summed over all passes: what they are shared among
    decides between noise and blur. Caustics are to be sharp, the rest is smooth by nature.
  */
@@ -84,26 +80,6 @@ static bool nearest_photons(const void *data, vec3 p, photon_hits *hits)
     return photon_map_nearest(rule->map, p, RADIUS_NEAREST, INFINITY, NULL, hits);
 }
 
-/* The median over the places where the camera looks or, for caustics and in media, where
-   photons are. Where no two of them landed nothing asks for width. */
-static double typical_radius(const radius_rule *rule, bool at_photons)
-{
-    float radii[PROBES];
-    const transport_plan *plan = rule->pilot->plan;
-    const photon_store *store = photon_map_store(rule->map);
-    size_t n = 0, n_probes = at_photons ? PROBES : MIN(plan->n_sight, PROBES);
-    photon_hits hits = {0};
-    for (size_t i = 0; i < n_probes && store->n > 0; i++) {
-        vec3 at = at_photons ? photon_store_get(store, i * store->n / n_probes).p
-                             : plan->sight[i].p;
-        float d = nearest_photons(rule, at, &hits) ? radius_of_nearest(&hits) : 0.0f;
-        if (d > 0.0f)
-            radii[n++] = radius_by(rule, at, d, &hits);
-    }
-    photon_hits_clear(&hits);
-    return n > 0 ? (double)median(radii, n) : 0.2 * rule->largest;
-}
-
 /* Radii at some of the photons. */
 static radius_cache *cache_radii(const radius_rule *rule, GError **error)
 {
@@ -117,6 +93,26 @@ static radius_cache *cache_radii(const radius_rule *rule, GError **error)
     radius_cache *cache = radius_cache_build(places, n, &source, threads, error);
     g_aligned_free(places);
     return cache;
+}
+
+/* The median over the places where the camera looks or, for caustics and in media, where
+   photons are. Where no two of them landed nothing asks for width. */
+static double typical_radius(const radius_rule *rule, const radius_cache *cache,
+                             bool at_photons)
+{
+    const transport_plan *plan = rule->pilot->plan;
+    const photon_store *store = photon_map_store(rule->map);
+    size_t n = at_photons ? MIN(store->n, RADIUS_PLACES) : plan->n_sight;
+    float narrow = 0.2f * (float)rule->largest;
+    float *radii = g_new0(float, n + 1);
+    photon_hits hits = {0};
+    for (size_t i = 0; i < n; i++)
+        radii[i] = at_photons ? radius_cache_nth(cache, i)
+                              : radius_cache_at(cache, plan->sight[i].p, narrow, &hits);
+    double typical = store->n > 1 && n > 0 ? (double)median(radii, n) : (double)narrow;
+    photon_hits_clear(&hits);
+    g_free(radii);
+    return typical;
 }
 
 /* The photons of the pilot, on surfaces and in media. */
@@ -205,9 +201,11 @@ static bool choose_on_surfaces(pilot *p, photon_class c, const pilot_maps *maps,
         .pilot = p,
         .map = map,
     };
-    plan->radius[c] = typical_radius(&rule, c == PHOTON_CAUSTIC);
     plan->radius_cache[c] = cache_radii(&rule, error);
-    return plan->radius_cache[c] != NULL;
+    if (!plan->radius_cache[c])
+        return false;
+    plan->radius[c] = typical_radius(&rule, plan->radius_cache[c], c == PHOTON_CAUSTIC);
+    return true;
 }
 
 static bool choose_in_media(pilot *p, photon_class c, const pilot_maps *maps,
@@ -222,9 +220,12 @@ static bool choose_in_media(pilot *p, photon_class c, const pilot_maps *maps,
         .pilot = p,
         .map = map,
     };
-    plan->radius_in_media[c] = typical_radius(&rule, true);
     plan->radius_cache_in_media[c] = cache_radii(&rule, error);
-    return plan->radius_cache_in_media[c] != NULL;
+    if (!plan->radius_cache_in_media[c])
+        return false;
+    plan->radius_in_media[c] =
+        typical_radius(&rule, plan->radius_cache_in_media[c], true);
+    return true;
 }
 
 static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,

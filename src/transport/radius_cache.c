@@ -61,6 +61,11 @@ void radius_cache_free(radius_cache *cache)
     g_free(cache);
 }
 
+float radius_cache_nth(const radius_cache *cache, size_t i)
+{
+    return cache->radii[i];
+}
+
 float radius_cache_at(const radius_cache *cache, vec3 p, float none, photon_hits *hits)
 {
     if (!point_index_nearest(cache->index, p, 1, INFINITY, hits) || hits->n == 0)

@@ -42,6 +42,9 @@ radius_cache *radius_cache_build(const vec3 *places, size_t n,
 void radius_cache_free(radius_cache *cache);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(radius_cache, radius_cache_free)
 
+/** @brief That of place i, in the order in which they were given. */
+float radius_cache_nth(const radius_cache *cache, size_t i);
+
 /** @brief The radius nearest to p, or `none` if none is kept. Thread-safe.
  *  @param hits gets the place whose radius it is */
 float radius_cache_at(const radius_cache *cache, vec3 p, float none, photon_hits *hits);

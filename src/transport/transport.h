@@ -83,7 +83,8 @@ enum { ROULETTE_BOUNCES = 4 };
 /** @brief A point where the camera looks (transport/visible.h). */
 typedef struct visible_point {
     vec3 p;
-    float pixel; /**< width of a pixel's footprint there, m */
+    float pixel;  /**< width of a pixel's footprint there, m */
+    float albedo; /**< mean over wavelengths */
 } visible_point;
 
 /** Of how much there may be of a technique trials compare all, 1/2, 1/4 ...: with fewer
@@ -145,7 +146,7 @@ typedef struct transport_plan {
     photon_store lit;      /**< places that light sampling found lit (path_effort_measure)
                             */
     float p_spots;         /**< path_pass.p_spots */
-    bool gathers; /**< auto: photons carry indirect light too (plan/gather.h) */
+    bool gathers;          /**< auto: photons carry indirect light too (plan/gather.h) */
     double sample_rays;    /**< that a sample costs, photons apart ... */
     double photon_rays;    /**< and its part of the photons of a pass */
     float p_blurred;       /**< probability of a gather that is seen by way of a diffuse

@@ -11,10 +11,9 @@ enum {
     MOST_POINTS = 4096, /* one for a patch of 14 x 14 pixels in a picture of 1024 x 768 */
 };
 
-/* The nearest of so many points, and how much wider than its pixels those that count may
-   be. */
-enum { NEAR = 20 };
-#define MOST_NEAR 2.0f
+/* One of so many points is near: what is beyond a window, however much of the picture it
+   is, makes no pixels wide. */
+enum { NEAR = 10 };
 
 /* What all camera rays share. */
 typedef struct lookout {
@@ -43,7 +42,8 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
         scene_bsdf(from->scene, &hit, &from->w, ALL_WAVELENGTHS, &from->options, &b);
         if (b.lobes & LOBE_DIFFUSE) {
             float area = camera_pixel_area(&from->view->camera, way);
-            *out = (visible_point){hit.p, sqrtf(area)};
+            spectrum albedo = bsdf_albedo(&b, -path.ray.direction, LOBE_ALL);
+            *out = (visible_point){hit.p, sqrtf(area), spectrum_mean(albedo)};
             return true;
         }
         float u_lobe = sampler_1d(random);
@@ -112,7 +112,7 @@ float visible_pixel(transport_plan *plan)
     visible_point *points = g_aligned_alloc0(n, sizeof *points, 16);
     memcpy(points, plan->sight, n * sizeof *points);
     qsort(points, n, sizeof *points, by_pixel);
-    float pixel = minf(points[n / 2].pixel, MOST_NEAR * points[n / NEAR].pixel);
+    float pixel = points[n / NEAR].pixel;
     g_aligned_free(points);
     return pixel;
 }

@@ -5,15 +5,11 @@
 #include "transport/plan/work.h"
 #include "transport/visible.h"
 
-enum {
-    ROUNDS = 4,                /* the first is uniform, the last tells what the guide is
-                                  worth; between them it is refined twice */
-    MOST_TRIALS = 1 << 16,     /* photons a round: what a 2000th of them finds is found by
-                                  thirty, enough for a cell of the guide to be split */
-    ENOUGH_ARRIVALS = 1 << 13, /* a round: two for each cell that the guide may have */
-    CHUNK = 256,               /* size: of a thread's work */
-    BATCHES = 16, /* size: a round is seldom longer by more than such a part */
-};
+/* The first is uniform, the last tells what the guide is worth; between them it is
+   refined twice. */
+enum { ROUNDS = 4 };
+
+enum { CHUNK = 256 }; /* size: of a thread's work */
 
 /* id: trial photons are those of passes that no render reaches. */
 #define TRIAL_PASS 0xfffffff0u
@@ -21,10 +17,6 @@ enum {
 /* A photon that lands out of the camera's sight is worth this share of one in sight: it
    may still be seen by way of other surfaces. */
 #define UNSEEN_VALUE 0.05f
-
-/* Visible points stand for what lies between them: so many of their mean distances
- * around. */
-#define SIGHT_REACH 2.0f
 
 /* What a trial photon adds to the noise that paths would have, and to what is left of it
    with shares of all photons. */
@@ -49,11 +41,9 @@ typedef struct trials {
     double pixels_each;       /* that a visible point stands for */
     emission_record *records; /* one per trial, value 0 if it did not arrive */
     trial_noise *noise;       /* one per trial */
-    size_t first;             /* trials of the round before this batch */
     size_t n_known;           /* records of earlier rounds ... */
     size_t n_arrived;         /* ... and behind them of this one */
-    size_t each;              /* trials of a round, unless enough arrive */
-    size_t batch;             /* trials at a time */
+    size_t each;              /* trials of a round */
     guide_trial round;
     aim_result *result; /* NULL: not asked for */
 } trials;
@@ -66,10 +56,11 @@ static double pixels_each(const transport_plan *plan)
     return (double)film->width * (double)film->height / (double)MAX(plan->n_sight, 1);
 }
 
-/* How far around a visible point all is in sight, m. */
+/* How far around a visible point all is in sight, m: the mean distance of its neighbours,
+   which leaves a gap of a few per cent. */
 static float reach_of(const transport_plan *plan, const visible_point *seen)
 {
-    return SIGHT_REACH * seen->pixel * sqrtf((float)pixels_each(plan));
+    return seen->pixel * sqrtf((float)pixels_each(plan));
 }
 
 static float most_reach(const transport_plan *plan)
@@ -107,9 +98,8 @@ static float sight_in_medium(const trials *all, const surface_hit *hit)
         return 0.0f;
     float transmittance = spectrum_mean(scene_transmittance(task->scene, &r, &task->w));
     float pixels = (float)all->pixels_each;
-    return transmittance < UNSEEN_VALUE
-               ? 0.0f
-               : SIGHT_REACH * SIGHT_REACH * pixels * camera_pixel_area(c, eye.distance);
+    return transmittance < UNSEEN_VALUE ? 0.0f
+                                        : pixels * camera_pixel_area(c, eye.distance);
 }
 
 /* ---- Trials ---- */
@@ -158,12 +148,12 @@ static void run_trials(size_t begin, size_t end, unsigned thread, void *data)
     trials *all = data;
     photon_hits hits = {0};
     for (size_t i = begin; i < end; i++) {
-        emission_record *record = &all->records[i];
+        emission_record *record = &all->records[all->n_known + i];
         trial t = {.all = all, .hits = &hits};
-        record->density = photon_start_point(&all->task, all->first + i, record->u);
-        photon_tell(&all->task, all->first + i, note_arrival, &t);
+        record->density = photon_start_point(&all->task, i, record->u);
+        photon_tell(&all->task, i, note_arrival, &t);
         record->value = t.value;
-        all->noise[i] = t.noise;
+        all->noise[all->n_known + i] = t.noise;
     }
     photon_hits_clear(&hits);
 }
@@ -193,18 +183,23 @@ static size_t keep_arrivals(emission_record *records, trial_noise *noise, size_t
     return kept;
 }
 
-#define TYPICAL_ALBEDO 0.5
+/* Of what the camera sees. */
+static double mean_albedo(const transport_plan *plan)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < plan->n_sight; i++)
+        sum += (double)plan->sight[i].albedo;
+    return sum / (double)MAX(plan->n_sight, 1);
+}
 
 /* What the sum of all trials' parts is to be multiplied with to be a camera sample's. */
 static double noise_scale(const trials *all)
 {
     const film_settings *film = &all->plan->view->film;
     double pixels = (double)film->width * (double)film->height;
-    double reflected = TYPICAL_ALBEDO / G_PI;
-    double per_pixel = (double)(SIGHT_REACH * SIGHT_REACH) * all->pixels_each / pixels;
-    double of_all = (double)all->task.n_photons / (double)all->first;
-    return per_pixel * reflected * reflected * of_all * (double)all->task.n_photons /
-           (double)all->task.mis->discs;
+    double reflected = mean_albedo(all->plan) / G_PI;
+    return all->pixels_each / pixels * reflected * reflected *
+           (double)all->task.n_photons / (double)all->task.mis->discs;
 }
 
 static void sum_noise(const trials *all)
@@ -250,34 +245,23 @@ static void note_result(const trials *all)
         out->boost[i] = value[i] > 0.0 ? (float)(dense[i] / value[i]) : 1.0f;
 }
 
-static bool run_batch(trials *all, GError **error)
+/* Traces the trial photons of one round, and teaches the guide by those of all rounds:
+   what is rare is learned from the few that ever found it. */
+static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError **error)
 {
-    trials batch = *all;
-    batch.records += all->n_known + all->n_arrived;
-    batch.noise += all->n_known + all->n_arrived;
-    if (!parallel_for(all->batch, CHUNK, (unsigned)all->task.how->threads,
-                      all->task.cancel, run_trials, &batch)) {
+    emission_record *records = all->records + all->n_known;
+    trial_noise *noise = all->noise + all->n_known;
+    all->task.pass = TRIAL_PASS + round;
+    all->task.w = scene_trial_wavelengths(all->task.scene, round);
+    all->round = (guide_trial){0};
+    if (!parallel_for(all->each, CHUNK, (unsigned)all->task.how->threads,
+                      all->task.cancel, run_trials, all)) {
         error_set(error, ERROR_CANCELLED, "cancelled");
         return false;
     }
-    for (size_t i = 0; i < all->batch; i++)
-        add_round(&all->round, &batch.records[i], batch.noise[i].rays);
-    all->n_arrived += keep_arrivals(batch.records, batch.noise, all->batch);
-    all->first += all->batch;
-    return true;
-}
-
-/* Traces trial photons of one round until enough arrived, and teaches the guide by those
-   of all rounds: what is rare is learned from the few that ever found it. */
-static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError **error)
-{
-    all->task.pass = TRIAL_PASS + round;
-    all->task.w = scene_trial_wavelengths(all->task.scene, round);
-    all->first = all->n_arrived = 0;
-    all->round = (guide_trial){0};
-    while (all->first < all->each && all->n_arrived < ENOUGH_ARRIVALS)
-        if (!run_batch(all, error))
-            return false;
+    for (size_t i = 0; i < all->each; i++)
+        add_round(&all->round, &records[i], noise[i].rays);
+    all->n_arrived = keep_arrivals(records, noise, all->each);
     all->plan->planning += all->round.rays;
     if (all->result)
         note_result(all);
@@ -289,7 +273,7 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
 
 static bool learn(trials *all, emission_guide *guide, GError **error)
 {
-    size_t n = ROUNDS * (MIN(all->each, ENOUGH_ARRIVALS) + all->batch);
+    size_t n = ROUNDS * all->each;
     all->records = big_alloc(n, sizeof *all->records, "trial photons", error);
     all->noise =
         all->records ? big_alloc(n, sizeof *all->noise, "trial photons", error) : NULL;
@@ -318,12 +302,11 @@ static bool guide_pays(const trials *all)
 static trials trials_of(transport_plan *plan, const emission_guide *guide,
                         const cancel_flag *cancel)
 {
-    size_t each = plan_trials_for(plan, 2.0, ROUNDS * PHOTON_RAYS, MOST_TRIALS);
+    size_t each = plan_trials_for(plan, 2.0, ROUNDS * PHOTON_RAYS, MOST_PILOTS);
     return (trials){
         .plan = plan,
         .pixels_each = pixels_each(plan),
         .each = each,
-        .batch = MIN(each, MAX(each / BATCHES, CHUNK)),
         .task =
             {
                 .scene = plan->scene,

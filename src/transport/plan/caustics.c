@@ -2,13 +2,15 @@
 
 #include "transport/plan/work.h"
 
-/* Photons of a pass that it is tried with at most: so many for each of the camera's
-   samples, and in the smallest picture so many that there is something to gather. */
-enum { PHOTONS_PER_SAMPLE = 8, PHOTONS_AT_ONCE = 4096 };
+/* Photons of a pass that it is tried with at most, for each of the camera's samples. */
+enum { PHOTONS_PER_SAMPLE = 8 };
 
 /* No fewer photons than this share of all, if there must be any; and no fewer blurred
-   gathers than this share: what is weighed by more than ten stands out in the picture. */
-#define LEAST_WORTH 0.1
+   gathers than this share: what is weighed by more stands out in the picture. */
+static double least_share(void)
+{
+    return plan_share(N_SHARES - 1);
+}
 
 uint64_t caustics_most(const transport_plan *plan)
 {
@@ -16,7 +18,7 @@ uint64_t caustics_most(const transport_plan *plan)
     const film_settings *film = &plan->view->film;
     int64_t own = how->class_photons[PHOTON_CAUSTIC];
     int64_t samples = (int64_t)film->width * film->height * how->spp;
-    int64_t most = MAX(PHOTONS_PER_SAMPLE * samples, PHOTONS_AT_ONCE);
+    int64_t most = PHOTONS_PER_SAMPLE * samples;
     if (!caustic_casters_are_lit(plan->casters))
         return 0;
     return (uint64_t)(own > 0 ? own : MIN(settings_photons(how), most));
@@ -76,7 +78,7 @@ static void decide_blurred(transport_plan *plan, const aim_result *found,
 {
     bool noisier = found->noise > paths->noise;
     double ratio = noisier ? 1.0 : sqrt(found->noise / paths->noise);
-    plan->p_blurred = (float)fmax(fmax(ratio, found->unseen), LEAST_WORTH);
+    plan->p_blurred = (float)fmax(fmax(ratio, found->unseen), least_share());
     plan->p_blurred_in_media = plan->p_blurred / (float)fmax(paths->surfaces - 1.0, 1.0);
 }
 
@@ -95,7 +97,7 @@ static double share_to_send(transport_plan *plan, const aim_result *found,
     if (plan->how.class_photons[PHOTON_CAUSTIC] > 0)
         share = 1.0;
     else if (found->noise + found->unseen > 0.0 && scene_has_delta_lights(plan->scene))
-        share = fmax(share, LEAST_WORTH);
+        share = fmax(share, least_share());
     plan->trials[plan->n_trials - 1].taken = share > 0.0;
     return share;
 }

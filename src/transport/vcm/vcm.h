@@ -46,10 +46,6 @@
 #include "transport/transport.h"
 #include "transport/vcm/vcm_weights.h"
 
-/** The most a subpath is likely to survive a bounce with: it ends also in a box of
- * mirrors, after a hundred more. */
-#define MOST_SURVIVAL 0.99f
-
 /** @brief Which strategies run (setting vcm_strategies). */
 typedef struct vcm_strategies {
     bool connect;  /**< camera vertices to the light and to light vertices */
