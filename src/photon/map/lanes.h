@@ -46,12 +46,7 @@ static inline float fused(float a, float b, float c)
 #endif
 }
 
-/* ---- Eight: boxes of a tree, and the halves of what has no vector of its own ---- */
-
-static inline floats8 fill8(float x)
-{
-    return (floats8){x, x, x, x, x, x, x, x};
-}
+/* ---- Eight ---- */
 
 /** @brief fused() in each lane, to the bit. */
 static inline floats8 fused8(floats8 a, floats8 b, floats8 c)
@@ -215,6 +210,24 @@ static inline size_t pack_lanes(lane_floats values, unsigned bits, uint32_t firs
         memcpy(index + n, &i, sizeof i);
         n += (size_t)__builtin_popcount(four);
     }
+    return n;
+#endif
+}
+
+/** @brief Appends first + lane for the lanes named by bits, lowest first: room for LANES
+ * more is needed. @return their number */
+static inline size_t pack_numbers(unsigned bits, uint32_t first, uint32_t *number)
+{
+#if HAS_WIDE_LANES
+    const __m512i lanes =
+        _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    __m512i numbers = _mm512_add_epi32(_mm512_set1_epi32((int32_t)first), lanes);
+    _mm512_storeu_si512(number, _mm512_maskz_compress_epi32((__mmask16)bits, numbers));
+    return (size_t)__builtin_popcount(bits);
+#else
+    size_t n = 0;
+    for (unsigned left = bits; left; left &= left - 1u)
+        number[n++] = first + (uint32_t)__builtin_ctz(left);
     return n;
 #endif
 }

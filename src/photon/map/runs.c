@@ -31,38 +31,46 @@ bool photon_hits_reserve(photon_hits *hits, size_t capacity)
 /* Room is made for a piece at a time, as if all of it were found. */
 enum { PIECE = 1 << 12 }; /* size: photons */
 
-static void within_piece(const point_query *by, size_t begin, size_t end,
-                         within_search *search)
+/* What does not change is copied: the compiler can not know that writing hits leaves it
+ * as it is. */
+static inline __attribute__((always_inline)) bool
+within_by(point_query query, const photon_run *runs, size_t n, within_search *search)
 {
     photon_hits *hits = search->hits;
-    const point_query query = *by;
-    const bool selects = query_selects(by);
+    const bool selects = query_selects(&query);
     const float radius2 = search->radius2;
-    float *distance2 = hits->distance2;
-    uint32_t *index = hits->index;
-    size_t n = hits->n;
-    for (size_t i = begin; i < end; i += LANES) {
-        lane_floats d2;
-        unsigned bits = selects ? query_block(&query, i, end, radius2, &d2)
-                                : query_nearer(&query, i, end, radius2, &d2);
-        if (HAS_WIDE_LANES || bits)
-            n += pack_lanes(d2, bits, (uint32_t)i, distance2 + n, index + n);
+    for (size_t k = 0; k < n; k++) {
+        for (size_t i = runs[k].begin; i < runs[k].end;) {
+            size_t end = MIN(i + PIECE, runs[k].end);
+            if (!photon_hits_reserve(hits, hits->n + end - i + LANES))
+                return false;
+            for (; i < end; i += LANES) {
+                lane_floats d2;
+                unsigned bits = selects ? query_block(&query, i, end, radius2, &d2)
+                                        : query_nearer(&query, i, end, radius2, &d2);
+                if (HAS_WIDE_LANES || bits)
+                    hits->n +=
+                        pack_lanes(d2, bits, (uint32_t)i, hits->distance2 + hits->n,
+                                   hits->index + hits->n);
+            }
+            i = end;
+        }
     }
-    hits->n = n;
+    return true;
 }
 
 void within_runs(const photon_run *runs, size_t n, void *data)
 {
     within_search *search = data;
-    for (size_t i = 0; i < n; i++) {
-        for (size_t begin = runs[i].begin; begin < runs[i].end; begin += PIECE) {
-            size_t end = MIN(begin + PIECE, runs[i].end);
-            if (search->refused ||
-                !photon_hits_reserve(search->hits, search->hits->n + end - begin)) {
-                search->refused = true;
-                return;
-            }
-            within_piece(search->query, begin, end, search);
-        }
+    point_query query = *search->query;
+    if (search->refused)
+        return;
+    if (query_selects(&query) || query.flat) {
+        search->refused = !within_by(query, runs, n, search);
+        return;
     }
+    query.one_sided = query.flat = false; /* known, these fall out of the loop */
+    query.normal = query.curve = NULL;
+    query.face = 0;
+    search->refused = !within_by(query, runs, n, search);
 }
