@@ -17,7 +17,7 @@ import pathlib
 import re
 import sys
 
-MOST = 62
+MOST = 51
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ["src/photon", "src/transport"]

@@ -36,9 +36,6 @@ static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
    photons in a map no more are wanted than this share, and at least one. */
 #define MOST_SHARE (1.0 / 200.0)
 
-/* Caustics finer than this many pixels cannot be seen. */
-#define LEAST_PIXELS 1.0f
-
 /* id: a pass number no render reaches: the pilot's photons are not those of pass 0. */
 #define PILOT_PASS 0xffffffffu
 
@@ -55,13 +52,13 @@ typedef struct radius_rule {
     const photon_map *map; /* of the class' photons */
 } radius_rule;
 
-/* The finest radius of use at p. */
+/* The finest radius of use at p: what is finer than a pixel cannot be seen. */
 static double least_radius(const radius_rule *rule, vec3 p, photon_hits *hits)
 {
     const pilot *by = rule->pilot;
     if (!point_index_nearest(by->sight, p, 1, INFINITY, hits) || hits->n == 0)
         return 0.0;
-    return (double)(LEAST_PIXELS * by->plan->sight[hits->index[0]].pixel);
+    return (double)by->plan->sight[hits->index[0]].pixel;
 }
 
 /* By the distance to the k-th nearest photon of the pilot; 0: there are none. */

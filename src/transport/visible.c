@@ -6,10 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    MAX_BOUNCES = 16,
-    MOST_POINTS = 4096, /* one for a patch of 14 x 14 pixels in a picture of 1024 x 768 */
-};
+/* One for a patch of 14 x 14 pixels in a picture of 1024 x 768. */
+enum { MOST_POINTS = 4096 };
 
 /* One of so many points is near: what is beyond a window, however much of the picture it
    is, makes no pixels wide. */
@@ -31,7 +29,7 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
     const scene_traveller who = {.scene = from->scene, .w = &from->w, .n_rays = &untold};
     path_segment path = path_segment_from_eye(from->view, r);
     float way = 0.0f;
-    for (int bounces = 0; bounces < MAX_BOUNCES; bounces++) {
+    for (int bounces = 0; bounces < LONG_WAY; bounces++) {
         surface_hit hit;
         bsdf b;
         bsdf_sample next;
