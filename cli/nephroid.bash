@@ -21,6 +21,11 @@ _nephroid() {
             sed -n 's/^| `\([^`]*\)`.*/\1/p')" -- "$word")
         return
         ;;
+    --preset)
+        mapfile -t COMPREPLY < <(compgen -W "$("$program" settings --presets |
+            sed 's/ .*//')" -- "$word")
+        return
+        ;;
     --metric)
         mapfile -t COMPREPLY < <(compgen -W 'rmse relmse psnr flip' -- "$word")
         return

@@ -26,6 +26,8 @@ bool overrides_apply(const overrides *o, NephSettings *settings, GError **error)
 {
     if ((o->time || o->noise) && !neph_settings_set(settings, "passes", "0", error))
         return false;
+    if (o->preset && !neph_settings_load_preset(settings, o->preset, error))
+        return false;
     if (o->file && !neph_settings_load(settings, o->file, error))
         return false;
     for (char **pair = o->set; pair && *pair; pair++)

@@ -1,7 +1,8 @@
 /*
  * Settings from the command line, over those of the scene.
  *
- *   scene file < --settings FILE < --set name=value in their order < --spp and the like
+ *   scene file < --preset NAME < --settings FILE < --set name=value in their order <
+ * --spp and the like
  *
  * With --time or --noise the scene's own number of passes is no limit.
  */
@@ -11,8 +12,9 @@
 
 /** @brief The options as given; zero: none. */
 typedef struct overrides {
-    char *file; /**< --settings */
-    char **set; /**< --set, "name=value" */
+    char *preset; /**< --preset */
+    char *file;   /**< --settings */
+    char **set;   /**< --set, "name=value" */
     char *integrator, *passes, *time, *noise, *spp, *threads,
         *seed; /**< NULL: not given */
 } overrides;

@@ -5,11 +5,17 @@
 #include "command.h"
 #include "message.h"
 
-static gboolean as_json, as_markdown;
+#include <string.h>
+
+static gboolean as_json, as_markdown, all_presets;
+static char *preset;
 
 static const GOptionEntry entries[] = {
     {"json", 0, 0, G_OPTION_ARG_NONE, &as_json, "For programs", NULL},
     {"markdown", 0, 0, G_OPTION_ARG_NONE, &as_markdown, "As a table of a manual", NULL},
+    {"presets", 0, 0, G_OPTION_ARG_NONE, &all_presets,
+     "List the presets: settings as a text on photon mapping describes them", NULL},
+    {"preset", 0, 0, G_OPTION_ARG_STRING, &preset, "Print a preset's settings", "NAME"},
     G_OPTION_ENTRY_NULL};
 
 static const usage how = {
@@ -49,6 +55,26 @@ static char *markdown(void)
     return g_string_free(out, FALSE);
 }
 
+/* A line a preset: its name, and what it follows. */
+static int list_presets(void)
+{
+    g_auto(GStrv) names = neph_settings_presets();
+    g_autoptr(GString) out = g_string_new(NULL);
+    for (char **name = names; *name; name++) {
+        g_autofree char *text = neph_settings_preset_text(*name, NULL);
+        g_autofree char *first = g_strndup(text, text ? strcspn(text, "\n") : 0);
+        g_string_append_printf(out, "%s  %s\n", *name, first + strspn(first, "# "));
+    }
+    return print_result("%s", out->str);
+}
+
+static int print_preset(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *text = neph_settings_preset_text(preset, &error);
+    return text ? print_result("%s", text) : report_error(error);
+}
+
 int command_settings(int argc, char **argv)
 {
     int exit_code;
@@ -56,6 +82,10 @@ int command_settings(int argc, char **argv)
         return exit_code;
     if (as_json && as_markdown)
         return usage_error("--json and --markdown exclude each other");
+    if (all_presets)
+        return list_presets();
+    if (preset)
+        return print_preset();
     g_autofree char *text = as_markdown ? markdown() : neph_settings_describe(as_json);
     return print_result("%s", text);
 }

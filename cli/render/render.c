@@ -27,6 +27,9 @@ static const GOptionEntry entries[] = {
      "Write the image there: .exr, .png, .jpg, .hdr or .pfm; may be given again", "FILE"},
     {"set", 's', 0, G_OPTION_ARG_STRING_ARRAY, &given.settings.set,
      "Change a setting; may be given again", "NAME=VALUE"},
+    {"preset", 0, 0, G_OPTION_ARG_STRING, &given.settings.preset,
+     "Settings as a text on photon mapping describes them; settings --presets lists them",
+     "NAME"},
     {"settings", 0, 0, G_OPTION_ARG_FILENAME, &given.settings.file,
      "Read settings from lines of name = value", "FILE"},
     {"size", 0, 0, G_OPTION_ARG_STRING, &given.size, "Size of the image, pixels", "WxH"},
@@ -70,7 +73,8 @@ static const usage how = {
     .description =
         "Without -o the image goes to the name in the scene's Film, without its folders, "
         "else to\nthe scene's name with .exr; both in the current folder.\n\n"
-        "Settings: the scene's are overridden by --settings, these by --set in the "
+        "Settings: the scene's are overridden by --preset, these by --settings, these by "
+        "--set in the "
         "order given,\nthese by --spp, --passes, --time, --noise, --integrator, "
         "--threads "
         "and --seed.\n'nephroid settings' lists them all. With --time or --noise the "

@@ -129,6 +129,16 @@ NEPH_API char **neph_settings_unread(const NephSettings *settings,
  * place of the first mistake; the settings are as they were. */
 NEPH_API bool neph_settings_load(NephSettings *settings, const char *path,
                                  GError **error);
+/** @brief The presets that come with the program: settings as a text on photon mapping
+ * describes them. Names in order, NULL-terminated, freed with g_strfreev. */
+NEPH_API char **neph_settings_presets(void);
+/** @brief The lines of a preset, as neph_settings_load reads them; the first is a comment
+ * that says what it follows. Owned by the caller (g_free). NEPH_ERROR_USAGE with the list
+ * of presets if there is none of that name. */
+NEPH_API char *neph_settings_preset_text(const char *name, GError **error);
+/** @brief Sets what a preset says; all else stays as it is. Errors as above. */
+NEPH_API bool neph_settings_load_preset(NephSettings *settings, const char *name,
+                                        GError **error);
 /** @brief The table of all settings, for people (json false) or programs. Owned by
  * caller. */
 NEPH_API char *neph_settings_describe(bool json);

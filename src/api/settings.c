@@ -1,6 +1,7 @@
 #include "api/objects.h"
 
 #include "base/json.h"
+#include "settings/presets.h"
 
 _Static_assert(NEPH_SETTING_BOOL == (int)SETTING_BOOL, "types are one list");
 _Static_assert(NEPH_SETTING_COUNT == (int)SETTING_COUNT, "types are one list");
@@ -78,6 +79,21 @@ char **neph_settings_unread(const NephSettings *s, const NephSettings *given)
 bool neph_settings_load(NephSettings *s, const char *path, GError **error)
 {
     return settings_load(&s->values, path, error);
+}
+
+char **neph_settings_presets(void)
+{
+    return settings_presets();
+}
+
+char *neph_settings_preset_text(const char *name, GError **error)
+{
+    return settings_preset_text(name, error);
+}
+
+bool neph_settings_load_preset(NephSettings *s, const char *name, GError **error)
+{
+    return settings_load_preset(&s->values, name, error);
 }
 
 static void describe_words_json(json *j, const setting_row *row)

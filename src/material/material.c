@@ -72,6 +72,11 @@ bool material_casts_caustics(const material *m)
     return m->kind->possible_lobes(m->self) & (LOBE_SPECULAR | LOBE_GLOSSY);
 }
 
+bool material_is_conductor(const material *m)
+{
+    return m->kind->is_metal;
+}
+
 const struct medium *material_interior(const material *m)
 {
     return m->kind->interior ? m->kind->interior(m->self) : NULL;

@@ -12,7 +12,8 @@
 typedef struct bsdf_options {
     bool deterministic; /**< multiple_samples off: rough is smooth, glass only refracts
                            (or reflects totally), coats are dropped */
-    int least_walks;    /**< averaged where light walks at random between layers */
+    bool metal_is_followed; /**< a conductor's lobe is GLOSSY however rough it is */
+    int least_walks;        /**< averaged where light walks at random between layers */
 } bsdf_options;
 
 typedef struct material_kind {
@@ -27,6 +28,8 @@ typedef struct material_kind {
     /** Lobe classes and sides that may occur anywhere on it: SPECULAR or GLOSSY ones cast
      *  caustics. */
     unsigned (*possible_lobes)(const void *self);
+    /** Bare metal. */
+    bool is_metal;
     /** What fills a solid made of it; NULL: none. May be NULL. */
     const struct medium *(*interior)(const void *self);
     /** True if its surfaces bound a body that refracts. May be NULL: they do not. */
@@ -60,6 +63,9 @@ bool material_encloses(const material *m);
 unsigned material_possible_lobes(const material *m);
 /** @brief What fills a solid made of it; NULL: none. */
 const struct medium *material_interior(const material *m);
+
+/** @brief True of bare metal. */
+bool material_is_conductor(const material *m);
 
 /** @brief True if light may leave a surface of it by a specular or glossy lobe. */
 bool material_casts_caustics(const material *m);

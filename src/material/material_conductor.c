@@ -38,6 +38,8 @@ static void metal_bsdf(const void *self, const surface_hit *hit, const wavelengt
     if (!options->deterministic)
         roughness = roughness_input_eval(&m->roughness, hit);
     bsdf_make_conductor(out, eta, k, roughness);
+    if (options->metal_is_followed && (out->lobes & LOBE_DIFFUSE))
+        out->lobes = LOBE_GLOSSY | LOBE_REFLECTION;
 }
 
 static unsigned metal_lobes(const void *self)
@@ -53,4 +55,5 @@ const material_kind material_conductor = {
     .free = metal_free,
     .make_bsdf = metal_bsdf,
     .possible_lobes = metal_lobes,
+    .is_metal = true,
 };

@@ -79,6 +79,15 @@ GStrv settings_unread(const settings *s, const settings *given)
     return g_strv_builder_end(builder);
 }
 
+void settings_forget_unread(settings *s)
+{
+    size_t n;
+    const setting_row *rows = settings_table(&n);
+    for (size_t i = 0; i < n; i++)
+        if (!settings_reads(s, &rows[i]))
+            store(s, &rows[i], rows[i].initial);
+}
+
 double settings_most_passes(const settings *s)
 {
     bool other_rule = s->time > 0.0 || s->noise > 0.0;
@@ -92,6 +101,11 @@ double settings_planned_passes(const settings *s)
                                    : USUAL_PASSES;
 }
 
+bool settings_one_map(const settings *s)
+{
+    return s->one_map && !s->final_gather;
+}
+
 int64_t settings_photons(const settings *s)
 {
     return s->photons > 0 ? s->photons : USUAL_PHOTONS;
@@ -101,6 +115,37 @@ int64_t settings_photons(const settings *s)
 static bool is_depth(const char *name)
 {
     return g_ascii_strcasecmp(name, "maxdepth") == 0;
+}
+
+/* A name that is given to a row with numbers of its own. */
+typedef struct counted_name {
+    const char *name;
+    double least, shift; /* ours is as much more */
+    const char *why;     /* what is below the least */
+    bool once;           /* the number is of the render, which has one pass */
+    bool per_light;
+} counted_name;
+
+static const counted_name *find_counted(const char *name)
+{
+    static const char none[] = "; with 0 no photon would be stored";
+    static const counted_name names[] = {
+        {"maxForwardBounces", 1, -1, none, false, false},
+        {"maxBackwardBounces", 0, 1, "", false, false},
+        {"numEmitted", 1, 0, none, true, false},
+        {"DIRECT_PHOTONS_PER_LIGHT", 1, 0, none, true, true},
+        {"INDIRECT_PHOTONS_PER_LIGHT", 1, 0, none, true, true},
+        {"CAUSTIC_PHOTONS_PER_LIGHT", 1, 0, none, true, true},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++)
+        if (g_ascii_strcasecmp(names[i].name, name) == 0)
+            return &names[i];
+    return NULL;
+}
+
+static bool is_render_mode(const char *name)
+{
+    return g_ascii_strcasecmp(name, "RENDERMODE") == 0;
 }
 
 /** Owned by the caller. */
@@ -116,16 +161,21 @@ static char *expected(const setting_row *row, const char *name)
 {
     if (row->type == SETTING_BOOL)
         return g_strdup("true or false");
+    if (is_render_mode(name))
+        return g_strdup("PHOTONMAP or MONTECARLO");
     if (row->type == SETTING_CHOICE) {
         g_autofree char *words = g_strjoinv(", ", (char **)row->words);
         return g_strdup_printf("one of %s", words);
     }
+    const counted_name *counted = find_counted(name);
     g_autofree char *apart = count_text(row, (int64_t)row->initial);
     bool stands = row->initial < row->low && !is_depth(name);
-    return g_strdup_printf("%s%s%s from %.16g to %.16g%s%s", stands ? apart : "",
+    double shift = counted ? counted->shift : 0.0;
+    return g_strdup_printf("%s%s%s from %.16g to %.16g%s%s%s", stands ? apart : "",
                            stands ? " or " : "",
                            row->type == SETTING_COUNT ? "a whole number" : "a number",
-                           row->low, row->high, *row->unit ? " " : "", row->unit);
+                           counted ? counted->least : row->low, row->high - shift,
+                           *row->unit ? " " : "", row->unit, counted ? counted->why : "");
 }
 
 static bool read_bool(const char *text, double *out)
@@ -181,7 +231,12 @@ static bool read_quantity(const setting_row *row, const char *text, double *out)
         number[strlen(number) - strlen(row->unit)] = '\0';
         g_strchomp(number);
     }
-    return read_number(number, out) && is_in_range(row, *out);
+    return read_number(number, out);
+}
+
+static bool is_whole(double x)
+{
+    return fabs(x - rint(x)) <= 0.0;
 }
 
 static bool read_value(const setting_row *row, const char *text, double *out)
@@ -192,10 +247,10 @@ static bool read_value(const setting_row *row, const char *text, double *out)
     case SETTING_CHOICE:
         return read_choice(row->words, text, out);
     case SETTING_COUNT:
-        return read_apart(row, text, out) ||
-               (read_quantity(row, text, out) && fabs(*out - rint(*out)) <= 0.0);
+        return read_apart(row, text, out) || (read_quantity(row, text, out) &&
+                                              is_whole(*out) && is_in_range(row, *out));
     case SETTING_REAL:
-        return read_quantity(row, text, out);
+        return read_quantity(row, text, out) && is_in_range(row, *out);
     }
     return false;
 }
@@ -234,6 +289,33 @@ static void set_sppm(settings *s)
         s->class_nearest[c] = 0;
 }
 
+static bool set_render_mode(settings *s, const char *text)
+{
+    bool maps = g_ascii_strcasecmp(text, "PHOTONMAP") == 0;
+    if (!maps && g_ascii_strcasecmp(text, "MONTECARLO") != 0)
+        return false;
+    s->integrator = maps ? INTEGRATOR_PHOTONMAP : INTEGRATOR_PATH;
+    return true;
+}
+
+static bool set_counted(settings *s, const setting_row *row, const counted_name *name,
+                        const char *text)
+{
+    double n, none = row->initial;
+    bool stands_apart = read_apart(row, text, &n);
+    if (!stands_apart && (!read_quantity(row, text, &n) || !is_whole(n)))
+        return false;
+    stands_apart |= row->words && fabs(n - none) <= 0.0;
+    if (!stands_apart && (n < name->least || n + name->shift > row->high))
+        return false;
+    store(s, row, stands_apart ? none : n + name->shift);
+    if (name->once)
+        s->passes = 1;
+    if (name->per_light)
+        s->photons_per_light = true;
+    return true;
+}
+
 static bool set_row(settings *s, const setting_row *row, const char *name,
                     const char *text)
 {
@@ -244,6 +326,11 @@ static bool set_row(settings *s, const setting_row *row, const char *name,
     }
     if (is_depth(name))
         return set_depth(s, text);
+    if (is_render_mode(name))
+        return set_render_mode(s, text);
+    const counted_name *counted = find_counted(name);
+    if (counted)
+        return set_counted(s, row, counted, text);
     int cone = class_of_cone_alias(row, name);
     if (cone >= 0 && read_number(text, &number) && number < 1.0) {
         s->class_kernel[cone] = KERNEL_CONSTANT;

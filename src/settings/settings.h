@@ -32,6 +32,12 @@ typedef enum emission_choice {
     EMISSION_SPECULAR_AREA,
     EMISSION_GUIDED
 } emission_choice;
+/** On what surfaces photons are stored: see photon/trace/trace.h. */
+typedef enum photon_lobes_choice {
+    PHOTON_LOBES_DIFFUSE,
+    PHOTON_LOBES_NEEDED,
+    PHOTON_LOBES_GLOSSY
+} photon_lobes_choice;
 typedef enum integrator_choice {
 #define INTEGRATOR(choice, word) INTEGRATOR_##choice,
 #include "settings/integrator.def"
@@ -61,8 +67,13 @@ typedef struct settings {
     int64_t photons; /**< emitted a pass, shared among the classes left at 0; 0:
                         automatic, see settings_photons */
     int64_t class_photons[N_CLASSES]; /**< 0: a share of photons */
+    bool photons_per_light;           /**< photons and class_photons are of each light */
+    bool one_map;                     /**< see settings_one_map */
+    int photon_lobes;                 /**< photon_lobes_choice */
+    bool photon_survivors;            /**< stored after the roulette */
     int64_t class_nearest[N_CLASSES]; /**< 0: fixed radius */
     double radius;                    /**< m; 0: automatic */
+    bool one_radius;                  /**< of a class: the same everywhere */
     int class_kernel[N_CLASSES];      /**< kernel_choice */
     double class_cone_k[N_CLASSES];
     int photon_map; /**< map_choice */
@@ -124,8 +135,12 @@ double settings_most_passes(const settings *s);
  * on when `time` and `noise` end the render, so neither does what a pass renders. Less
  * than one where there is no time for a whole one. */
 double settings_planned_passes(const settings *s);
+/** @brief Whether all photons go into one map, counted as indirect ones. */
+bool settings_one_map(const settings *s);
 /** @brief Photons emitted a pass, at most where that is automatic. */
 int64_t settings_photons(const settings *s);
+/** @brief Puts back what the integrator does not read. */
+void settings_forget_unread(settings *s);
 /** @brief Sets from text, checked against type and range. ERROR_USAGE naming setting,
  * what was expected and what was found. */
 bool settings_set(settings *s, const char *name, const char *value, GError **error);

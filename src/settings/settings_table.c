@@ -24,6 +24,7 @@ static const char *const map_words[] = {
     "auto", NULL};
 static const char *const roulette_words[] = {"mean", "max", NULL};
 static const char *const emission_words[] = {"uniform", "specular-area", "guided", NULL};
+static const char *const lobe_words[] = {"diffuse", "needed", "glossy", NULL};
 static const char *const vcm_words[] = {"all", "bpt", "bpm", "ppm", "light", NULL};
 static const char *const unlimited[] = {"unlimited", NULL};
 
@@ -31,9 +32,11 @@ static const char *const unlimited[] = {"unlimited", NULL};
 
 static const setting_row table[] = {
     {"integrator", SETTING_CHOICE, AT(integrator), "", 0, N_INTEGRATORS - 1,
-     INTEGRATOR_AUTO, integrator_words, "", "all",
+     INTEGRATOR_AUTO, integrator_words, "RENDERMODE", "all",
      "The algorithm that carries light from the lamps to the eye. sppm is photonmap with "
-     "spp = 1, all nearest = 0, final_gather off and alpha = 2/3: set it first."},
+     "spp = 1, all nearest = 0, final_gather off and alpha = 2/3: set it first. The "
+     "alias "
+     "is PHOTONMAP or MONTECARLO, which is path."},
     {"passes", SETTING_REAL, AT(passes), "", 0, MOST_PASSES, 0, NULL,
      "iterations numiterations", "all",
      "Independent passes whose mean is the image; 1 is classic photon mapping. Of a last "
@@ -62,11 +65,12 @@ static const setting_row table[] = {
      "photons "
      "are gathered, which is one; interfaces are none. Unlimited (-1): chance alone ends "
      "paths. The alias "
-     "maxdepth d bounds photons too, by d - 1."},
+     "maxBackwardBounces n leaves out that one: n + 1. maxdepth d bounds photons too, by "
+     "d - 1."},
     {"max_forward_bounces", SETTING_COUNT, AT(max_forward_bounces), "", 0, 1e6, -1,
      unlimited, "maxForwardBounces MAX_PHOTON_BOUNCES", "photonmap auto",
      "Scattering events of a photon; 0 stores it at its first hit only. Unlimited (-1): "
-     "chance alone ends it."},
+     "chance alone ends it. The alias maxForwardBounces n counts hits: n - 1."},
     {"final_gather", SETTING_BOOL, AT(final_gather), "", 0, 1, 0, NULL, "finalgather",
      "photonmap",
      "Gathers indirect light by rays to the surroundings instead of straight from the "
@@ -87,19 +91,38 @@ static const setting_row table[] = {
     {"photons", SETTING_COUNT, AT(photons), "photons/pass", 0, 1e12, 0, NULL,
      "numEmitted photonsperiteration photons_per_pass", "photonmap auto vcm",
      "Photons emitted a pass, shared among the classes that have no number of their own; "
-     "0: 400000, but no more than camera paths where vcm connects them."},
+     "0: 400000, but no more than camera paths where vcm connects them. The alias "
+     "numEmitted emits them once: it sets passes to 1 too."},
     {"direct_photons", SETTING_COUNT, AT(class_photons[0]), "photons/pass", 0, 1e12, 0,
      NULL, "DIRECT_PHOTONS_PER_LIGHT directphotons", "photonmap",
-     "Photons emitted a pass for the direct map, over all lights; 0: a share of "
-     "photons."},
+     "Photons emitted a pass for the direct map; 0: a share of photons. The alias "
+     "DIRECT_PHOTONS_PER_LIGHT sets passes to 1 and photons_per_light too."},
     {"indirect_photons", SETTING_COUNT, AT(class_photons[1]), "photons/pass", 0, 1e12, 0,
      NULL, "INDIRECT_PHOTONS_PER_LIGHT indirectphotons", "photonmap",
-     "Photons emitted a pass for the indirect map, over all lights; 0: a share of "
-     "photons."},
+     "Photons emitted a pass for the indirect map; 0: a share of photons. The alias "
+     "INDIRECT_PHOTONS_PER_LIGHT sets passes to 1 and photons_per_light too."},
     {"caustic_photons", SETTING_COUNT, AT(class_photons[2]), "photons/pass", 0, 1e12, 0,
      NULL, "CAUSTIC_PHOTONS_PER_LIGHT causticphotons", "photonmap auto",
-     "Photons emitted a pass for the caustic map, over all lights; 0: a share of "
-     "photons."},
+     "Photons emitted a pass for the caustic map; 0: a share of photons. The alias "
+     "CAUSTIC_PHOTONS_PER_LIGHT sets passes to 1 and photons_per_light too."},
+    {"photons_per_light", SETTING_BOOL, AT(photons_per_light), "", 0, 1, 0, NULL, "",
+     "photonmap",
+     "The numbers of photons are those of each light, dim or bright; off: of all lights "
+     "together, each getting as many as its power deserves. Where guided, photons for "
+     "caustics go to the lights that the guide finds."},
+    {"one_map", SETTING_BOOL, AT(one_map), "", 0, 1, 0, NULL, "", "photonmap",
+     "Photons are emitted once and kept in one map, whatever they did before they landed "
+     "(estimated and counted as indirect); off: a map for each class. Final gathering "
+     "looks at caustics straight, and keeps the three."},
+    {"photon_lobes", SETTING_CHOICE, AT(photon_lobes), "", 0, 2, PHOTON_LOBES_NEEDED,
+     lobe_words, "", "photonmap",
+     "Where photons are stored: on diffuse surfaces only, never on a conductor; where "
+     "needed, also on glossy ones what no path from the eye finds; or on all that are no "
+     "mirror, where paths from the eye then end."},
+    {"photon_survivors", SETTING_BOOL, AT(photon_survivors), "", 0, 1, 0, NULL, "",
+     "photonmap",
+     "Only photons that survive the roulette where they land are stored there, with as "
+     "much more flux; off: all."},
     {"direct_nearest", SETTING_COUNT, AT(class_nearest[0]), "photons", 2, 1e7, 0, NULL,
      "DIRECT_NEARBY_PHOTONS", "photonmap",
      "Nearest direct photons in an estimate, the last of which only tells how far it "
@@ -116,6 +139,10 @@ static const setting_row table[] = {
      "photonRadius gather_radius", "photonmap auto vcm",
      "Radius of the estimate in the first pass, or its bound for nearest photons; 0: "
      "chosen from the photons and the pixels."},
+    {"one_radius", SETTING_BOOL, AT(one_radius), "", 0, 1, 0, NULL, "", "photonmap",
+     "The radius chosen for a class is the same everywhere; off: larger where its "
+     "photons "
+     "are few."},
     {"direct_kernel", SETTING_CHOICE, AT(class_kernel[0]), "", 0, N_KERNELS - 1,
      KERNEL_EPANECHNIKOV, kernel_words, "", "photonmap",
      "How a direct photon's weight falls with distance."},

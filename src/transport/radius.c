@@ -174,7 +174,9 @@ static bool send_pilot(const pilot *p, photon_class c, const cancel_flag *cancel
 static double wanted_in_reach(const transport_plan *plan, photon_class c, double n)
 {
     double passes = fmax(settings_planned_passes(&plan->how), 1.0);
-    double wanted = fmax(photons_wanted[c] / passes, photons_wanted_least[c]);
+    bool has_edges = settings_one_map(&plan->how); /* not of indirect light alone */
+    photon_class like = has_edges ? PHOTON_DIRECT : c;
+    double wanted = fmax(photons_wanted[like] / passes, photons_wanted_least[like]);
     return c == PHOTON_CAUSTIC ? fmin(wanted, fmax(MOST_SHARE * n, 1.0)) : wanted;
 }
 
@@ -202,6 +204,8 @@ static bool choose_on_surfaces(pilot *p, photon_class c, const pilot_maps *maps,
     if (!plan->radius_cache[c])
         return false;
     plan->radius[c] = typical_radius(&rule, plan->radius_cache[c], c == PHOTON_CAUSTIC);
+    if (plan->how.one_radius)
+        g_clear_pointer(&plan->radius_cache[c], radius_cache_free);
     return true;
 }
 

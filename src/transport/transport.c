@@ -44,6 +44,7 @@ void transport_scratch_clear(transport_scratch *scratch)
 transport_plan transport_plan_of(const view *v, const settings *how)
 {
     transport_plan plan = {.scene = v->scene, .view = v, .how = *how};
+    settings_forget_unread(&plan.how);
     plan.how.threads = parallel_threads((unsigned)how->threads);
     return plan;
 }
@@ -59,8 +60,10 @@ bool transport_plan_prepare(transport_plan *plan, const cancel_flag *cancel,
 
 bool transport_plan_find_casters(transport_plan *plan, GError **error)
 {
+    bool metals = photon_follows_metals(&plan->how);
     if (!plan->casters)
-        plan->casters = caustic_casters_new(plan->scene, error);
+        plan->casters = metals ? caustic_casters_new_with_metals(plan->scene, error)
+                               : caustic_casters_new(plan->scene, error);
     return plan->casters != NULL;
 }
 

@@ -62,6 +62,7 @@ size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point
                     .view = plan->view,
                     .w = scene_trial_wavelengths(plan->scene, 0)};
     from.options.deterministic = !plan->how.multiple_samples;
+    from.options.metal_is_followed = photon_follows_metals(&plan->how);
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x6c6f6f6bu);
     size_t found = 0;
     for (uint32_t i = 0; i < n; i++) {

@@ -23,7 +23,7 @@ expect() {
     echo "$result $number /completion/$name"
 }
 
-echo 1..7
+echo 1..8
 # shellcheck source=../cli/nephroid.bash
 . "$completion"
 expect command render ren
@@ -32,6 +32,7 @@ expect json '--json' info --j
 expect setting 'final_gather=' render --set final
 expect metric relmse compare --metric rel
 expect integrator photonmap render --integrator pho
+expect preset 002 render --preset 00
 number=$((number + 1))
 [ -z "$(offered render --nothing)" ] && echo "ok $number /completion/nothing" ||
     echo "not ok $number /completion/nothing"

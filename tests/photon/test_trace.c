@@ -88,7 +88,7 @@ static void test_emitted_flux_is_the_power(void)
         enum { N = 1 << 14 };
         for (uint32_t k = 0; k < N; k++) {
             sampler random = sampler_make(i, k);
-            photon_start start;
+            photon_start start = {0};
             if (photon_emit(s, &w, &random, &start))
                 sum += start.flux / N;
         }

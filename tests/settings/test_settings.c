@@ -142,15 +142,79 @@ static void test_names_of_the_seeds(void)
     set(&s, "CAUSTIC_PHOTONS_PER_LIGHT", "77");
     set(&s, "INDIRECT_NEARBY_PHOTONS", "88");
     set(&s, "MULTIPLE_SAMPLES", "false");
-    g_assert_cmpint(s.max_forward_bounces, ==, 3);
-    g_assert_cmpint(s.max_backward_bounces, ==, 4);
+    g_assert_cmpint(s.max_forward_bounces, ==, 2);  /* it counts hits */
+    g_assert_cmpint(s.max_backward_bounces, ==, 5); /* it leaves out the last */
     g_assert_cmpint(s.photons, ==, 1234);
+    g_assert_cmpfloat(s.passes, ==, 1.0); /* so many in all */
     g_assert_cmpfloat(s.radius, ==, 0.5);
     g_assert_cmpint(s.class_photons[2], ==, 77);
+    g_assert_true(s.photons_per_light);
     g_assert_cmpint(s.class_nearest[1], ==, 88);
     g_assert_false(s.multiple_samples);
     set(&s, "MAX_PHOTON_BOUNCES", "9");
     g_assert_cmpint(s.max_forward_bounces, ==, 9);
+}
+
+/* Their numbers bound ours. */
+static void test_ends_of_the_seeds_names(void)
+{
+    settings s = settings_default();
+    set(&s, "maxForwardBounces", "1");
+    g_assert_cmpint(s.max_forward_bounces, ==, 0);
+    set(&s, "maxForwardBounces", "unlimited");
+    g_assert_cmpint(s.max_forward_bounces, ==, -1);
+    set(&s, "maxForwardBounces", "1000001");
+    g_assert_cmpint(s.max_forward_bounces, ==, 1000000);
+    set(&s, "MAXBACKWARDBOUNCES", "0");
+    g_assert_cmpint(s.max_backward_bounces, ==, 1);
+    set(&s, "maxBackwardBounces", "-1");
+    g_assert_cmpint(s.max_backward_bounces, ==, -1);
+    set(&s, "DIRECT_PHOTONS_PER_LIGHT", "1e6");
+    g_assert_cmpint(s.class_photons[0], ==, 1000000);
+    refuse("maxForwardBounces", "0",
+           "setting 'maxForwardBounces': expected unlimited or a whole number from 1 to "
+           "1000001; with 0 no photon would be stored, found '0'");
+    refuse("maxBackwardBounces", "1000000",
+           "setting 'maxBackwardBounces': expected unlimited or a whole number from 0 to "
+           "999999, found '1000000'");
+    refuse("numEmitted", "0",
+           "setting 'numEmitted': expected a whole number from 1 to 1000000000000 "
+           "photons/pass; with 0 no photon would be stored, found '0'");
+    refuse("numEmitted", "2.5",
+           "setting 'numEmitted': expected a whole number from 1 to 1000000000000 "
+           "photons/pass; with 0 no photon would be stored, found '2.5'");
+}
+
+static void test_render_mode(void)
+{
+    settings s = settings_default();
+    set(&s, "RENDERMODE", "PHOTONMAP");
+    g_assert_cmpint(s.integrator, ==, INTEGRATOR_PHOTONMAP);
+    set(&s, "RenderMode", "MonteCarlo");
+    g_assert_cmpint(s.integrator, ==, INTEGRATOR_PATH);
+    refuse("RENDERMODE", "WHITTED",
+           "setting 'RENDERMODE': expected PHOTONMAP or MONTECARLO, found 'WHITTED'");
+}
+
+/* What is not read is as if it had not been said. */
+static void test_forgets_what_is_not_read(void)
+{
+    settings s = settings_default(), expected = s;
+    set(&s, "one_map", "true");
+    set(&s, "photon_lobes", "diffuse");
+    set(&s, "final_gather", "true");
+    set(&s, "spp", "9");
+    settings_forget_unread(&s);
+    expected.given = s.given;
+    expected.spp = 9;
+    g_assert_cmpmem(&s, sizeof s, &expected, sizeof expected);
+    set(&s, "integrator", "photonmap");
+    set(&s, "one_map", "true");
+    settings_forget_unread(&s);
+    g_assert_true(s.one_map);
+    g_assert_true(settings_one_map(&s));
+    set(&s, "final_gather", "true");
+    g_assert_false(settings_one_map(&s));
 }
 
 /* What stands apart from the numbers may have a name, which is what is written. */
@@ -304,6 +368,9 @@ int main(int argc, char **argv)
     g_test_add_func("/settings/default-is-the-table", test_default_is_the_table);
     g_test_add_func("/settings/values", test_values);
     g_test_add_func("/settings/names-of-the-seeds", test_names_of_the_seeds);
+    g_test_add_func("/settings/ends-of-the-seeds-names", test_ends_of_the_seeds_names);
+    g_test_add_func("/settings/render-mode", test_render_mode);
+    g_test_add_func("/settings/forgets-what-is-not-read", test_forgets_what_is_not_read);
     g_test_add_func("/settings/words-of-counts", test_words_of_counts);
     g_test_add_func("/settings/cone-alias", test_cone_alias_chooses_the_kernel);
     g_test_add_func("/settings/maxdepth", test_maxdepth_bounds_both_ways);

@@ -5,15 +5,16 @@
 
 /* ---- Surfaces ---- */
 
-static bool casts_caustics(const scene *s, const shape *on)
+static bool is_caster(const caustic_casters *c, int index)
 {
-    return on->material != NO_INDEX && on->area > 0.0f &&
-           material_casts_caustics(s->materials->pdata[on->material]);
+    const material *m = index == NO_INDEX ? NULL : c->scene->materials->pdata[index];
+    return m && (material_casts_caustics(m) || (c->metals && material_is_conductor(m)));
 }
 
 /* The shapes of each object, or (first) of the world, that cast caustics. */
-static GArray **shapes_by_object(const scene *s)
+static GArray **shapes_by_object(const caustic_casters *c)
 {
+    const scene *s = c->scene;
     size_t n = (size_t)s->n_objects + 1;
     GArray **lists = g_new0(GArray *, n);
     for (size_t i = 0; i < n; i++)
@@ -21,7 +22,7 @@ static GArray **shapes_by_object(const scene *s)
     for (guint i = 0; i < s->shapes->len; i++) {
         const shape *on = s->shapes->pdata[i];
         int index = (int)i;
-        if (casts_caustics(s, on))
+        if (on->area > 0.0f && is_caster(c, on->material))
             g_array_append_val(lists[on->object + 1], index);
     }
     return lists;
@@ -87,7 +88,7 @@ static bool find_surfaces(caustic_casters *c, GError **error)
 {
     const scene *s = c->scene;
     box3 box = box3_empty();
-    GArray **lists = shapes_by_object(s);
+    GArray **lists = shapes_by_object(c);
     float *areas = list_all(c, lists, &box, error);
     free_lists(lists, s->n_objects);
     c->center = box3_is_empty(box) ? s->center : box3_center(box);
@@ -136,14 +137,25 @@ static bool find_power(caustic_casters *c, GError **error)
     return done;
 }
 
-caustic_casters *caustic_casters_new(const scene *s, GError **error)
+static caustic_casters *casters_new(const scene *s, bool metals, GError **error)
 {
     caustic_casters *c = g_aligned_alloc0(1, sizeof *c, _Alignof(caustic_casters));
     c->scene = s;
+    c->metals = metals;
     if (find_surfaces(c, error) && find_power(c, error))
         return c;
     caustic_casters_free(c);
     return NULL;
+}
+
+caustic_casters *caustic_casters_new(const scene *s, GError **error)
+{
+    return casters_new(s, false, error);
+}
+
+caustic_casters *caustic_casters_new_with_metals(const scene *s, GError **error)
+{
+    return casters_new(s, true, error);
 }
 
 void caustic_casters_free(caustic_casters *c)
@@ -161,8 +173,7 @@ void caustic_casters_free(caustic_casters *c)
 
 bool caustic_casters_include(const caustic_casters *c, const surface_hit *hit)
 {
-    return hit->material != NO_INDEX &&
-           material_casts_caustics(c->scene->materials->pdata[hit->material]);
+    return is_caster(c, hit->material);
 }
 
 vec3 caustic_casters_sample(const caustic_casters *c, float u_shape, vec2 u, float time)

@@ -21,6 +21,7 @@ typedef struct caustic_caster {
 
 typedef struct caustic_casters {
     const scene *scene;
+    bool metals; /**< all conductors are among them, however rough */
     caustic_caster *all;
     int n;
     distribution area;  /**< over all, by area */
@@ -35,6 +36,8 @@ typedef struct caustic_casters {
 /** @brief Finds them in a committed scene, which must outlive them.
  * @return owned; NULL with ERROR_FAILED: memory */
 caustic_casters *caustic_casters_new(const scene *s, GError **error);
+/** @brief The same, and all conductors, however rough. */
+caustic_casters *caustic_casters_new_with_metals(const scene *s, GError **error);
 void caustic_casters_free(caustic_casters *c);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(caustic_casters, caustic_casters_free)
 

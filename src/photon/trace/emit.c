@@ -43,12 +43,17 @@ static bool meets_caster(const caustic_casters *c, const wavelengths *w, ray r)
            caustic_casters_include(c, &hit);
 }
 
-/* Chooses a light by power; *u becomes uniform again. */
+/* Chooses a light by power; *u becomes uniform again. NULL: the light that was given has
+   none. */
 static const light *choose_light(const scene *s, const distribution *power, float *u,
                                  photon_start *out)
 {
-    out->light = (int)distribution_sample(power, u);
-    out->p_light = distribution_pdf(power, (size_t)out->light);
+    if (!out->light_is_given) {
+        out->light = (int)distribution_sample(power, u);
+        out->p_light = distribution_pdf(power, (size_t)out->light);
+    } else if (!(distribution_pdf(power, (size_t)out->light) > 0.0f)) {
+        return NULL;
+    }
     return scene_light(s, out->light);
 }
 
@@ -73,7 +78,7 @@ bool photon_emit_aimed(const caustic_casters *c, const wavelengths *w, sampler *
         return false;
     const light *l = choose_light(c->scene, &c->power, &u_light, out);
     vec3 target = caustic_target(c, out->ray.time, random);
-    if (!l->kind->emit_toward(l->self, w, u_primitive, u, target, &emission))
+    if (!l || !l->kind->emit_toward(l->self, w, u_primitive, u, target, &emission))
         return false;
     emission.ray.time = out->ray.time;
     if (!meets_caster(c, w, emission.ray) ||
@@ -91,8 +96,8 @@ bool photon_emit(const scene *s, const wavelengths *w, sampler *random, photon_s
         return false;
     float density = emission_guide_draw(NULL, random, u);
     const light *l = choose_light(s, &s->light_power, &u[0], out);
-    if (!l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]}, (vec2){u[4], u[5]},
-                       &emission))
+    if (!l || !l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]}, (vec2){u[4], u[5]},
+                             &emission))
         return false;
     return finish(&emission, density, out);
 }
@@ -168,6 +173,8 @@ bool photon_emit_caustic(const caustic_casters *c, const wavelengths *w,
         return false;
     float density = emission_guide_draw(guide, random, u);
     const light *l = choose_light(c->scene, &c->power, &u[0], out);
+    if (!l)
+        return false;
     bool emitted = l->kind->is_parallel ? emit_at_disc(c, l, w, u, &emission)
                    : c->is_apart[out->light]
                        ? emit_in_cone(c, l, w, u, &emission)

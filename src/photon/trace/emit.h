@@ -22,9 +22,11 @@ typedef struct photon_start {
     ray ray;       /**< its time is given by the caller, before */
     spectrum flux; /**< its mean over emissions is the flux of all lights (uniform), or of
                       their light that first meets a caustic caster (specular-area) */
-    int light;     /**< index in scene->lights */
-    float p_light; /**< probability with which that light was chosen */
-    vec3 n;        /**< as light_emission has it */
+    bool light_is_given; /**< by the caller, before: light and p_light; not of what a
+                            guide learned */
+    int light;           /**< index in scene->lights */
+    float p_light;       /**< probability with which that light was chosen */
+    vec3 n;              /**< as light_emission has it */
     uint32_t primitive;
 } photon_start;
 

@@ -101,10 +101,22 @@ static float time_of(const trace_task *task, uint64_t index)
     return minf((float)(slice / MAX(task->n_slices, 1)), 0x1.fffffep-1f);
 }
 
+/* Of the task's photons each light gets as many as the next. */
+static void give_light(const trace_task *task, uint64_t index, photon_start *at)
+{
+    uint64_t n_lights = task->scene->lights->len;
+    uint64_t i = (index - task->first) % task->n_photons;
+    at->light_is_given = true;
+    at->light = (int)((double)i * (double)n_lights / (double)task->n_photons);
+    at->p_light = 1.0f / (float)n_lights;
+}
+
 static bool emit(photon_path *path)
 {
     const trace_task *task = path->task;
     photon_start at = {.ray.time = time_of(task, path->index)};
+    if (task->how->photons_per_light && !guide_of(task))
+        give_light(task, path->index, &at);
     if (!start(task, &path->random, &at))
         return false;
     path->at.ray = at.ray;
@@ -175,14 +187,27 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
     trace_chunk_put(out, &out->of.photons, &p);
 }
 
+static bool is_wanted(const photon_path *path)
+{
+    const trace_task *task = path->task;
+    photon_class c = class_here(path);
+    if (settings_one_map(task->how))
+        return c != PHOTON_DIRECT || !task->how->direct_illumination;
+    return c == task->photon_class;
+}
+
 /* Stores the photon if its class is the one traced and the surface has a lobe for it. */
 static void land(photon_path *path, const surface_hit *hit, const bsdf *b)
 {
-    if (class_here(path) != path->task->photon_class)
+    const int where = path->task->how->photon_lobes;
+    if (!is_wanted(path))
         return;
     bool delta = path->from_delta && path->specular_only && path->n_diffuse == 0;
-    unsigned lobes = scene_lobes_around(path->task->scene, hit, b);
-    if ((lobes & LOBE_DIFFUSE) || (delta && (lobes & LOBE_GLOSSY)))
+    bool glossy = where == PHOTON_LOBES_GLOSSY || (where == PHOTON_LOBES_NEEDED && delta);
+    unsigned lobes = where == PHOTON_LOBES_DIFFUSE
+                         ? b->lobes
+                         : scene_lobes_around(path->task->scene, hit, b);
+    if ((lobes & LOBE_DIFFUSE) || (glossy && (lobes & LOBE_GLOSSY)))
         store(path, hit, delta ? PHOTON_FROM_DELTA : 0);
 }
 
@@ -190,11 +215,13 @@ static void land(photon_path *path, const surface_hit *hit, const bsdf *b)
    specular and glossy ones, or goes on after it has landed; a direct one none. */
 static unsigned lobes_to_take(const photon_path *path)
 {
+    const settings *how = path->task->how;
     switch (path->task->photon_class) {
     case PHOTON_DIRECT:
         return 0;
     case PHOTON_CAUSTIC:
-        return goes_on(path->task) && path->n_after > 0 ? LOBE_ALL : LOBE_FOLLOWED;
+        return goes_on(path->task) && path->n_after > 0 ? LOBE_ALL
+                                                        : photon_followed_lobes(how);
     default:
         return LOBE_ALL;
     }
@@ -244,6 +271,20 @@ static float survival_with(const photon_path *path, spectrum flux)
     return minf(1.0f, power_of(how, flux) / power_of(how, path->at.throughput));
 }
 
+/* Where only survivors are stored, a photon has its roulette first: by the share of it
+   that the surface sends on. */
+static bool survives_landing(photon_path *path, const surface_hit *hit, const bsdf *b)
+{
+    if (!path->task->how->photon_survivors)
+        return true;
+    spectrum flux = path->at.throughput;
+    spectrum sent_on = flux * bsdf_albedo(b, -path->at.ray.direction, LOBE_ALL);
+    if (survives(path, flux, survival_with(path, sent_on), sampler_1d(&path->random)))
+        return true;
+    tell(path, PHOTON_ABSORBED, hit, 0);
+    return false;
+}
+
 /* Scatters at the hit. @return false if the photon's way ends here. */
 static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
 {
@@ -264,6 +305,8 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
     if (path->out && !spectrum_is_finite(flux))
         path->out->of.n_not_finite++;
     float survival = survival_with(path, flux);
+    if (path->task->how->photon_survivors)
+        survival = 1.0f; /* it had its roulette where it landed */
     if (scattered) {
         float weight = mis_weight_at(path, hit, b, &next);
         path->mis_weight *= weight;
@@ -277,7 +320,8 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
     path->at.wavelength = next.wavelength;
     path->at.ray = hit_ray(hit, next.wi);
     path->specular_only &= (next.lobe & LOBE_SPECULAR) != 0;
-    bool diffuse = (next.lobe & LOBE_DIFFUSE) != 0;
+    const unsigned gathered = photon_gathered_lobes(path->task->how);
+    bool diffuse = (next.lobe & gathered & ~(unsigned)LOBE_ANY_SIDE) != 0;
     path->n_diffuse += diffuse;
     path->n_followed += !diffuse;
     path->n_after = diffuse ? 0 : path->n_after + 1;
@@ -299,7 +343,7 @@ static void land_on_way(photon_path *path, float length)
 {
     const trace_task *task = path->task;
     const medium *m = scene_medium(task->scene, path->at.ray.media.participating);
-    if (class_here(path) != task->photon_class || !medium_scatters(m))
+    if (!is_wanted(path) || !medium_scatters(m))
         return;
     float chance = chance_to_land(path), u = sampler_1d(&path->random);
     if (!(u < chance))
@@ -360,7 +404,8 @@ static scene_event cross_medium(void *data, float length, const surface_hit *beh
 static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
 {
     const trace_task *task = path->task;
-    const bsdf_options options = {.deterministic = !task->how->multiple_samples};
+    const bsdf_options options = {.deterministic = !task->how->multiple_samples,
+                                  .metal_is_followed = photon_follows_metals(task->how)};
     uint64_t untold = 0;
     const scene_traveller who = {.scene = task->scene,
                                  .w = &task->w,
@@ -373,8 +418,11 @@ static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
     if (event != EVENT_SURFACE && event != EVENT_MEDIUM)
         return false;
     scene_scatterer(task->scene, hit, &task->w, path->at.wavelength, &options, b);
-    if (event == EVENT_SURFACE)
-        land(path, hit, b);
+    if (event != EVENT_SURFACE)
+        return true;
+    if (!survives_landing(path, hit, b))
+        return false;
+    land(path, hit, b);
     return true;
 }
 

@@ -12,7 +12,10 @@
  * (D, G, S: a diffuse, glossy, specular lobe; see bsdf/bsdf.h; a point in a medium where
  * light is scattered is as a D). A glossy lobe alone
  * takes photons only from delta lights by way of S*: all else that it reflects, camera
- * paths find by following it. So every path of light is counted once.
+ * paths find by following it. So every path of light is counted once. By the setting
+ * photon_lobes it may take none, or all, and is then as a D. By one_map the photons of
+ * all classes are traced and stored at once, as indirect ones: the direct ones if lights
+ * are not sampled.
  *
  * Where something moves, every photon has a time of its own: the i-th of N in a slice of
  * the shutter's time that of the i-th N-th part of it, so that times, and the other
@@ -34,13 +37,34 @@
 enum { LONG_WAY = 500 };
 #define LONG_WAY_SURVIVAL 0.995f
 
+/** @brief Lobes that a path from the eye and a caustic photon go on by. */
+static inline unsigned photon_followed_lobes(const settings *how)
+{
+    bool gathers_all = how->photon_lobes == PHOTON_LOBES_GLOSSY;
+    return gathers_all ? LOBE_SPECULAR | LOBE_ANY_SIDE : LOBE_FOLLOWED;
+}
+
+/** @brief Whether photons are kept off metal however rough, so that it is gone on from.
+ */
+static inline bool photon_follows_metals(const settings *how)
+{
+    return how->photon_lobes == PHOTON_LOBES_DIFFUSE;
+}
+
+/** @brief All others: light that they reflect is gathered, and what they scatter is
+ * indirect. */
+static inline unsigned photon_gathered_lobes(const settings *how)
+{
+    return (LOBE_ALL & ~photon_followed_lobes(how)) | LOBE_ANY_SIDE;
+}
+
 /** @brief What to trace. A plain value; the pass is a pure function of it. */
 typedef struct trace_task {
     const scene *scene;
     const settings *how;
     wavelengths w;
     uint32_t pass;
-    photon_class photon_class;
+    photon_class photon_class;      /**< of one map for all: PHOTON_INDIRECT */
     const caustic_casters *casters; /**< for caustics that are not EMISSION_UNIFORM */
     const emission_guide *guide;    /**< for EMISSION_GUIDED caustics; NULL: uniform */
     const caustic_mis *mis; /**< of caustics: what they leave to paths from the eye;

@@ -96,15 +96,17 @@ static void meet_surface(void *data, const surface_hit *hit)
 }
 
 /* The probability that each side of the followed lobes is followed. */
-static void plan_sides(const camera_branch *branch, const bsdf *b, vec3 wo, float p[2])
+static void plan_sides(const camera_tree *tree, const camera_branch *branch,
+                       const bsdf *b, float p[2])
 {
+    const vec3 wo = -branch->at.ray.direction;
     bool split = branch->n_followed < SPLIT_BOUNCES;
     bool both = (b->lobes & LOBE_ANY_SIDE) == LOBE_ANY_SIDE;
     p[0] = (b->lobes & LOBE_REFLECTION) ? 1.0f : 0.0f;
     p[1] = (b->lobes & LOBE_TRANSMISSION) ? 1.0f : 0.0f;
     if (split || !both)
         return;
-    const unsigned classes = LOBE_SPECULAR | LOBE_GLOSSY;
+    const unsigned classes = tree->pass->followed & ~(unsigned)LOBE_ANY_SIDE;
     float reflected = spectrum_mean(bsdf_albedo(b, wo, classes | LOBE_REFLECTION));
     float transmitted = spectrum_mean(bsdf_albedo(b, wo, classes | LOBE_TRANSMISSION));
     p[0] = reflected + transmitted > 0.0f ? reflected / (reflected + transmitted) : 0.5f;
@@ -126,7 +128,7 @@ static void shade_direct(camera_tree *tree, const camera_branch *branch,
         .wo = -branch->at.ray.direction,
         .every_light = true,
         .shadow_rays = pass->how->shadow_rays,
-        .followed = LOBE_FOLLOWED,
+        .followed = pass->followed,
         .by_side = true,
         .p_side = {p_follow[0], p_follow[1]},
     };
@@ -147,16 +149,17 @@ static void add_gathered(camera_tree *tree, const camera_branch *branch,
     add_parts(tree, branch, layer, radiance, tree->scratch->estimate.groups);
 }
 
+/* delta: lobes by which photons from delta lights count too. */
 static void shade_indirect(camera_tree *tree, const camera_branch *branch,
-                           const shading_point *at)
+                           const shading_point *at, unsigned delta)
 {
     const photonmap_pass *pass = tree->pass;
-    if (!(at->bsdf->lobes & LOBE_DIFFUSE))
+    if (!has_lobes(at->bsdf, pass->gathered | delta))
         return;
     float importance = spectrum_mean(branch->at.throughput) * branch->eta2;
     int64_t left = events_left(tree, branch);
     if (!pass->how->final_gather || left == 1) { /* the last is to gather here */
-        add_gathered(tree, branch, LAYER_INDIRECT, PHOTON_INDIRECT, at, 0);
+        add_gathered(tree, branch, LAYER_INDIRECT, PHOTON_INDIRECT, at, delta);
         return;
     }
     spectrum radiance = final_gather(pass, at, importance, left < 0 ? left : left - 1,
@@ -170,15 +173,16 @@ static void shade(camera_tree *tree, const camera_branch *branch, const surface_
 {
     const photonmap_pass *pass = tree->pass;
     const shading_point at = {.hit = hit, .bsdf = b, .wo = -branch->at.ray.direction};
-    unsigned delta = pass->has_delta_lights ? LOBE_GLOSSY : 0;
-    bool gathers = (b->lobes & (LOBE_DIFFUSE | delta)) != 0;
+    bool needs_glossy = pass->how->photon_lobes == PHOTON_LOBES_NEEDED;
+    unsigned delta = needs_glossy && pass->has_delta_lights ? LOBE_GLOSSY : 0;
+    bool gathers = has_lobes(b, pass->gathered | delta);
     if (pass->how->direct_illumination)
         shade_direct(tree, branch, hit, b, p_follow);
     else if (gathers)
         add_gathered(tree, branch, LAYER_DIRECT, PHOTON_DIRECT, &at, delta);
     if (gathers)
         add_gathered(tree, branch, LAYER_CAUSTIC, PHOTON_CAUSTIC, &at, delta);
-    shade_indirect(tree, branch, &at);
+    shade_indirect(tree, branch, &at, settings_one_map(pass->how) ? delta : 0);
 }
 
 /* What light that is scattered in the medium sends along the branch's ray; what comes
@@ -222,7 +226,7 @@ static bool bounce(camera_tree *tree, camera_branch *branch, const surface_hit *
     float u_lobe = sampler_1d(tree->random);
     vec2 u = sampler_2d(tree->random);
     bsdf_sample next;
-    unsigned lobes = LOBE_SPECULAR | LOBE_GLOSSY | sides;
+    unsigned lobes = (tree->pass->followed & ~(unsigned)LOBE_ANY_SIDE) | sides;
     vec3 wo = -branch->at.ray.direction;
     if (!bsdf_sample_direction(b, wo, u_lobe, u, lobes, TRANSPORT_RADIANCE, &next))
         return false;
@@ -257,8 +261,7 @@ static void follow(camera_tree *tree, camera_branch branch);
 static bool go_on(camera_tree *tree, camera_branch *branch, const surface_hit *hit,
                   const bsdf *b, const float p_follow[2])
 {
-    bool followed = (b->lobes & (LOBE_SPECULAR | LOBE_GLOSSY)) != 0;
-    if (!followed || !survives(tree, branch))
+    if (!has_lobes(b, tree->pass->followed) || !survives(tree, branch))
         return false;
     if (p_follow[0] >= 1.0f && p_follow[1] >= 1.0f) {
         camera_branch reflected = *branch;
@@ -298,7 +301,7 @@ static void follow(camera_tree *tree, camera_branch branch)
                                  branch.from);
         if (events_left(tree, &branch) == 0)
             return;
-        plan_sides(&branch, &b, -branch.at.ray.direction, p_follow);
+        plan_sides(tree, &branch, &b, p_follow);
         shade(tree, &branch, &hit, &b, p_follow);
         if (!go_on(tree, &branch, &hit, &b, p_follow))
             return;

@@ -257,7 +257,8 @@ static spectrum outgoing_by_maps(const photonmap_pass *pass, const shading_point
 static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
                          spectrum throughput, sampler *random, transport_scratch *scratch)
 {
-    if (pass->irradiance[0] && at->bsdf->lambertian && !at->hit->camera_facing)
+    const bool glossy = has_lobes(at->bsdf, pass->gathered & LOBE_GLOSSY);
+    if (pass->irradiance[0] && at->bsdf->lambertian && !glossy && !at->hit->camera_facing)
         return outgoing_by_maps(pass, at, throughput, scratch);
     spectrum radiance = {0};
     if (pass->how->direct_illumination) {
@@ -271,7 +272,7 @@ static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
         };
         direct_radiance found[FEW_LIGHTS];
         if (direct_light(&query, random, found, &scratch->shadow_rays) > 0) {
-            radiance = found[0].diffuse;
+            radiance = glossy ? found[0].diffuse + found[0].glossy : found[0].diffuse;
             if (scratch->gathered)
                 scratch->gathered[scene_light_group(pass->scene, found[0].light)] +=
                     throughput * radiance;
@@ -291,9 +292,10 @@ static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b)
 {
     scatter_numbers u = sampler_scatter(path->random);
     bsdf_sample next;
-    if (!(b->lobes & (LOBE_SPECULAR | LOBE_GLOSSY)) ||
-        !bsdf_sample_direction(b, -path->at.ray.direction, u.lobe, u.direction,
-                               LOBE_FOLLOWED, TRANSPORT_RADIANCE, &next))
+    const unsigned followed = path->pass->followed;
+    if (!has_lobes(b, followed) ||
+        !bsdf_sample_direction(b, -path->at.ray.direction, u.lobe, u.direction, followed,
+                               TRANSPORT_RADIANCE, &next))
         return false;
     float p = minf(1.0f, spectrum_mean(next.weight) * next.eta * next.eta);
     if (path->bounces >= LONG_WAY)
@@ -350,7 +352,7 @@ static spectrum gather_along(gather_path path, int64_t events)
         bsdf b;
         scene_bsdf(pass->scene, &hit, &pass->w, path.at.wavelength, &pass->options, &b);
         const shading_point at = {.hit = &hit, .bsdf = &b, .wo = -path.at.ray.direction};
-        if (b.lobes & LOBE_DIFFUSE)
+        if (has_lobes(&b, pass->gathered))
             path.sum += path.at.throughput * outgoing(pass, &at, path.at.throughput,
                                                       path.random, path.scratch);
         if (!gather_on(&path, &hit, &b))
@@ -376,7 +378,7 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
         float u_lobe = sampler_1d(&stream);
         vec2 u = sampler_2d(&stream);
         bsdf_sample first;
-        if (!bsdf_sample_direction(at->bsdf, at->wo, u_lobe, u, LOBE_GATHERED,
+        if (!bsdf_sample_direction(at->bsdf, at->wo, u_lobe, u, pass->gathered,
                                    TRANSPORT_RADIANCE, &first))
             continue;
         const gather_path path = {.at = {.ray = hit_ray(at->hit, first.wi),

@@ -17,6 +17,9 @@ static bool class_needed(const transport_plan *plan, photon_class c)
 {
     if (!scene_is_lit(plan->scene))
         return false;
+    if (settings_one_map(&plan->how))
+        return c == PHOTON_INDIRECT &&
+               (!plan->how.direct_illumination || plan->how.max_forward_bounces != 0);
     switch (c) {
     case PHOTON_DIRECT:
         return needs_direct_map(&plan->how);
@@ -30,6 +33,7 @@ static bool class_needed(const transport_plan *plan, photon_class c)
 void photonmap_share_photons(transport_plan *plan)
 {
     unsigned n_sharing = 0;
+    uint64_t times = plan->how.photons_per_light ? plan->scene->lights->len : 1;
     int64_t shared = settings_photons(&plan->how);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         n_sharing +=
@@ -38,7 +42,7 @@ void photonmap_share_photons(transport_plan *plan)
         int64_t own = plan->how.class_photons[c];
         bool needed = class_needed(plan, (photon_class)c);
         int64_t n = own > 0 ? own : n_sharing > 0 ? shared / n_sharing : 0;
-        plan->n_photons[c] = needed ? (uint64_t)MAX(n, 1) : 0;
+        plan->n_photons[c] = needed ? (uint64_t)MAX(n, 1) * times : 0;
     }
 }
 
@@ -72,7 +76,9 @@ static double radius_of(const transport_plan *plan, photon_class c, uint32_t ind
 static uint64_t n_in_slice(const photonmap_pass *pass, photon_class c)
 {
     uint64_t n = pass->plan->n_photons[c];
-    return n > 0 ? MAX(n / (uint64_t)pass->n_slices, 1) : 0;
+    uint64_t n_slices = (uint64_t)pass->n_slices;
+    uint64_t times = pass->how->photons_per_light ? pass->scene->lights->len : 1;
+    return n > 0 ? MAX(n / times / n_slices, 1) * times : 0;
 }
 
 static trace_task trace_task_for(const slice_task *s, const cancel_flag *cancel)
@@ -238,8 +244,11 @@ static void *open_pass(const transport_plan *plan, uint32_t index)
     pass->how = &plan->how;
     pass->w = scene_wavelengths(plan->scene, &plan->how, index);
     pass->options.deterministic = !plan->how.multiple_samples;
+    pass->options.metal_is_followed = photon_follows_metals(&plan->how);
     pass->has_delta_lights = scene_has_delta_lights(plan->scene);
     pass->n_slices = scene_time_slices(plan->scene, &plan->how);
+    pass->followed = photon_followed_lobes(&plan->how);
+    pass->gathered = photon_gathered_lobes(&plan->how);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         pass->estimates[c] = photonmap_estimate_options(
             &plan->how, (photon_class)c, radius_of(plan, (photon_class)c, index));

@@ -32,7 +32,9 @@ typedef struct photonmap_pass {
     uint32_t index; /**< of the pass */
     wavelengths w;
     bsdf_options options;
-    int n_slices; /**< of the shutter's time; 1 where nothing moves */
+    unsigned followed; /**< lobes that paths from the eye go on by */
+    unsigned gathered; /**< all others, by which photons are gathered */
+    int n_slices;      /**< of the shutter's time; 1 where nothing moves */
     photon_map *maps[MOST_TIME_SLICES][N_PHOTON_CLASSES]; /**< NULL: the class is not
                                                              needed */
     /** Of photons in media; NULL: there are none. */
@@ -43,6 +45,12 @@ typedef struct photonmap_pass {
     caustic_mis mis; /**< if plan->uses_mis */
     bool has_delta_lights;
 } photonmap_pass;
+
+/** @brief Whether the bsdf has one of the lobes. */
+static inline bool has_lobes(const bsdf *b, unsigned lobes)
+{
+    return (b->lobes & lobes & ~(unsigned)LOBE_ANY_SIDE) != 0;
+}
 
 /** @brief Radius of pass i from that of pass 0 (Knaus & Zwicker 2011, eq. 20). */
 double photonmap_radius(double radius, double alpha, uint32_t pass);

@@ -23,7 +23,7 @@ estimate_options photonmap_estimate_options(const settings *how, photon_class c,
         .nearest = nearest,
         .radius = unbounded ? INFINITY : (float)radius,
         .flatten = (float)how->flatten,
-        .lobes = LOBE_GATHERED,
+        .lobes = photon_gathered_lobes(how),
     };
 }
 
