@@ -446,7 +446,7 @@ static void test_memory(void)
 {
     enum { N = 20000 };
     static const double extra[] = {
-        [MAP_LIST] = 0.1, [MAP_KDTREE] = 2.0, [MAP_GRID] = 8.2};
+        [MAP_LIST] = 0.1, [MAP_KDTREE] = 2.0, [MAP_GRID] = 4.1};
     for (size_t f = 0; f < G_N_ELEMENTS(fields); f++) {
         photon_store store = make_store(fields[f].place, N);
         for (map_choice choice = MAP_LIST; choice <= MAP_GRID; choice++) {

@@ -29,7 +29,8 @@ typedef struct sorter {
     size_t (*counts)[N_BINS]; /* per chunk: elements per bin, then where the next goes */
     size_t bin_begin[N_BINS + 1];
     pair *pairs;
-    size_t *start, *order;
+    uint32_t *start;
+    size_t *order;
 } sorter;
 
 static void count_chunk(size_t begin, size_t end, unsigned thread, void *data)
@@ -73,14 +74,14 @@ static void sort_bin(size_t bin, size_t end, unsigned thread, void *data)
 {
     (void)end, (void)thread;
     sorter *s = data;
-    size_t *last = s->start + 1;
+    uint32_t *last = s->start + 1;
     size_t from = s->bin_begin[bin], to = s->bin_begin[bin + 1];
     for (size_t i = from; i < to; i++)
         last[s->pairs[i].cell]++;
-    size_t place = from;
+    uint32_t place = (uint32_t)from;
     size_t cell_end = MIN((bin + 1) * s->cells_per_bin, s->n_cells);
     for (size_t cell = bin * s->cells_per_bin; cell < cell_end; cell++) {
-        size_t count = last[cell];
+        uint32_t count = last[cell];
         last[cell] = place;
         place += count;
     }
@@ -98,7 +99,7 @@ static bool sort_allocate(sorter *s, GError **error)
 }
 
 size_t *cell_sort(size_t n, size_t n_cells, cell_of_element cell_of, const void *data,
-                  size_t *start, unsigned threads, GError **error)
+                  uint32_t *start, unsigned threads, GError **error)
 {
     sorter s = {
         .n = n,

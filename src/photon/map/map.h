@@ -11,7 +11,7 @@
  * index needs to be kept for it, and photons that tie even then are interchangeable. So
  * all maps find the same photons to the bit.
  *
- * Memory kept: that of the photons; the kdtree adds about 2, the grid at most 8.
+ * Memory kept: that of the photons; the kdtree adds about 2, the grid at most 4.
  */
 #pragma once
 

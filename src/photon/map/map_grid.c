@@ -5,10 +5,11 @@
  *                   wi[] flux[]   that a query meets are one run
  *
  * Workload: built once per pass from 10⁵..10⁸ photons, queried at every camera hit with
- * the radius it was built for. Cells are as wide as the radius, or up to twice that where
- * it makes the grid small enough, so a query meets 3×3×3 cells, nine runs, most of them
- * empty since photons lie on surfaces. With no radius given, cells are sized so that
- * there is one for every four photons.
+ * the radius it was built for. Cells are as wide as the radius, so a query meets 3×3×3
+ * cells, nine runs, most of them empty since photons lie on surfaces; or up to four times
+ * as wide where that makes the grid small enough: then few photons lie within the radius,
+ * and looking at more is cheaper than hashing (8 within it: 73 ns in place of 259). With
+ * no radius given, cells are sized so that there is one for every four photons.
  *
  * The grid covers the photons' bounds densely while it has at most one cell a photon.
  * Beyond that (a light in a landscape) rows of cells are hashed into that many slots: row
@@ -37,8 +38,8 @@ typedef struct grid {
     float inv_cell;
     int32_t count[3]; /* cells an axis */
     bool hashed;
-    size_t n_slots; /* a power of two if hashed */
-    size_t *start;  /* photons of slot s: start[s] .. start[s + 1] - 1 */
+    size_t n_slots;  /* a power of two if hashed */
+    uint32_t *start; /* photons of slot s: start[s] .. start[s + 1] - 1 */
 } grid;
 
 /* Cells low..high an axis, inclusive. */
@@ -99,10 +100,10 @@ static double count_cells(grid *g, float cell)
 }
 
 /* Chooses the width of cells for a radius; returns their number, which is above `most`
- * only if twice the width would not help. */
+ * only if four times the width would not help. */
 static double choose_cell(grid *g, float radius, double most)
 {
-    for (float cell = radius; cell < 2.0f * radius; cell *= 1.0625f) {
+    for (float cell = radius; cell < 4.0f * radius; cell *= 1.0625f) {
         double cells = count_cells(g, cell);
         if (cells <= most)
             return cells;
@@ -189,7 +190,7 @@ static void dense_runs(const grid *g, const cell_range *range, run_batch *batch)
 {
     for (int32_t z = range->low[2]; z <= range->high[2]; z++) {
         for (int32_t y = range->low[1]; y <= range->high[1]; y++) {
-            const size_t *row = g->start + row_slot(g, y, z);
+            const uint32_t *row = g->start + row_slot(g, y, z);
             run_batch_add(batch, row[range->low[0]], row[range->high[0] + 1]);
         }
     }
