@@ -477,6 +477,38 @@ NEPH_API char *neph_plan_text(const NephPlan *plan);
 /** @brief Statistics as JSON (json true) or a table for people; owned by caller. */
 NEPH_API char *neph_statistics_text(const NephStatistics *statistics, bool json);
 
+/* ---- One picture by many processes ---- */
+
+/* Each process loads the scene, makes a render of the same settings (`time` 0) and renders
+   passes that one of them deals out, each number once. Their sums are added up in that
+   one. The picture is that of one process, but for the order in which sums are rounded. */
+
+/** @brief Renders pass number index (from 0) onto the sums, whole, whatever `passes`,
+ * `time` and `noise` say. Not to be mixed with neph_render_run. progress may be NULL; its
+ * fraction means nothing. */
+NEPH_API bool neph_render_pass(NephRender *render, uint32_t index,
+                               NephProgressFunc progress, void *data, GError **error);
+/** @brief How many numbers the sums over passes are. */
+NEPH_API size_t neph_render_count_sums(const NephRender *render);
+/** @brief Copies numbers [first, first + n) of them. */
+NEPH_API void neph_render_get_sums(const NephRender *render, size_t first, size_t n,
+                                   double *out);
+/** @brief Adds to them those of another process ... */
+NEPH_API void neph_render_add_sums(NephRender *render, size_t first, size_t n,
+                                   const double *more);
+/** @brief ... and, when all are added, its passes, rays and seconds. The sums are those of
+ * passes 0 to their number again before neph_render_save_checkpoint. */
+NEPH_API void neph_render_add_statistics(NephRender *render, const NephStatistics *more);
+/** @brief Forgets sums and counts, which another process has; what is planned stays. */
+NEPH_API void neph_render_forget(NephRender *render);
+/** @brief The settings that passes are rendered by: those asked for, or after
+ * neph_render_plan what was chosen to fit into `time`. Owned by the caller. */
+NEPH_API NephSettings *neph_render_settings(const NephRender *render);
+/** @brief A text that is the same in processes whose passes belong together: of the same
+ * program, scene and plan, which is made if it was not. Owned by the caller; NULL with an
+ * error. */
+NEPH_API char *neph_render_fingerprint(NephRender *render, GError **error);
+
 /* ---- Photons alone ---- */
 
 typedef struct NephPhoton {

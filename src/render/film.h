@@ -65,6 +65,7 @@ typedef struct film {
     double *groups;            /**< of the passes done */
     const char *const *group_names; /**< the scene's */
     int64_t n_passes;               /**< done */
+    uint32_t index;                 /**< number of the pass under way */
     int n_cells;   /**< of the pass under way all pixels of so many cells are part of the
                       picture: film_cell(pixel) < n_cells */
     float scale;   /**< the sensor's: view_imaging_ratio */

@@ -87,6 +87,21 @@ bool render_save_checkpoint(const render *r, const render_identity *who, const c
  * render is as new. */
 bool render_resume(render *r, const render_identity *who, const char *path,
                    GError **error);
+/** @brief Renders one pass by its number, which comes once, as part of a render whose
+ * passes are dealt out to many; `time` and `noise` mean nothing then. After it progress
+ * is told no more. Not to be mixed with render_run. */
+bool render_dealt_pass(render *r, uint32_t index, render_progress progress, void *data,
+                       GError **error);
+/** @brief The sums over passes, as numbers that may be added up over processes. */
+size_t render_count_sums(const render *r);
+void render_get_sums(const render *r, size_t first, size_t n, double *out);
+void render_add_sums(render *r, size_t first, size_t n, const double *more);
+/** @brief Adds passes, rays and times of others, once their sums are all added. */
+void render_add_statistics(render *r, const render_statistics *more);
+/** @brief Forgets the passes, which someone else has now; the plan stays. */
+void render_forget(render *r);
+/** @brief The settings that passes are rendered by, once that is decided. */
+settings render_settings(const render *r);
 render_statistics render_get_statistics(const render *r);
 /** @brief film_noise of the passes done. */
 double render_noise(const render *r);

@@ -6,6 +6,7 @@
 
 #include "render/look.h"
 #include "render/render.h"
+#include "render/stop.h"
 
 struct render {
     transport_plan plan;       /* by settings that may be paced */
@@ -14,6 +15,7 @@ struct render {
     const transport_kind *transport;
     film film;
     bool paced, prepared;
+    bool is_dealt;  /* passes are told from outside, which knows of the time */
     bool given_up;  /* the pass under way, since the time is over */
     double before;  /* see render_set_time_around */
     double earlier; /* s that another process spent: render_resume */
@@ -38,3 +40,24 @@ struct render {
     double photon_share; /* of it, before the camera looked */
     look *look;          /* NULL: the camera does not look yet */
 };
+
+/* ---- pass.c ---- */
+
+/** @brief Renders pass number index onto the film: so many cells of it, or fewer if time
+ * is over; then stopped_by says so. */
+bool render_run_pass(render *r, uint32_t index, int wanted, GError **error);
+/** @brief So many cells of the pass under way are part of the picture. */
+void render_set_part(render *r, int n_cells);
+/** @brief What the rules look at. @param pass_fraction done of the pass under way */
+stop_state render_state_now(const render *r, double pass_fraction);
+/** @brief Tells the caller how far it is. */
+void render_tell(render *r, double pass_fraction);
+/** @brief cancel_flag.progress: comes from all parallel work, on the thread that called.
+ */
+void render_on_progress(void *data);
+/** @brief Finds out how long writing takes, if that is due. */
+void render_time_writing(render *r);
+/* ---- render.c ---- */
+
+/** @brief Decides all that is decided before the first pass, if it is not. */
+bool render_prepare(render *r, GError **error);

@@ -87,6 +87,37 @@ static void test_goes_further(void)
     g_assert_cmpfloat(after.time_total, >, before.time_total);
 }
 
+/* Passes dealt out to two renders, some of which have joined before, are those of one. */
+static void test_dealt(const void *data)
+{
+    g_autoptr(view) v = subject();
+    g_autofree char *words =
+        g_strdup_printf("%s passes=6 spp=2 first_spp=1 photons=3000", (char *)data);
+    g_autoptr(render) a = render_of(v, words), b = render_of(v, words);
+    g_autoptr(image) whole = render_with(v, words);
+    size_t n = render_count_sums(a);
+    g_autofree double *sums = g_new(double, n);
+    for (uint32_t i = 0; i < 6; i++) {
+        g_assert_true(render_dealt_pass(i % 3 == 0 ? a : b, i, NULL, NULL, NULL));
+        if (i != 2 && i != 5)
+            continue;
+        const render_statistics st = render_get_statistics(b);
+        render_get_sums(b, 0, n, sums);
+        render_add_sums(a, 0, n, sums);
+        render_add_statistics(a, &st);
+        render_forget(b);
+        g_assert_cmpint(render_get_statistics(a).passes, ==, i + 1);
+        g_assert_cmpint(render_get_statistics(b).passes, ==, 0);
+    }
+    g_autoptr(image) joined = image_of(a);
+    g_assert_cmpint(joined->n_channels, ==, whole->n_channels);
+    for (size_t i = 0; i < pixels_of(whole) * (size_t)whole->n_channels; i++) {
+        double expected = (double)whole->pixels[i];
+        double off = fabs((double)joined->pixels[i] - expected);
+        g_assert_cmpfloat(off, <=, 1e-5 * fabs(expected) + 1e-6);
+    }
+}
+
 /* Of a film all is kept: each plane, as it was. */
 static void test_planes(void)
 {
@@ -216,6 +247,9 @@ int main(int argc, char **argv)
     g_test_add_data_func("/checkpoint/bits/final-gather",
                          "integrator=photonmap final_gather=on gather_rays=4",
                          test_same_bits);
+    g_test_add_data_func("/checkpoint/dealt/auto", "integrator=auto", test_dealt);
+    g_test_add_data_func("/checkpoint/dealt/vcm", "integrator=vcm", test_dealt);
+    g_test_add_data_func("/checkpoint/dealt/sppm", "integrator=sppm", test_dealt);
     g_test_add_func("/checkpoint/goes-further", test_goes_further);
     g_test_add_func("/checkpoint/planes", test_planes);
     g_test_add_func("/checkpoint/foreign", test_foreign);

@@ -59,7 +59,7 @@ void neph_render_free(NephRender *r)
     g_free(r);
 }
 
-static bool forward_progress(double fraction, const render_statistics *so_far, void *data)
+bool render_forward_progress(double fraction, const render_statistics *so_far, void *data)
 {
     const NephRender *r = data;
     const NephStatistics statistics = statistics_export(so_far);
@@ -70,7 +70,7 @@ bool neph_render_run(NephRender *r, NephProgressFunc progress, void *data, GErro
 {
     r->progress = progress;
     r->progress_data = data;
-    return render_run(r->render, progress ? forward_progress : NULL, r, error);
+    return render_run(r->render, progress ? render_forward_progress : NULL, r, error);
 }
 
 void neph_render_cancel(NephRender *r)

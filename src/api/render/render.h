@@ -13,3 +13,7 @@ struct NephRender {
     NephProgressFunc progress; /**< of the run under way */
     void *progress_data;
 };
+
+/** @brief A render_progress that tells the caller's; data: NephRender. */
+bool render_forward_progress(double fraction, const render_statistics *so_far,
+                             void *data);

@@ -1,0 +1,105 @@
+#!/bin/bash
+# One picture by 1, 2 and 4 ranks is that of one process; a rank that dies ends the job, and
+# another number of ranks goes on. usage: test_mpi.sh MPIRUN NEPHROID_MPI NEPHROID; speaks TAP.
+mpirun=$1
+many=$(realpath "$2")
+one=$(realpath "$3")
+number=0
+work=$(mktemp -d) || exit 99
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 99
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_WAIT_POLICY=passive
+export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1
+export OMPI_MCA_btl_vader_single_copy_mechanism=none
+
+report() { # NAME STATUS: what was said is in log
+    number=$((number + 1))
+    if [ "$2" = 0 ]; then
+        echo "ok $number /mpi/$1"
+    else
+        sed 's/^/# /' log
+        echo "not ok $number /mpi/$1"
+    fi
+}
+
+ranks() { # N ARGUMENT...
+    local n=$1
+    shift
+    timeout 200 "$mpirun" -n "$n" "$many" render box.pbrt -j1 "$@" >log 2>&1
+}
+
+# same A B: the pictures differ by rounding alone, and do not show nothing
+same() {
+    "$one" compare "$1" "$2" --json >>log 2>&1 &&
+        "$one" compare "$1" "$2" --json |
+        awk '/"mean_a"/ { mean = $2 + 0 } /"rmse"/ { rmse = $2 + 0 }
+             END { exit !(mean > 0.01 && rmse < 1e-5 * mean) }'
+}
+
+cat >box.pbrt <<'TEXT'
+Film "rgb" "integer xresolution" 24 "integer yresolution" 20
+LookAt 0 -3 1  0 0 0.6  0 0 1
+Camera "perspective" "float fov" 50
+Integrator "auto" "integer passes" 9 "integer spp" 1 "integer photons" 5000
+WorldBegin
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [8 8 8]
+Translate 0 0 2.2 Rotate 180 1 0 0
+Shape "disk" "float radius" 0.4
+AttributeEnd
+Shape "disk" "float radius" 4
+AttributeBegin
+Translate 0 0 0.6 Material "dielectric"
+Shape "sphere" "float radius" 0.5
+AttributeEnd
+TEXT
+
+echo 1..12
+for how in auto/1 auto/2 auto/4 vcm/3 sppm/2; do
+    integrator=${how%/*} n=${how#*/}
+    rm -f many.exr
+    "$one" render box.pbrt -q --integrator "$integrator" -o one.exr >log 2>&1
+    ranks "$n" -q --integrator "$integrator" -o many.exr && same one.exr many.exr
+    report "same/$how" $?
+done
+
+# Without an end of its own, so that it is under way when a rank is killed.
+"$one" render box.pbrt -q --passes 3000 --set planned_passes=9 --size 24x20 -o whole.exr >log 2>&1 &
+whole=$!
+"$mpirun" -n 3 "$many" render box.pbrt -j1 -q --passes 100000000 --set planned_passes=9 \
+    -o cut.exr --checkpoint kept --checkpoint-every 0.3 >log 2>&1 &
+job=$!
+for _ in $(seq 600); do
+    [ -s kept ] && break
+    sleep 0.1
+done
+victim=$(pgrep -P $job | tail -1)
+[ -n "$victim" ] && kill -9 "$victim"
+wait $job
+status=$?
+[ $status != 0 ] && [ ! -e cut.exr ] && grep -q 'rank' log && grep -q 'go on with --resume kept' log
+report rank-dies $?
+ranks 2 -q --resume kept --passes 3000 -o resumed.exr
+resumed=$?
+wait $whole
+[ $resumed = 0 ] && same whole.exr resumed.exr
+report resumed-by-others $?
+
+"$one" render box.pbrt -q --resume kept --passes 3000 -o alone.exr >log 2>&1 && same whole.exr alone.exr
+report resumed-by-one $?
+
+ranks 2 --time 4 --size 200x160 -o time.exr
+status=$?
+[ $status = 0 ] && [ -s time.exr ] && grep -q 'stopped by time' log
+report time $?
+
+ranks 2 --noise 0.2 -o noise.exr && grep -q 'stopped by noise' log
+report noise $?
+
+ranks 2 --resume box.pbrt
+[ $? != 0 ] && [ "$(grep -c 'found another file' log)" = 1 ]
+report refused $?
+
+ranks 2 --passes x
+[ $? != 0 ] && [ "$(grep -c "expected a number" log)" = 1 ]
+report usage $?
