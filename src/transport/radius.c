@@ -25,11 +25,9 @@
    decides between noise and blur. Caustics are to be sharp, the rest is smooth by nature.
  */
 static const double photons_wanted[N_PHOTON_CLASSES] = {600.0, 12000.0, 300.0};
-/* ... but in each pass at least so many. */
+/* ... but in each pass at least so many; as many as of caustics in the ball around a
+   photon in a medium. */
 static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
-
-/* In the ball around a photon in a medium, in each pass. */
-#define WANTED_IN_MEDIA 8.0
 
 /* Beside a bright spot, radii are as wide as it takes to reach the wanted photons in it:
    this is light that is not there, in proportion to their share of all. So of a caustic's
@@ -216,7 +214,7 @@ static bool choose_in_media(pilot *p, photon_class c, const pilot_maps *maps,
     const photon_map *map = maps->in_media;
     double density = density_over_pilot(p, c, maps);
     const radius_rule rule = {
-        .scale = cbrt(WANTED_IN_MEDIA / RADIUS_NEAREST / density),
+        .scale = cbrt(photons_wanted_least[PHOTON_CAUSTIC] / RADIUS_NEAREST / density),
         .largest = 0.1 * (double)plan->scene->radius,
         .pilot = p,
         .map = map,
