@@ -307,6 +307,7 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
     float survival = survival_with(path, flux);
     if (path->task->how->photon_survivors)
         survival = 1.0f; /* it had its roulette where it landed */
+    survival = minf(MOST_SURVIVAL, survival);
     if (scattered) {
         float weight = mis_weight_at(path, hit, b, &next);
         path->mis_weight *= weight;
@@ -426,21 +427,13 @@ static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
     return true;
 }
 
-/* White walls and white fog would keep a photon for ever: on a long way, roulette ends
-   some at every step. */
-static bool goes_further(photon_path *path, int64_t bounces)
-{
-    return bounces < LONG_WAY || survives(path, path->at.throughput, LONG_WAY_SURVIVAL,
-                                          sampler_1d(&path->random));
-}
-
 static void follow(photon_path *path)
 {
     int64_t limit = path->task->how->max_forward_bounces;
     surface_hit hit;
     bsdf b;
     for (int64_t bounces = 0; come_to_scatterer(path, &hit, &b); bounces++) {
-        if ((limit >= 0 && bounces >= limit) || !goes_further(path, bounces)) {
+        if (limit >= 0 && bounces >= limit) {
             tell(path, PHOTON_ENDED, &hit, 0);
             return;
         }

@@ -22,8 +22,9 @@
  * numbers within any stretch of time, are spread evenly. A photon that lands on something
  * that moves is kept where that will be in the middle of the slice.
  *
- * Russian roulette keeps photons of near equal power: survive with p = min(1, g(β
- * Φ)/g(Φ)), Φ ← Φ β / p, where g is the mean or the maximum over wavelengths.
+ * Russian roulette keeps photons of near equal power: survive with p = g(β Φ)/g(Φ), or
+ * MOST_SURVIVAL if that is less, Φ ← Φ β / p, where g is the mean or the maximum over
+ * wavelengths.
  */
 #pragma once
 
@@ -32,10 +33,9 @@
 #include "photon/photon.h"
 #include "photon/trace/emit.h"
 
-/** After so many bounces, photons and paths from the eye go on by this chance at each,
- * however white all is. */
-enum { LONG_WAY = 500 };
-#define LONG_WAY_SURVIVAL 0.995f
+/** The most that photons and paths from the eye survive a bounce with: they end also
+ * among white walls and in a box of mirrors, after five hundred. */
+#define MOST_SURVIVAL 0.998f
 
 /** @brief Lobes that a path from the eye and a caustic photon go on by. */
 static inline unsigned photon_followed_lobes(const settings *how)

@@ -77,9 +77,7 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     camera_path_count(path, next.lobe);
     if (path->bounces < ROULETTE_BOUNCES)
         return !spectrum_is_black(path->at.throughput);
-    float p = minf(1.0f, spectrum_mean(path->at.throughput) * path->eta2);
-    if (path->bounces >= LONG_WAY)
-        p *= LONG_WAY_SURVIVAL;
+    float p = minf(MOST_SURVIVAL, spectrum_mean(path->at.throughput) * path->eta2);
     path->at.throughput /= p;
     return sampler_1d(walk->random) < p;
 }

@@ -3,14 +3,12 @@
  * followed (specular and glossy), and at each surface what the maps and the lights have
  * to say about the others (Whitted 1980; Jensen 2001, §8).
  *
- * Both sides of glass are followed at the first bounces, later one of them by chance. A
+ * Both sides of glass are followed until roulette begins, later one of them by chance. A
  * light met after a glossy bounce is shared with light sampling by multiple importance
  * sampling.
  */
 #include "transport/direct.h"
 #include "transport/photonmap/photonmap_medium.h"
-
-enum { SPLIT_BOUNCES = 3 }; /* up to here reflection and refraction are both followed */
 
 /* Shared by all branches of one camera ray. */
 typedef struct camera_tree {
@@ -100,7 +98,7 @@ static void plan_sides(const camera_tree *tree, const camera_branch *branch,
                        const bsdf *b, float p[2])
 {
     const vec3 wo = -branch->at.ray.direction;
-    bool split = branch->n_followed < SPLIT_BOUNCES;
+    bool split = branch->n_followed + 1 < ROULETTE_BOUNCES;
     bool both = (b->lobes & LOBE_ANY_SIDE) == LOBE_ANY_SIDE;
     p[0] = (b->lobes & LOBE_REFLECTION) ? 1.0f : 0.0f;
     p[1] = (b->lobes & LOBE_TRANSMISSION) ? 1.0f : 0.0f;
@@ -245,9 +243,7 @@ static bool survives(camera_tree *tree, camera_branch *branch)
 {
     if (branch->n_followed < ROULETTE_BOUNCES)
         return true;
-    float p = minf(1.0f, spectrum_mean(branch->at.throughput) * branch->eta2);
-    if (branch->n_followed >= LONG_WAY)
-        p *= LONG_WAY_SURVIVAL;
+    float p = minf(MOST_SURVIVAL, spectrum_mean(branch->at.throughput) * branch->eta2);
     if (!(sampler_1d(tree->random) < p))
         return false;
     branch->at.throughput /= p;

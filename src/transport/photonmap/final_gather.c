@@ -297,9 +297,7 @@ static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b)
         !bsdf_sample_direction(b, -path->at.ray.direction, u.lobe, u.direction, followed,
                                TRANSPORT_RADIANCE, &next))
         return false;
-    float p = minf(1.0f, spectrum_mean(next.weight) * next.eta * next.eta);
-    if (path->bounces >= LONG_WAY)
-        p *= LONG_WAY_SURVIVAL;
+    float p = minf(MOST_SURVIVAL, spectrum_mean(next.weight) * next.eta * next.eta);
     if (!(u.roulette < p))
         return false;
     path->at.throughput *= next.weight / p;
