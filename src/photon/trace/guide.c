@@ -10,24 +10,18 @@ enum {
     N_PAIRS = EMISSION_DIMENSIONS * (EMISSION_DIMENSIONS - 1) / 2,
 };
 
-/* Share of photons drawn uniformly, whatever was learned. */
-#define DEFENSIVE_SHARE 0.1
+/* Share of photons, and of each cell's, drawn without regard to what was learned inside
+   it: next to where much arrives it thins out step by step, and what arrives from there
+   unforeseen is not much heavier than its neighbours. */
+#define DEFENSIVE_SHARE 0.05
 
-/* ... and of each cell's, drawn without regard to what was learned inside it: next to
-   where much arrives it thins out step by step, and what arrives from there unforeseen is
-   not much heavier than its neighbours. */
-#define DEFENSIVE_SPLIT 0.05
-
-/* math: a pair of axes is uneven from this χ² on, one in 10⁴ by chance of 15 degrees of
-   freedom, */
-#define CHI2_BY_CHANCE 45.0
-
-/* and if it is this share of the arrivals. */
-#define CORRELATED 0.4
-
-/* A cell is split if the fullest and emptiest quarters along some axis differ by this
-   share of what it holds. */
+/* A cell is split where the fullest and emptiest quarters along some axis differ by this
+   share of what it holds, */
 #define UNEVEN 0.2
+
+/* math: or the squares of two axes by this χ², one in 10⁴ by chance of 15 degrees of
+   freedom. */
+#define CHI2_BY_CHANCE 45.0
 
 typedef struct guide_node {
     float low[EMISSION_DIMENSIONS], high[EMISSION_DIMENSIONS];
@@ -205,7 +199,7 @@ static double chi2_of_pair(const guide_tally *tally, int pair)
    axis and uneven in the squares of two. One of two such axes, or -1. */
 static int correlated_axis(const guide_tally *tally)
 {
-    double most = MAX(CHI2_BY_CHANCE, CORRELATED * (double)tally->arrivals);
+    double most = CHI2_BY_CHANCE;
     int axis = -1, pair = 0;
     for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
         for (int b = 0; b < a; b++, pair++) {
@@ -290,7 +284,7 @@ static double smoothed_share(const guide_tally *parent, const guide_tally *half)
     double n = (double)parent->arrivals;
     double seen = n > 0.0 ? half->importance / parent->importance : 0.5;
     double learned = (seen * n + 1.0) / (n + 2.0);
-    return (1.0 - DEFENSIVE_SPLIT) * learned + 0.5 * DEFENSIVE_SPLIT;
+    return (1.0 - DEFENSIVE_SHARE) * learned + 0.5 * DEFENSIVE_SHARE;
 }
 
 static void set_masses(emission_guide *guide, GArray *tallies)
