@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-const char *const cloud_coloring_names[] = {"Flux", "Map", "Bounces", NULL};
+const char *const cloud_coloring_names[] = {"Flux", "Map", "Bounces", "Power", NULL};
 
 static const uint8_t map_colors[NEPH_N_PHOTON_CLASSES][4] = {
     {255, 210, 90, 255}, {95, 170, 255, 255}, {255, 95, 160, 255}};
@@ -35,11 +35,23 @@ static void fill_curve(uint8_t curve[CURVE_STEPS + 1])
     }
 }
 
-static void flux_color(const uint8_t *curve, const float rgb[3], uint8_t color[4])
+static float largest_component(const float rgb[3])
 {
-    float most = fmaxf(fmaxf(rgb[0], rgb[1]), fmaxf(rgb[2], 1e-30f));
+    return fmaxf(fmaxf(rgb[0], rgb[1]), fmaxf(rgb[2], 1e-30f));
+}
+
+/* The faintest photons are still to be seen on the dark background. */
+#define LEAST_LEVEL 0.04f
+
+/* most: what is shown as full. */
+static void flux_color(const uint8_t *curve, const float rgb[3], float most,
+                       uint8_t color[4])
+{
+    float own = largest_component(rgb);
+    most = fminf(most, own / LEAST_LEVEL);
     for (int k = 0; k < 3; k++)
-        color[k] = curve[(int)(CURVE_STEPS * fmaxf(rgb[k] / most, 0.0f) + 0.5f)];
+        color[k] =
+            curve[(int)(CURVE_STEPS * fminf(fmaxf(rgb[k] / most, 0.0f), 1.0f) + 0.5f)];
     color[3] = 255;
 }
 
@@ -48,11 +60,16 @@ void photon_cloud_color(photon_cloud *cloud, cloud_coloring coloring)
     uint8_t curve[CURVE_STEPS + 1];
     fill_curve(curve);
     cloud->coloring = coloring;
+    float most = 0.0f;
+    for (size_t i = 0; i < cloud->n; i++)
+        most = fmaxf(most, largest_component(cloud->rgb[i]));
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
         for (size_t i = cloud->first[c]; i < cloud->first[c + 1]; i++) {
             uint8_t *color = cloud->vertices[i].color;
             if (coloring == COLOR_FLUX)
-                flux_color(curve, cloud->rgb[i], color);
+                flux_color(curve, cloud->rgb[i], largest_component(cloud->rgb[i]), color);
+            else if (coloring == COLOR_POWER)
+                flux_color(curve, cloud->rgb[i], most, color);
             else if (coloring == COLOR_MAP)
                 photon_cloud_map_color(c, color);
             else
@@ -141,7 +158,7 @@ cloud_vertex *photon_cloud_mixed(const photon_cloud *cloud)
 
 enum { ARROW_VERTICES = 6 };
 
-/* A shaft and two barbs: the head is where the photon landed. */
+/* A shaft and two barbs: the head is toward where the photon came from. */
 static void put_arrow(cloud_vertex *out, const cloud_vertex *at, const float d[3],
                       float length)
 {
@@ -156,9 +173,10 @@ static void put_arrow(cloud_vertex *out, const cloud_vertex *at, const float d[3
     for (int i = 0; i < ARROW_VERTICES; i++)
         out[i] = *at;
     for (int k = 0; k < 3; k++) {
-        out[1].position[k] += length * d[k];
-        out[3].position[k] += 0.25f * length * d[k] + 0.1f * norm * side[k];
-        out[5].position[k] += 0.25f * length * d[k] - 0.1f * norm * side[k];
+        for (int tip = 1; tip < ARROW_VERTICES; tip += tip == 1 ? 1 : 2)
+            out[tip].position[k] += length * d[k];
+        out[3].position[k] += 0.75f * length * d[k] + 0.1f * norm * side[k];
+        out[5].position[k] += 0.75f * length * d[k] - 0.1f * norm * side[k];
     }
 }
 

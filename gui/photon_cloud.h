@@ -12,6 +12,7 @@ typedef enum cloud_coloring {
     COLOR_FLUX,   /**< linear flux over its largest component */
     COLOR_MAP,    /**< direct, indirect, caustic */
     COLOR_BOUNCE, /**< how often it was scattered before */
+    COLOR_POWER,  /**< flux, over the largest component of all photons */
     N_CLOUD_COLORINGS
 } cloud_coloring;
 
@@ -48,8 +49,9 @@ void photon_cloud_bounce_color(size_t bounces, uint8_t color[4]);
  * spread over the whole; owned by the caller. */
 cloud_vertex *photon_cloud_mixed(const photon_cloud *cloud);
 
-/** @brief Arrows for the photons of the maps in mask (bit c), pointing where the photon
- * went, as a list of line ends; owned by the caller. *n: number of vertices. */
+/** @brief Arrows for the photons of the maps in mask (bit c), from where it landed
+ * toward where it came from, as a list of line ends; owned by the caller. *n: number of
+ * vertices. */
 cloud_vertex *photon_cloud_arrows(const photon_cloud *cloud, unsigned mask, float length,
                                   size_t *n);
 /** @brief Photons of the maps in mask. */

@@ -43,6 +43,8 @@ static void show_legend(photon_panel *p, cloud_coloring coloring)
     }
     if (coloring == COLOR_FLUX)
         g_string_append(text, "Flux over its largest component");
+    if (coloring == COLOR_POWER)
+        g_string_append(text, "Flux over the largest of all photons");
     gtk_label_set_markup(GTK_LABEL(p->legend), text->str);
 }
 
@@ -155,7 +157,7 @@ static void add_style(photon_panel *p)
     p->coloring = choice_make(cloud_coloring_names);
     gtk_widget_set_name(p->coloring, "coloring");
     p->point_size = slider_make(1.0, 8.0, 0.5, 1);
-    gtk_range_set_value(GTK_RANGE(p->point_size), 2.0);
+    gtk_range_set_value(GTK_RANGE(p->point_size), 5.0);
     p->wireframe = on_switch("wireframe");
     row_add(list, "Colour by", p->coloring);
     row_add(list, "Point size", p->point_size);

@@ -22,8 +22,8 @@ enum { TELL_MS = 200 };
 
 /* Width of a path, and of a wireframe's line, pixels. */
 enum { PATH_WIDTH = 3, WIRE_WIDTH = 1 };
-/* Points where arrows begin, and marked ones, pixels. */
-#define ARROW_HEAD 4.0f
+/* Points where photons with arrows landed, and marked ones, pixels. */
+#define ARROW_FOOT 4.0f
 #define MARK_SIZE 4.0f
 /* What is left of the photons' colours behind a picked one's path. */
 #define BEHIND_PICK 0.45f
@@ -227,8 +227,7 @@ static void draw_run(photon_view *v, int c, size_t n, int scale)
 {
     float size = v->style.point_size * (float)scale;
     const gl_points points = {v->cloud->first[c] + v->done[c], n,
-                              shows_arrows(v) ? fmaxf(size, ARROW_HEAD) : size,
-                              fade_of(v)};
+                              shows_arrows(v) ? ARROW_FOOT : size, fade_of(v)};
     gl_layer_points(&v->painter, &v->photon_layer, &points);
     v->done[c] += n;
 }
@@ -382,7 +381,7 @@ photon_view *photon_view_new(const viewpoint *view,
     v->view = view;
     v->drawn = drawn;
     v->data = data;
-    v->style = (photon_style){.maps = 7, .point_size = 2.0f, .wireframe = true};
+    v->style = (photon_style){.maps = 7, .point_size = 5.0f, .wireframe = true};
     v->area =
         g_object_new(GTK_TYPE_GL_AREA, "accessible-role", GTK_ACCESSIBLE_ROLE_IMG, NULL);
     gtk_gl_area_set_auto_render(GTK_GL_AREA(v->area), FALSE);

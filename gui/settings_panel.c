@@ -233,6 +233,51 @@ static void add_settings(settings_panel *p)
             add_setting(p, &rows[i]);
 }
 
+/* ---- Presets ---- */
+
+static void on_preset(GSimpleAction *action, GVariant *name, void *data)
+{
+    (void)action;
+    settings_panel *p = data;
+    g_autoptr(NephSettings) values = neph_settings_copy(p->scene);
+    if (neph_settings_load_preset(values, g_variant_get_string(name, NULL), NULL))
+        reset_to(p, values);
+}
+
+/* "002: Abruña, Photon Mapping": the first line is "# TEXT: what it says". */
+static char *preset_title(const char *name)
+{
+    g_autofree char *text = neph_settings_preset_text(name, NULL);
+    const char *follows = text ? text + strspn(text, "# ") : "";
+    return g_strdup_printf("%s: %.*s", name, (int)strcspn(follows, ":\n"), follows);
+}
+
+/* Over what the scene asks for. */
+static GtkWidget *presets_make(settings_panel *p)
+{
+    GtkWidget *button = gtk_menu_button_new();
+    g_auto(GStrv) names = neph_settings_presets();
+    g_autoptr(GMenu) menu = g_menu_new();
+    g_autoptr(GSimpleActionGroup) actions = g_simple_action_group_new();
+    g_autoptr(GSimpleAction) action =
+        g_simple_action_new("preset", G_VARIANT_TYPE_STRING);
+    g_signal_connect(action, "activate", G_CALLBACK(on_preset), p);
+    g_action_map_add_action(G_ACTION_MAP(actions), G_ACTION(action));
+    gtk_widget_insert_action_group(p->root, "settings", G_ACTION_GROUP(actions));
+    for (char **name = names; *name; name++) {
+        g_autofree char *title = preset_title(*name);
+        g_autoptr(GMenuItem) item = g_menu_item_new(title, NULL);
+        g_menu_item_set_action_and_target(item, "settings.preset", "s", *name);
+        g_menu_append_item(menu, item);
+    }
+    gtk_menu_button_set_label(GTK_MENU_BUTTON(button), "Preset");
+    gtk_menu_button_set_menu_model(GTK_MENU_BUTTON(button), G_MENU_MODEL(menu));
+    gtk_widget_set_name(button, "presets");
+    gtk_widget_set_tooltip_text(button, "The scene's settings, and over them what a text "
+                                        "on photon mapping describes");
+    return button;
+}
+
 static GtkWidget *buttons_make(settings_panel *p)
 {
     GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 6);
@@ -244,15 +289,27 @@ static GtkWidget *buttons_make(settings_panel *p)
     g_signal_connect_swapped(defaults, "clicked", G_CALLBACK(on_defaults), p);
     gtk_box_append(GTK_BOX(box), scene);
     gtk_box_append(GTK_BOX(box), defaults);
+    gtk_box_append(GTK_BOX(box), presets_make(p));
     gtk_box_set_homogeneous(GTK_BOX(box), TRUE);
     return box;
 }
 
+static void change(settings_panel *p, const char *name, const char *value)
+{
+    setting_control *c = settings_panel_find(p, name);
+    setting_control_show(c, value);
+    on_changed(setting_control_info(c), value, p);
+}
+
 static void on_switch_over(settings_panel *p)
 {
-    setting_control *c = settings_panel_find(p, "integrator");
-    setting_control_show(c, "photonmap");
-    on_changed(setting_control_info(c), "photonmap", p);
+    change(p, "integrator", "photonmap");
+}
+
+static void on_gather_too(settings_panel *p)
+{
+    change(p, "integrator", "photonmap");
+    change(p, "final_gather", "true");
 }
 
 static GtkWidget *switch_over_make(settings_panel *p)
@@ -264,7 +321,15 @@ static GtkWidget *switch_over_make(settings_panel *p)
                                            "settings unused; those are dimmed.",
                                            "dim-label"));
     gtk_box_append(GTK_BOX(box), button);
+    GtkWidget *gather =
+        text_button_make("Use it with final gathering",
+                         "Sets the integrator to photonmap and turns final gathering on, "
+                         "by as many rays as are set below",
+                         NULL);
+    gtk_widget_set_name(gather, "use-final-gathering");
+    gtk_box_append(GTK_BOX(box), gather);
     g_signal_connect_swapped(button, "clicked", G_CALLBACK(on_switch_over), p);
+    g_signal_connect_swapped(gather, "clicked", G_CALLBACK(on_gather_too), p);
     return box;
 }
 

@@ -433,6 +433,37 @@ static void test_remembered(void)
     window_state_save(&state);
 }
 
+/* A preset lies over what the scene asks for, and one click makes final gathering act. */
+static void test_presets(void)
+{
+    window *w = open_scene("presets.pbrt");
+    GtkWidget *page = settings_panel_widget(w->settings);
+    const NephSettings *values = settings_panel_values(w->settings);
+    g_assert_nonnull(find_widget(page, "presets"));
+    g_assert_true(gtk_widget_activate_action(page, "settings.preset", "s", "003"));
+    values = settings_panel_values(w->settings);
+    g_autofree char *photons = neph_settings_get(values, "photons");
+    g_autofree char *survivors = neph_settings_get(values, "photon_survivors");
+    g_assert_cmpstr(photons, ==, "10000");
+    g_assert_cmpstr(survivors, ==, "true");
+    view_wait(view_is_done, w);
+    window_trace_photons(w);
+    view_wait(has_photons, w);
+    NephStatistics traced;
+    neph_photons_statistics(w->photons->photons, &traced);
+    g_assert_cmpuint(traced.emitted[NEPH_PHOTON_INDIRECT], ==, 10000);
+    g_assert_cmpuint(traced.emitted[NEPH_PHOTON_DIRECT], ==, 0);
+    g_assert_true(gtk_widget_activate_action(page, "settings.preset", "s", "000"));
+    GtkWidget *gather = find_widget(page, "use-final-gathering");
+    g_signal_emit_by_name(gather, "clicked");
+    values = settings_panel_values(w->settings);
+    g_autofree char *on = neph_settings_get(values, "final_gather");
+    g_assert_cmpstr(on, ==, "true");
+    g_assert_true(neph_settings_reads(values, "gather_rays"));
+    view_wait(view_is_done, w);
+    view_close(w);
+}
+
 static void test_help(void)
 {
     window *w = open_scene("help.pbrt");
@@ -465,6 +496,7 @@ int main(int argc, char **argv)
     view_add_test("/view-panels/materials", test_materials);
     view_add_test("/view-panels/numbers", test_numbers);
     view_add_test("/view-panels/remembered", test_remembered);
+    view_add_test("/view-panels/presets", test_presets);
     view_add_test("/view-panels/help", test_help);
     return view_run();
 }

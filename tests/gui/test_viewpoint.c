@@ -262,7 +262,16 @@ static void test_cloud(void)
     }
     g_autofree cloud_vertex *arrows = photon_cloud_arrows(cloud, 5, 0.5f, &n);
     g_assert_cmpuint(n, ==, 12);
-    g_assert_cmpfloat_with_epsilon(arrows[1].position[1], 0.5f, 1e-6f);
+    /* From where it landed to where it came from, where the barbs are. */
+    const float along[] = {0.0f, 0.5f, 0.5f, 0.375f, 0.5f, 0.375f};
+    for (size_t i = 0; i < G_N_ELEMENTS(along); i++)
+        g_assert_cmpfloat_with_epsilon(arrows[i].position[1], along[i], 1e-6f);
+    for (int k = 0; k < 3; k++)
+        cloud->rgb[1][k] *= 0.5f;
+    photon_cloud_color(cloud, COLOR_POWER);
+    g_assert_cmpint(cloud->vertices[0].color[0], ==, 255);
+    g_assert_cmpint(cloud->vertices[1].color[1], ==, 188); /* 0.25 of 0.5 */
+    g_assert_cmpint(cloud->vertices[1].color[2], ==, 137);
     const double middle[2] = {0.5, 0.5}, aside[2] = {0.7, 0.5};
     g_assert_true(photon_cloud_pick(cloud, 7, &v.camera, middle, 0.02, &found));
     g_assert_cmpuint(found, ==, 0);
