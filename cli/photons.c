@@ -7,18 +7,27 @@
 #include "loading.h"
 #include "message.h"
 #include "overrides.h"
+#include "photon_picture.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static struct {
-    char *output, *trace;
+    char *output, *trace, *size, **classes;
     gboolean quiet;
     overrides settings;
 } given;
 
 static const GOptionEntry entries[] = {
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &given.output,
-     "Write the photons as binary PLY: position, direction, RGB flux, class", "FILE.ply"},
+     "Write the photons as binary PLY (position, direction, RGB flux, class), or a "
+     "picture "
+     "of them over the wireframe (.png, .jpg, .exr, .hdr, .pfm)",
+     "FILE"},
+    {"size", 0, 0, G_OPTION_ARG_STRING, &given.size, "Size of that picture, pixels",
+     "WxH"},
+    {"class", 0, 0, G_OPTION_ARG_STRING_ARRAY, &given.classes,
+     "Only direct, indirect or caustic photons in it; may be given again", "NAME"},
     {"trace", 0, 0, G_OPTION_ARG_STRING, &given.trace,
      "Print every event of the first N photons of each class instead", "N"},
     {"set", 's', 0, G_OPTION_ARG_STRING_ARRAY, &given.settings.set,
@@ -45,9 +54,19 @@ static const usage how = {
     .entries = entries,
     .loads_scene = true};
 
+static const char *const names[] = {"direct", "indirect", "caustic", NULL};
+
+/* What the options mean, checked. */
+typedef struct job {
+    int width, height; /* 0: the scene's */
+    unsigned classes;  /* bit c: of that class */
+    bool draws;        /* a picture */
+    guint64 n_logged;
+    unsigned threads;
+} job;
+
 static int print_counts(const NephPhotons *photons, const char *integrator)
 {
-    static const char *const names[] = {"direct", "indirect", "caustic"};
     NephStatistics s;
     neph_photons_statistics(photons, &s);
     GString *out = g_string_new(NULL);
@@ -70,7 +89,18 @@ static int print_counts(const NephPhotons *photons, const char *integrator)
     return print_result("%s", text);
 }
 
-static int trace(const NephScene *scene, const NephSettings *settings)
+/* Files have full floats of directions, which following the paths once more finds. */
+static bool write_output(const job *j, const NephScene *scene, NephPhotons *photons,
+                         GError **error)
+{
+    if (!j->draws)
+        return neph_photons_follow(photons, NULL, NULL, error) &&
+               neph_photons_write_ply(photons, given.output, error);
+    g_autoptr(NephImage) image = photon_picture(scene, photons, j->classes, error);
+    return image && neph_image_write(image, given.output, 0.0f, error);
+}
+
+static int trace(const job *j, const NephScene *scene, const NephSettings *settings)
 {
     g_autoptr(GError) error = NULL;
     g_autoptr(NephPhotons) photons = neph_photons_trace(scene, settings, &error);
@@ -78,7 +108,7 @@ static int trace(const NephScene *scene, const NephSettings *settings)
         return report_error(error);
     g_autofree char *integrator = neph_settings_get(settings, "integrator");
     int result = given.quiet ? EXIT_DONE : print_counts(photons, integrator);
-    if (given.output && !neph_photons_write_ply(photons, given.output, &error))
+    if (given.output && !write_output(j, scene, photons, &error))
         result = report_error(error);
     else if (given.output && !given.quiet)
         result = print_result("wrote %s\n", given.output);
@@ -98,10 +128,10 @@ static int print_event_log(const NephScene *scene, const NephSettings *settings,
     return print_result("%s", "");
 }
 
-static int work_on(const char *file, unsigned threads, size_t n_logged)
+static int work_on(const char *file, const job *j)
 {
     g_autoptr(GError) error = NULL;
-    const NephLoadOptions options = loading_options(threads, given.quiet);
+    const NephLoadOptions options = loading_options(j->threads, given.quiet);
     g_autoptr(NephScene) scene = neph_scene_load_with(file, &options, &error);
     if (!scene)
         return report_error(error);
@@ -109,27 +139,70 @@ static int work_on(const char *file, unsigned threads, size_t n_logged)
     int result = EXIT_DONE;
     if ((given.output &&
          !neph_file_spares(given.output, neph_scene_files(scene), &error)) ||
+        (j->width && !neph_scene_resize(scene, j->width, j->height, &error)) ||
         !overrides_apply(&given.settings, settings, &error))
         result = report_error(error);
-    if (!result && n_logged)
-        result = print_event_log(scene, settings, n_logged);
-    if (!result && (!n_logged || given.output))
-        result = trace(scene, settings);
+    if (!result && j->n_logged)
+        result = print_event_log(scene, settings, (size_t)j->n_logged);
+    if (!result && (!j->n_logged || given.output))
+        result = trace(j, scene, settings);
     return result;
+}
+
+static bool choose_classes(job *j, GError **error)
+{
+    j->classes = given.classes ? 0 : ~0u;
+    for (char **word = given.classes; word && *word; word++) {
+        int c = 0;
+        while (names[c] && strcmp(names[c], *word) != 0)
+            c++;
+        if (!names[c]) {
+            g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_USAGE,
+                        "--class: expected direct, indirect or caustic, found '%s'",
+                        *word);
+            return false;
+        }
+        j->classes |= 1u << c;
+    }
+    return true;
+}
+
+/* By its ending; all else is a PLY file. */
+static bool is_picture(const char *path)
+{
+    static const char *const endings[] = {".png", ".jpg", ".jpeg",
+                                          ".exr", ".hdr", ".pfm"};
+    g_autofree char *lower = g_ascii_strdown(path ? path : "", -1);
+    bool is = false;
+    for (size_t i = 0; i < G_N_ELEMENTS(endings); i++)
+        is |= g_str_has_suffix(lower, endings[i]);
+    return is;
+}
+
+static bool job_init(job *j, GError **error)
+{
+    *j = (job){.draws = is_picture(given.output)};
+    if (!j->draws && (given.size || given.classes)) {
+        g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_USAGE,
+                    "--size and --class are of a picture: -o FILE.png");
+        return false;
+    }
+    return (!given.trace ||
+            argument_count("--trace", given.trace, 1, 1000000, &j->n_logged, error)) &&
+           (!given.size ||
+            argument_size("--size", given.size, &j->width, &j->height, error)) &&
+           choose_classes(j, error) &&
+           overrides_check(&given.settings, &j->threads, error) &&
+           (!given.output || (j->draws ? neph_image_can_write(given.output, error)
+                                       : neph_file_can_write(given.output, error)));
 }
 
 int command_photons(int argc, char **argv)
 {
     int exit_code;
+    job j;
+    g_autoptr(GError) error = NULL;
     if (!arguments_parse(&how, &argc, &argv, &exit_code))
         return exit_code;
-    g_autoptr(GError) error = NULL;
-    unsigned threads;
-    guint64 n_logged = 0;
-    if ((given.trace &&
-         !argument_count("--trace", given.trace, 1, 1000000, &n_logged, &error)) ||
-        !overrides_check(&given.settings, &threads, &error) ||
-        (given.output && !neph_file_can_write(given.output, &error)))
-        return report_error(error);
-    return work_on(argv[1], threads, (size_t)n_logged);
+    return job_init(&j, &error) ? work_on(argv[1], &j) : report_error(error);
 }

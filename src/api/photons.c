@@ -70,6 +70,19 @@ void photons_rgb(const NephPhotons *photons, spectrum flux, float rgb[3])
     color_space_from_xyz(color_space_srgb(), xyz, rgb);
 }
 
+/* What a stored direction may be off by (photon/photon.h), and rounding. */
+#define STORED_ERROR 1.1e-4f
+
+/* In full where the path is known, but on what has been turned to the middle of a slice
+   of time as it is stored. */
+static vec3 direction_of(const photon *stored, const photon_origin *origin)
+{
+    if (!origin)
+        return stored->wi;
+    vec3 full = vec3_make(origin->wi[0], origin->wi[1], origin->wi[2]);
+    return length3(full - stored->wi) <= STORED_ERROR ? full : stored->wi;
+}
+
 bool neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out)
 {
     const render_photons *traced = photons->traced;
@@ -78,13 +91,15 @@ bool neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out)
     if (!photons_locate(photons, &i, &c))
         return false;
     const photon found = render_photons_get(traced, c, i);
+    const photon_origin *origin = traced->origins[c] ? &traced->origins[c][i] : NULL;
+    const vec3 wi = direction_of(&found, origin);
     photons_rgb(photons, found.flux, out->rgb);
     for (int axis = 0; axis < 3; axis++) {
         out->position[axis] = found.p[axis];
-        out->direction[axis] = found.wi[axis];
+        out->direction[axis] = wi[axis];
     }
     out->photon_class = (NephPhotonClass)c;
-    out->bounces = traced->origins[c] ? traced->origins[c][i].bounces : 0;
+    out->bounces = origin ? origin->bounces : 0;
     return true;
 }
 

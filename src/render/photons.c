@@ -125,7 +125,9 @@ static void note_origin(const photon_event *event, void *data)
         f->bounces++;
     if (event->kind != PHOTON_STORED || !spectrum_is_finite(event->flux))
         return;
-    const photon_origin origin = {(uint32_t)event->index, f->bounces};
+    const vec3 wi = -event->direction;
+    const photon_origin origin = {
+        (uint32_t)event->index, f->bounces, {wi[0], wi[1], wi[2]}};
     bool on_surface = event->hit->shape != NO_INDEX;
     g_array_append_val(on_surface ? f->found.on_surfaces : f->found.in_media, origin);
 }

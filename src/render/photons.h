@@ -13,6 +13,7 @@
 typedef struct photon_origin {
     uint32_t path;    /**< which emitted photon of its class */
     uint32_t bounces; /**< scatterings before it landed */
+    float wi[3];      /**< to where it came from, in full; on what moves as it was met */
 } photon_origin;
 
 /** @brief The photons of pass 0. */

@@ -40,14 +40,19 @@ static void test_photon_paths(void)
         size_t n_events = MIN(neph_photons_path(photons, i, events, 64), 64);
         g_assert_cmpuint(n_events, >, 1);
         g_assert_cmpint(events[0].kind, ==, NEPH_PHOTON_EMITTED);
-        bool landed = false;
+        bool landed = false, is_full = false;
         uint32_t bounces = 0;
         for (size_t k = 0; k < n_events && !landed; k++) {
             bounces += events[k].kind == NEPH_PHOTON_SCATTERED;
             landed = events[k].kind == NEPH_PHOTON_STORED && bounces == p.bounces &&
                      memcmp(events[k].position, p.position, sizeof p.position) == 0;
+            is_full = landed;
+            for (int axis = 0; axis < 3 && landed; axis++) {
+                float off = p.direction[axis] + events[k].direction[axis];
+                is_full &= !(off < 0.0f) && !(off > 0.0f);
+            }
         }
-        g_assert_true(landed || n_events == 64);
+        g_assert_true((landed && is_full) || n_events == 64);
     }
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
         g_assert_cmpuint(per_class[c], >, 0);
