@@ -4,10 +4,11 @@
 #include "arguments.h"
 #include "command.h"
 #include "exposure.h"
+#include "layers.h"
 #include "message.h"
 
 static struct {
-    char *output, *size, *columns, *exposure;
+    char *output, *size, *columns, *exposure, *layer;
 } given;
 
 static const GOptionEntry entries[] = {
@@ -15,6 +16,8 @@ static const GOptionEntry entries[] = {
      "Write the image there: .exr, .png, .jpg, .hdr or .pfm", "FILE"},
     {"size", 0, 0, G_OPTION_ARG_STRING, &given.size,
      "Scale each image to so many pixels, by the mean over areas", "WxH"},
+    {"layer", 0, 0, G_OPTION_ARG_STRING, &given.layer,
+     "One layer of each EXR file, such as caustic or depth", "NAME"},
     {"columns", 0, 0, G_OPTION_ARG_STRING, &given.columns,
      "Columns of a sheet of several images; 1 if not given", "N"},
     {"exposure", 0, 0, G_OPTION_ARG_STRING, &given.exposure,
@@ -52,6 +55,12 @@ static bool job_init(job *j, char **images, GError **error)
 static NephImage *read_one(const job *j, const char *path, GError **error)
 {
     NephImage *image = neph_image_read(path, error);
+    if (image && given.layer) {
+        NephImage *whole = image;
+        image = layer_picture(whole, given.layer, given.output, error);
+        g_prefix_error(error, "%s: ", path);
+        neph_image_free(whole);
+    }
     if (!image || !j->width)
         return image;
     NephImage *scaled = neph_image_scale(image, j->width, j->height, error);

@@ -6,6 +6,7 @@
 #include "checkpoints.h"
 #include "command.h"
 #include "exposure.h"
+#include "layers.h"
 #include "loading.h"
 #include "message.h"
 #include "overrides.h"
@@ -16,7 +17,7 @@
 #include <string.h>
 
 static struct {
-    char **outputs;
+    char **outputs, **layers;
     char *size, *exposure, *stats, *every, *checkpoint, *checkpoint_every, *resume;
     gboolean quiet, explain;
     overrides settings;
@@ -25,6 +26,9 @@ static struct {
 static const GOptionEntry entries[] = {
     {"output", 'o', 0, G_OPTION_ARG_FILENAME_ARRAY, &given.outputs,
      "Write the image there: .exr, .png, .jpg, .hdr or .pfm; may be given again", "FILE"},
+    {"layer", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &given.layers,
+     "Write a layer of it there, such as caustic=caustic.png; may be given again",
+     "NAME=FILE"},
     {"set", 's', 0, G_OPTION_ARG_STRING_ARRAY, &given.settings.set,
      "Change a setting; may be given again", "NAME=VALUE"},
     {"preset", 0, 0, G_OPTION_ARG_STRING, &given.settings.preset,
@@ -118,7 +122,7 @@ static bool job_init(job *j, const char *scene_file, GError **error)
                 checkpoints_init(&j->checkpoints, given.checkpoint,
                                  given.checkpoint_every, error) &&
                 overrides_check(&given.settings, &j->threads, error) &&
-                check_outputs(j->outputs, error) &&
+                check_outputs(j->outputs, error) && layers_check(given.layers, error) &&
                 (!given.stats || neph_file_can_write(given.stats, error));
     j->exposure = (exposure_wish){.stops = (float)exposure, .no_notes = given.quiet};
     return good;
@@ -154,6 +158,10 @@ static bool check_distinct(const job *j, const NephScene *scene, GError **error)
             !neph_file_spares(*path, text, error))
             return false;
     }
+    for (char **word = given.layers; word && *word; word++)
+        if (!neph_file_spares(layer_file(*word), others, error) ||
+            !neph_file_spares(layer_file(*word), (const char *const *)j->outputs, error))
+            return false;
     const char *const checkpoint[] = {given.checkpoint, NULL};
     return (!given.stats || (neph_file_spares(given.stats, others, error) &&
                              neph_file_spares(given.stats, checkpoint, error))) &&
@@ -232,7 +240,19 @@ static int write_images(const job *j, const NephRender *render, bool is_snapshot
         else if (!is_snapshot && !given.quiet)
             print_result("wrote %s\n", *path);
     }
+    if (!layers_write(given.layers, image, stops, &error))
+        result = report_error(error);
+    for (char **word = given.layers; !result && word && *word; word++)
+        if (!is_snapshot && !given.quiet)
+            print_result("wrote %s\n", layer_file(*word));
     return result;
+}
+
+/* Before anything is rendered. */
+static bool check_layers(const NephRender *render, GError **error)
+{
+    g_autoptr(NephImage) image = given.layers ? neph_render_image(render, error) : NULL;
+    return !given.layers || (image && layers_known(given.layers, image, error));
 }
 
 static void report_photons(const NephStatistics *s)
@@ -347,6 +367,8 @@ static int run(job *j, NephRender *render)
     /* All counts that is done from the program's start to its end. */
     double before = (double)(g_get_monotonic_time() - program_start) / G_USEC_PER_SEC;
     neph_render_set_time_around(render, before, (const char *const *)j->outputs);
+    if (!check_layers(render, &error))
+        return report_error(error);
     if (given.explain && (ended = explain(render)) != EXIT_DONE)
         return ended;
     bool done = neph_render_run(render, look_on, &w, &error);

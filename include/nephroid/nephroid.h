@@ -318,6 +318,11 @@ NEPH_API NephImage *neph_image_scale(const NephImage *image, int width, int heig
 NEPH_API NephImage *neph_image_sheet(const NephImage *const *images, size_t n,
                                      size_t columns, GError **error);
 
+/** @brief One layer as an image of R, G and B: "caustic", "normal" (X, Y and Z), "depth"
+ * (all three alike) ... Owned by caller. NEPH_ERROR_USAGE with the list of layers if
+ * there is none of that name. */
+NEPH_API NephImage *neph_image_layer(const NephImage *image, const char *name,
+                                     GError **error);
 /** @brief Errors over R, G and B of an image a against its reference b. */
 typedef struct NephImageDifference {
     double mean_a, mean_b; /**< mean luminance */
@@ -417,10 +422,10 @@ NEPH_API char **neph_render_repeat(const NephRender *render);
 NEPH_API bool neph_render_save_checkpoint(NephRender *render, const char *path,
                                           GError **error);
 /** @brief Before the run: takes over the passes of a checkpoint. What comes then is what
- * an unbroken render gives, bit for bit. Of its settings only `passes`, `time`, `noise` and
- * `threads` may be others; `time` counts from the beginning of the first process.
- * NEPH_ERROR_INPUT with the reason if the file is damaged, cut off, or of another program,
- * scene, camera, size or settings; the render is then as new. */
+ * an unbroken render gives, bit for bit. Of its settings only `passes`, `time`, `noise`
+ * and `threads` may be others; `time` counts from the beginning of the first process.
+ * NEPH_ERROR_INPUT with the reason if the file is damaged, cut off, or of another
+ * program, scene, camera, size or settings; the render is then as new. */
 NEPH_API bool neph_render_resume(NephRender *render, const char *path, GError **error);
 /** @brief The settings that a checkpoint's render was asked for, and the size of its
  * picture, which may be NULL. Owned by the caller; NULL with NEPH_ERROR_INPUT. */
@@ -512,7 +517,9 @@ NEPH_API char *neph_render_fingerprint(NephRender *render, GError **error);
 /* ---- Photons alone ---- */
 
 typedef struct NephPhoton {
-    float position[3], direction[3]; /**< direction: to where it came from, unit */
+    float position[3], direction[3]; /**< direction: to where it came from, unit; off by
+                                        1e-4 at most, and not at all, but on what moves,
+                                        after neph_photons_follow */
     float rgb[3];                    /**< flux as linear sRGB, W of 683 lm */
     NephPhotonClass photon_class;
     uint32_t bounces; /**< scatterings before it landed; 0 until neph_photons_follow */
@@ -544,7 +551,8 @@ NEPH_API bool neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton 
  * none; the scene's. Those count for no estimate on a surface. */
 NEPH_API const char *neph_photons_medium(const NephPhotons *photons, size_t i);
 NEPH_API void neph_photons_statistics(const NephPhotons *photons, NephStatistics *out);
-/** @brief Binary PLY: x y z, nx ny nz (direction), red green blue (float flux), class. */
+/** @brief Binary PLY: x y z, nx ny nz (direction), red green blue (flux), all float, and
+ * class. */
 NEPH_API bool neph_photons_write_ply(const NephPhotons *photons, const char *path,
                                      GError **error);
 /** @brief The event log of the first n photons of each class, one line an event:

@@ -113,6 +113,11 @@ NephImage *neph_image_scale(const NephImage *img, int width, int height, GError 
     return NULL;
 }
 
+NephImage *neph_image_layer(const NephImage *img, const char *name, GError **error)
+{
+    return neph_image_wrap(image_layer(img->image, name, error));
+}
+
 NephImage *neph_image_sheet(const NephImage *const *images, size_t n, size_t columns,
                             GError **error)
 {

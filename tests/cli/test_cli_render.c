@@ -36,6 +36,81 @@ static void test_render_writes_all(folder *f, gconstpointer data)
     g_assert_cmpuint(folder_count(f), ==, 4);
 }
 
+/* Layers are pictures of their own; what is none is refused before anything is rendered.
+ */
+static void test_layers(folder *f, gconstpointer data)
+{
+    (void)data;
+    g_auto(result) none = run(f, "render box.pbrt -q --layer nothing=n.png -o a.exr");
+    g_assert_cmpint(none.code, ==, 2);
+    contains(none.err, "--layer: expected a layer's name (");
+    contains(none.err, "caustic");
+    contains(none.err, "), found 'nothing'");
+    g_assert_false(folder_has(f, "a.exr"));
+    g_auto(result) half = run(f, "render box.pbrt -q --layer caustic -o a.exr");
+    g_assert_cmpint(half.code, ==, 2);
+    contains(half.err, "--layer: expected NAME=FILE, found 'caustic'");
+    g_auto(result) twice = run(f, "render box.pbrt -q --layer depth=a.exr -o a.exr");
+    g_assert_cmpint(twice.code, ==, 2);
+    run_well(f, "render box.pbrt --layer direct=d.pfm --layer normal=n.png -o a.exr");
+    run_well(f, "image a.exr --layer direct -o e.pfm");
+    run_well(f, "image a.exr --layer normal -o m.png");
+    run_well(f, "image a.exr --layer depth -o z.pfm");
+    g_auto(result) same = run(f, "compare d.pfm e.pfm --json");
+    g_auto(result) normals = run(f, "compare n.png m.png --json");
+    g_assert_cmpfloat(json_find_number(same.out, "rmse"), ==, 0.0);
+    g_assert_cmpfloat(json_find_number(same.out, "mean_a"), >, 0.0);
+    g_assert_cmpfloat(json_find_number(normals.out, "rmse"), ==, 0.0);
+    g_auto(result) missing = run(f, "image d.pfm --layer depth -o y.png");
+    g_assert_cmpint(missing.code, ==, 2);
+    contains(missing.err, "the image has none");
+}
+
+/* A preset stands over the scene, and under what is said otherwise. */
+static void test_presets(folder *f, gconstpointer data)
+{
+    (void)data;
+    folder_write(f, "own.settings", "photons = 700\nspp = 2\n");
+    run_well(f, "photons box.pbrt -q --preset 003 -o p.ply");
+    run_well(f, "render box.pbrt -q --preset 003 --settings own.settings --set spp=1 "
+                "--stats s.json -o p.exr");
+    g_autofree char *json = folder_read(f, "s.json");
+    g_assert_cmpfloat(json_find_number(json, "passes"), ==, 1.0);
+    g_assert_cmpfloat(json_find_number(strstr(json, "\"indirect\""), "emitted"), ==,
+                      700.0);
+    g_assert_cmpfloat(json_find_number(strstr(json, "\"caustic\""), "emitted"), ==, 0.0);
+    g_auto(result) list = run(f, "settings --presets");
+    g_auto(result) one = run(f, "settings --preset 003");
+    g_auto(result) none = run(f, "render box.pbrt --preset 004");
+    contains(list.out, "002  ");
+    contains(one.out, "photon_survivors = true");
+    g_assert_cmpint(none.code, ==, 2);
+    contains(none.err, "expected a preset's name (000, 002, 003), found '004'");
+}
+
+/* The photons over the wireframe: those of a class alone leave the others out. */
+static void test_photon_pictures(folder *f, gconstpointer data)
+{
+    (void)data;
+    run_well(f, "photons box.pbrt -q --size 48x32 --set integrator=photonmap -o all.pfm");
+    run_well(f, "photons box.pbrt -q --size 48x32 --set integrator=photonmap --class "
+                "indirect -o one.pfm");
+    run_well(f, "photons box.pbrt -q --size 48x32 --set integrator=path -o wire.pfm");
+    g_auto(result) all = run(f, "compare all.pfm wire.pfm --json");
+    g_auto(result) one = run(f, "compare one.pfm wire.pfm --json");
+    double of_all = json_find_number(all.out, "mean_a");
+    double of_one = json_find_number(one.out, "mean_a");
+    double of_wire = json_find_number(all.out, "mean_b");
+    g_assert_cmpfloat(of_wire, >, 0.0);
+    g_assert_cmpfloat(of_one, >, 1.2 * of_wire);
+    g_assert_cmpfloat(of_all, >=, of_one);
+    g_auto(result) wrong = run(f, "photons box.pbrt --class red -o a.png");
+    g_assert_cmpint(wrong.code, ==, 2);
+    contains(wrong.err, "--class: expected direct, indirect or caustic, found 'red'");
+    g_auto(result) ply = run(f, "photons box.pbrt --size 8x8 -o a.ply");
+    g_assert_cmpint(ply.code, ==, 2);
+}
+
 static void test_quiet_is_quiet(folder *f, gconstpointer data)
 {
     (void)data;
@@ -501,6 +576,9 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     folder_add_test("/cli/render", test_render_writes_all);
+    folder_add_test("/cli/layers", test_layers);
+    folder_add_test("/cli/presets", test_presets);
+    folder_add_test("/cli/photon-pictures", test_photon_pictures);
     folder_add_test("/cli/quiet", test_quiet_is_quiet);
     folder_add_test("/cli/explain", test_explain);
     folder_add_test("/cli/named", test_scene_names_the_output);
