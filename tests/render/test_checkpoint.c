@@ -2,6 +2,7 @@
  * checkpoint: a render that is cut off and goes on elsewhere gives the same bits, and a
  * file that is not what it was, or of something else, is refused with the reason.
  */
+#include "base/memory.h"
 #include "render/checkpoint.h"
 #include "render/film_planes.h"
 #include "rooms.h"
@@ -151,6 +152,29 @@ static void test_planes(void)
     film_clear(&b);
 }
 
+/* All memory of a film is of its planes, of the pass under way or of the image to come:
+   whoever gives it more lists that, or a checkpoint loses it. */
+static void test_all_is_listed(void)
+{
+    enum { SMALL = 4096 };
+    g_autoptr(view) v = subject();
+    size_t left = memory_left();
+    film f;
+    g_assert_true(film_open(&f, v, NULL));
+    film_plane planes[FILM_MOST_PLANES];
+    size_t n = film_planes(&f, planes), n_pixels = (size_t)f.width * (size_t)f.height;
+    size_t known = f.image_size + n_pixels * sizeof *f.pass +
+                   n_pixels * 3 * (size_t)f.n_groups * sizeof *f.pass_groups +
+                   (f.pass_surfaces ? n_pixels * sizeof *f.pass_surfaces : 0);
+    for (size_t i = 0; i < n; i++)
+        known += film_plane_bytes(&planes[i]);
+    size_t taken = left - memory_left();
+    g_test_message("%zu bytes, %zu known", taken, known);
+    g_assert_cmpuint(taken, >=, known);
+    g_assert_cmpuint(taken, <=, known + SMALL);
+    film_clear(&f);
+}
+
 /* ---- What is refused ---- */
 
 static const char asked[] = "passes=3 spp=1 photons=1000";
@@ -252,6 +276,7 @@ int main(int argc, char **argv)
     g_test_add_data_func("/checkpoint/dealt/sppm", "integrator=sppm", test_dealt);
     g_test_add_func("/checkpoint/goes-further", test_goes_further);
     g_test_add_func("/checkpoint/planes", test_planes);
+    g_test_add_func("/checkpoint/all-is-listed", test_all_is_listed);
     g_test_add_func("/checkpoint/foreign", test_foreign);
     g_test_add_func("/checkpoint/damaged", test_damaged);
     g_test_add_func("/checkpoint/not-now", test_not_now);
