@@ -1,6 +1,7 @@
 #include "render/photons.h"
 
 #include "base/memory.h"
+#include "render/plan.h"
 
 static const char *const class_names[N_PHOTON_CLASSES] = {"direct", "indirect",
                                                           "caustic"};
@@ -14,7 +15,8 @@ static bool plan_photons(render_photons *p, const view *v, const settings *how,
     p->w = scene_wavelengths(v->scene, how, 0);
     if (!transport_plan_prepare(&p->plan, cancel, error))
         return false;
-    p->pass = p->sender ? p->sender->open(&p->plan, 0) : NULL;
+    p->first_plan = render_first_plan(&p->plan);
+    p->pass = p->sender ? p->sender->open(&p->first_plan, 0) : NULL;
     p->n_wholes = p->sender ? p->sender->n_wholes(p->pass) : 1;
     return true;
 }

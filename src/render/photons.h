@@ -23,6 +23,7 @@ typedef struct render_photons {
     wavelengths w;
     render_statistics statistics; /**< emitted: 0 of a class that this render sends not */
     transport_plan plan;
+    transport_plan first_plan;   /**< of the first pass: borrows from plan */
     const photon_sender *sender; /**< NULL: the integrator sends no photons */
     void *pass;                  /**< the sender's */
     int n_wholes;                /**< how often all light is in them, see photon_sender */

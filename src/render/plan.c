@@ -2,6 +2,19 @@
 
 #include "transport/photonmap/photonmap.h"
 
+transport_plan render_first_plan(const transport_plan *plan)
+{
+    transport_plan first = *plan;
+    if (plan->how.first_spp == 0 || plan->how.first_spp >= plan->how.spp)
+        return first;
+    double share = (double)plan->how.first_spp / (double)plan->how.spp;
+    first.how.spp = plan->how.first_spp;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        if (plan->n_photons[c] > 0)
+            first.n_photons[c] = MAX((uint64_t)((double)plan->n_photons[c] * share), 1);
+    return first;
+}
+
 render_plan render_plan_of(const transport_plan *plan)
 {
     render_plan out = {

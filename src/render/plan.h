@@ -24,6 +24,9 @@ typedef struct render_plan {
     int n_trials;
 } render_plan;
 
+/** @brief That of the first pass: with fewer samples by first_spp, and photons likewise.
+ * It borrows from the plan. */
+transport_plan render_first_plan(const transport_plan *plan);
 /** @brief Of a plan that is prepared. */
 render_plan render_plan_of(const transport_plan *plan);
 /** @brief Its numbers in a line, the same of equal plans only; owned by the caller. */

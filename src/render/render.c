@@ -70,20 +70,6 @@ static void note_photons(render *r)
         fewer && settings_reads(how, settings_find("photons")) ? how->photons : 0;
 }
 
-/* Of the first pass: with fewer samples, and photons likewise. */
-static transport_plan first_plan_of(const transport_plan *plan)
-{
-    transport_plan first = *plan;
-    if (plan->how.first_spp == 0 || plan->how.first_spp >= plan->how.spp)
-        return first;
-    double share = (double)plan->how.first_spp / (double)plan->how.spp;
-    first.how.spp = plan->how.first_spp;
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        if (plan->n_photons[c] > 0)
-            first.n_photons[c] = MAX((uint64_t)((double)plan->n_photons[c] * share), 1);
-    return first;
-}
-
 /* What goes on from a checkpoint must be planned as that was. */
 static bool plan_is_expected(const render *r, GError **error)
 {
@@ -109,7 +95,7 @@ bool render_prepare(render *r, GError **error)
         error_set(error, ERROR_CANCELLED, "cancelled");
         r->prepared = false;
     }
-    r->first_plan = first_plan_of(&r->plan);
+    r->first_plan = render_first_plan(&r->plan);
     r->statistics.time_prepare += clock_seconds() - start;
     note_photons(r);
     return r->prepared;

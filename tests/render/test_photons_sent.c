@@ -198,6 +198,13 @@ static void test_as_counted(gconstpointer data)
     }
 }
 
+/* Of a first pass that is smaller than the others, too. */
+static const sent_case small_first = {"first-pass",
+                                      ROOM,
+                                      "integrator=photonmap photons=4000 spp=4 "
+                                      "first_spp=1 seed=5",
+                                      {false, true, false}};
+
 /* ---- Paths ---- */
 
 /* What is told of the path that a photon is said to come from. */
@@ -289,6 +296,7 @@ int main(int argc, char **argv)
     }
     for (size_t i = 0; i < G_N_ELEMENTS(still); i++)
         add("origins", &still[i], test_origins);
+    add("as-counted", &small_first, test_as_counted);
     g_test_add_func("/photons-sent/follow-again", test_follow_again);
     return g_test_run();
 }
