@@ -26,6 +26,10 @@ _nephroid() {
             sed 's/ .*//')" -- "$word")
         return
         ;;
+    --class)
+        mapfile -t COMPREPLY < <(compgen -W 'direct indirect caustic' -- "$word")
+        return
+        ;;
     --metric)
         mapfile -t COMPREPLY < <(compgen -W 'rmse relmse psnr flip' -- "$word")
         return

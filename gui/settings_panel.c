@@ -275,6 +275,7 @@ static GtkWidget *presets_make(settings_panel *p)
     gtk_widget_set_name(button, "presets");
     gtk_widget_set_tooltip_text(button, "The scene's settings, and over them what a text "
                                         "on photon mapping describes");
+    widget_name(button, "Presets of settings");
     return button;
 }
 
