@@ -9,11 +9,13 @@
 #include <string.h>
 
 static gboolean as_json;
-static char *metric, *output;
+static char *metric, *output, *layer;
 
 static const GOptionEntry entries[] = {
     {"metric", 'm', 0, G_OPTION_ARG_STRING, &metric,
      "Only one number: rmse, relmse, psnr or flip", "NAME"},
+    {"layer", 0, 0, G_OPTION_ARG_STRING, &layer,
+     "This layer of IMAGE in place of R, G and B: denoised, caustic ...", "NAME"},
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &output,
      "Write where they differ as an image: red is brighter than the reference, blue is "
      "darker",
@@ -70,6 +72,10 @@ static bool compare_files(char *const names[2], NephImageDifference *out, GError
                    !neph_image_can_write(output, error)))
         return false;
     g_autoptr(NephImage) image = neph_image_read(names[0], error);
+    if (image && layer) {
+        g_autoptr(NephImage) whole = image;
+        image = neph_image_layer(whole, layer, error);
+    }
     g_autoptr(NephImage) reference = image ? neph_image_read(names[1], error) : NULL;
     return reference && neph_image_compare(image, reference, out, error) &&
            write_map(image, reference, error);

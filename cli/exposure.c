@@ -25,3 +25,13 @@ float exposure_of(const NephImage *image, const exposure_wish *wish, bool silent
         tell_of(is, better, wish);
     return wish->is_free ? better : wish->stops;
 }
+
+bool has_eight_bits(const char *path)
+{
+    static const char *const endings[] = {".png", ".jpg", ".jpeg"};
+    g_autofree char *lower = g_ascii_strdown(path, -1);
+    bool has = false;
+    for (size_t i = 0; i < G_N_ELEMENTS(endings); i++)
+        has |= g_str_has_suffix(lower, endings[i]);
+    return has;
+}

@@ -18,3 +18,7 @@ typedef struct exposure_wish {
  * white, and which exposure shows it.
  * @param silent says nothing: it is not the last one */
 float exposure_of(const NephImage *image, const exposure_wish *wish, bool silent);
+
+/** @brief Whether a file of this name has eight bits a colour: it has an exposure, and
+ * shows the denoised layer. */
+bool has_eight_bits(const char *path);

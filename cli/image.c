@@ -73,17 +73,6 @@ static void free_image(void *image)
     neph_image_free(image);
 }
 
-/* Files of floats are read with any exposure: theirs is nobody's concern. */
-static bool has_eight_bits(const char *path)
-{
-    static const char *const endings[] = {".png", ".jpg", ".jpeg"};
-    g_autofree char *lower = g_ascii_strdown(path, -1);
-    bool has = false;
-    for (size_t i = 0; i < G_N_ELEMENTS(endings); i++)
-        has |= g_str_has_suffix(lower, endings[i]);
-    return has;
-}
-
 static bool write_one(const job *j, const NephImage *image, GError **error)
 {
     const exposure_wish wish = {.stops = (float)j->exposure};

@@ -1,5 +1,7 @@
 #include "layers.h"
 
+#include "exposure.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -40,13 +42,6 @@ bool layers_known(char **words, const NephImage *image, GError **error)
         }
     }
     return true;
-}
-
-static bool has_eight_bits(const char *path)
-{
-    g_autofree char *lower = g_ascii_strdown(path, -1);
-    return g_str_has_suffix(lower, ".png") || g_str_has_suffix(lower, ".jpg") ||
-           g_str_has_suffix(lower, ".jpeg");
 }
 
 static bool is_normal(const char *name)

@@ -39,6 +39,7 @@ bool overrides_apply(const overrides *o, NephSettings *settings, GError **error)
            apply_flag(settings, "noise", o->noise, error) &&
            apply_flag(settings, "spp", o->spp, error) &&
            apply_flag(settings, "threads", o->threads, error) &&
+           apply_flag(settings, "denoise", o->denoise, error) &&
            apply_flag(settings, "seed", o->seed, error);
 }
 

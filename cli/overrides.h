@@ -16,7 +16,7 @@ typedef struct overrides {
     char *file;   /**< --settings */
     char **set;   /**< --set, "name=value" */
     char *integrator, *passes, *time, *noise, *spp, *threads,
-        *seed; /**< NULL: not given */
+        *seed, *denoise; /**< NULL: not given */
 } overrides;
 
 /** @brief Puts them over the settings. Errors name the option. */

@@ -59,6 +59,9 @@ static const GOptionEntry entries[] = {
      "Threads; 0: one per processor", "N"},
     {"seed", 0, 0, G_OPTION_ARG_STRING, &given.settings.seed, "Seed of random numbers",
      "N"},
+    {"denoise", 0, 0, G_OPTION_ARG_STRING, &given.settings.denoise,
+     "Whether the noise is taken out of what 8-bit images show; on if not given",
+     "on|off"},
     {"exposure", 0, 0, G_OPTION_ARG_STRING, &given.exposure,
      "Brighten 8-bit images by so many stops", "STOPS"},
     {"stats", 0, 0, G_OPTION_ARG_FILENAME, &given.stats, "Write statistics as JSON",
@@ -80,8 +83,9 @@ static const usage how = {
         "Settings: the scene's are overridden by --preset, these by --settings, these by "
         "--set in the "
         "order given,\nthese by --spp, --passes, --time, --noise, --integrator, "
-        "--threads "
-        "and --seed.\n'nephroid settings' lists them all. With --time or --noise the "
+        "--threads, "
+        "--denoise and --seed.\n'nephroid settings' lists them all. With --time or "
+        "--noise the "
         "scene's own number of\npasses is no limit; --passes N is.\n\n"
         "Ctrl-C (SIGTERM, SIGHUP) writes the passes that are done and exits with 3; "
         "before the\nfirst is done it writes nothing. A second one ends at once.\n\n"
@@ -225,6 +229,22 @@ static NephRender *prepare(job *j, NephScene *scene, GError **error)
     return render;
 }
 
+static bool is_denoised(const NephImage *image)
+{
+    bool found = false;
+    const char *name;
+    for (int c = 0; (name = neph_image_channel_name(image, c)); c++)
+        found |= strcmp(name, "denoised.R") == 0;
+    return found;
+}
+
+/* What is written, and whether it shows the picture without noise. */
+static void report_written(const NephImage *image, const char *path)
+{
+    bool shows = is_denoised(image) && has_eight_bits(path);
+    print_result("wrote %s%s\n", path, shows ? ", denoised" : "");
+}
+
 static int write_images(const job *j, const NephRender *render, bool is_snapshot)
 {
     g_autoptr(GError) error = NULL;
@@ -238,7 +258,7 @@ static int write_images(const job *j, const NephRender *render, bool is_snapshot
         if (!neph_image_write(image, *path, stops, &refused))
             result = report_error(refused);
         else if (!is_snapshot && !given.quiet)
-            print_result("wrote %s\n", *path);
+            report_written(image, *path);
     }
     if (!layers_write(given.layers, image, stops, &error))
         result = report_error(error);

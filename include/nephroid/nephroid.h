@@ -283,7 +283,8 @@ NEPH_API NephImage *neph_image_read(const char *path, GError **error);
 NEPH_API NephImage *neph_image_new(int width, int height, const float *rgb,
                                    GError **error);
 /** @brief By the name's extension: .exr (float, all layers), .png, .jpg, .hdr, .pfm.
- * Written to a temporary name and renamed. exposure: stops, for 8-bit formats. */
+ * Written to a temporary name and renamed. exposure: stops, for 8-bit formats; these show
+ * the layer "denoised" where there is one. */
 NEPH_API bool neph_image_write(const NephImage *image, const char *path, float exposure,
                                GError **error);
 /** @brief How a picture comes out in eight bits. Pixels that no light reaches do not
@@ -319,7 +320,7 @@ NEPH_API NephImage *neph_image_sheet(const NephImage *const *images, size_t n,
                                      size_t columns, GError **error);
 
 /** @brief One layer as an image of R, G and B: "caustic", "normal" (X, Y and Z), "depth"
- * (all three alike) ... Owned by caller. NEPH_ERROR_USAGE with the list of layers if
+ * (all three alike), "raw" (R, G and B as they were rendered) ... Owned by caller. NEPH_ERROR_USAGE with the list of layers if
  * there is none of that name. */
 NEPH_API NephImage *neph_image_layer(const NephImage *image, const char *name,
                                      GError **error);

@@ -97,14 +97,17 @@ static char *list_layers(const image *img)
         else
             g_ptr_array_add(names, name);
     }
+    if (image_channel(img, "R") >= 0)
+        g_ptr_array_add(names, g_strdup("raw"));
     g_ptr_array_add(names, NULL);
     return g_strjoinv(", ", (char **)names->pdata);
 }
 
 image *image_layer(const image *img, const char *name, GError **error)
 {
-    int channels[3];
-    if (!layer_channels(img, name, channels)) {
+    int channels[4];
+    bool raw = strcmp(name, "raw") == 0 && image_colors(img, channels);
+    if (!raw && !layer_channels(img, name, channels)) {
         g_autofree char *list = list_layers(img);
         error_set(error, ERROR_USAGE, "expected a layer's name (%s), found '%s'",
                   *list ? list : "the image has none", name);
@@ -145,7 +148,7 @@ static int *edges(const image *const *images, size_t n, size_t columns, bool of_
 static void put(image *sheet, const image *img, int left, int top)
 {
     int rgba[4];
-    image_colors(img, rgba);
+    image_shown_colors(img, rgba);
     for (int c = 0; c < 3; c++) {
         const float *from = img->pixels + rgba[c];
         for (int y = 0; y < img->height; y++)

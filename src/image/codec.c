@@ -68,13 +68,23 @@ float *encoding_table(const image_read_options *options, unsigned n_codes)
     return table;
 }
 
-bool image_rgba(const image *img, const char *path, int rgba[4], GError **error)
+static bool has_colors(bool found, const char *path, GError **error)
 {
-    if (image_colors(img, rgba))
+    if (found)
         return true;
     error_set(error, ERROR_INPUT, "%s: the image has no channels 'R', 'G', 'B' or 'Y'",
               path);
     return false;
+}
+
+bool image_raw(const image *img, const char *path, int rgba[4], GError **error)
+{
+    return has_colors(image_colors(img, rgba), path, error);
+}
+
+bool image_shown(const image *img, const char *path, int rgba[4], GError **error)
+{
+    return has_colors(image_shown_colors(img, rgba), path, error);
 }
 
 uint8_t srgb_code(float linear)

@@ -67,7 +67,9 @@ bool source_line(const image_source *source, size_t *at, char *line, size_t size
 float *encoding_table(const image_read_options *options, unsigned n_codes);
 
 /** @brief image_colors. @return false with ERROR_INPUT if there are none. */
-bool image_rgba(const image *img, const char *path, int rgba[4], GError **error);
+bool image_raw(const image *img, const char *path, int rgba[4], GError **error);
+/** @brief The same of image_shown_colors. */
+bool image_shown(const image *img, const char *path, int rgba[4], GError **error);
 
 /** @brief The 8-bit sRGB code of a linear value; not finite counts as 0. */
 uint8_t srgb_code(float linear);

@@ -40,11 +40,10 @@ static float stops_of(const histogram *h, double share)
 
 exposure_state image_exposure(const image *img, float stops, float *better)
 {
-    const int channel[3] = {image_channel(img, "R"), image_channel(img, "G"),
-                            image_channel(img, "B")};
+    int channel[4];
     size_t n_pixels = (size_t)img->width * (size_t)img->height;
     *better = stops;
-    if (channel[0] < 0 || channel[1] < 0 || channel[2] < 0)
+    if (!image_shown_colors(img, channel) || image_channel(img, "R") < 0)
         return EXPOSURE_GOOD;
     g_autofree histogram *h = g_new0(histogram, 1);
     for (size_t i = 0; i < n_pixels; i++)

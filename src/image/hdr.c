@@ -324,7 +324,7 @@ static bool write_hdr(const image *img, const image_sink *sink,
 {
     (void)options;
     int rgba[4];
-    if (!image_rgba(img, sink->path, rgba, error))
+    if (!image_raw(img, sink->path, rgba, error))
         return false;
     g_autofree uint8_t *scanline = g_malloc_n((gsize)img->width, 4);
     const float *p = img->pixels;

@@ -54,6 +54,9 @@ int image_channel(const image *img, const char *name);
  * there is none. Grey (Y, or the only channel) stands for R, G and B.
  *  @return false: there are no colours */
 bool image_colors(const image *img, int rgba[4]);
+/** @brief Those of the picture that is shown: without noise (denoised.R, G, B), if it has
+ * that, or image_colors. */
+bool image_shown_colors(const image *img, int rgba[4]);
 /** @brief A string of the header, or NULL. */
 const char *image_header_get(const image *img, const char *key);
 void image_header_set(image *img, const char *key, const char *value);
@@ -71,8 +74,9 @@ image *image_read_bytes(const char *name, GBytes *bytes,
 
 /** @brief Writes by the name's extension (.exr, .png, .jpg, .hdr, .pfm): to a temporary
  * name beside it, synced and renamed, so that no partial file is ever seen under the
- * name. Formats other than EXR write channels R, G, B (and A for PNG, as it stands) only;
- * EXR writes all, as 32-bit float, and the header as string attributes.
+ * name. Formats other than EXR write channels R, G, B (and A for PNG, as it stands) only,
+ * those of eight bits image_shown_colors; EXR writes all, as 32-bit float, and the header
+ * as string attributes.
  *  @param options NULL = exposure 0. @return false with ERROR_INPUT (unknown extension,
  *  unwritable, no R, G, B) or ERROR_FAILED (disk). */
 bool image_write(const image *img, const char *path, const image_write_options *options,

@@ -207,7 +207,7 @@ static bool write_jpeg(const image *img, const image_sink *sink,
     job->row = g_malloc_n((gsize)img->width, 3);
     job->out.err = handlers(job);
     job->out.client_data = job;
-    bool written = image_rgba(img, sink->path, job->rgba, error);
+    bool written = image_shown(img, sink->path, job->rgba, error);
     if (written && !guarded(job, write_file)) {
         error_set(error, ERROR_FAILED, "%s: cannot be written: %s", sink->path,
                   job->message);

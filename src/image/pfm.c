@@ -119,7 +119,7 @@ static bool write_pfm(const image *img, const image_sink *sink,
 {
     (void)options;
     int rgba[4];
-    if (!image_rgba(img, sink->path, rgba, error))
+    if (!image_raw(img, sink->path, rgba, error))
         return false;
     fprintf(sink->stream, "PF\n%d %d\n-1\n", img->width, img->height);
     for (int y = img->height - 1; y >= 0; y--)

@@ -249,7 +249,7 @@ static bool write_png(const image *img, const image_sink *sink,
     job->height = img->height;
     job->scale = exp2f(options->exposure);
     job->bytes = g_malloc_n((gsize)img->width, 4);
-    bool written = image_rgba(img, sink->path, job->channel, error);
+    bool written = image_shown(img, sink->path, job->channel, error);
     job->n_values = job->channel[3] >= 0 ? 4 : 3;
     written = written && write_guarded(job, error);
     g_free(job->bytes);

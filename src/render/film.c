@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "color/balance.h"
+#include "render/film_halves.h"
 #include "render/gbuffer.h"
 
 enum { LUMINANCE = 1 /* of X, Y, Z */ };
@@ -31,12 +32,12 @@ static bool open_groups(film *f, const scene *s, GError **error)
     return f->groups != NULL;
 }
 
-static GPtrArray *channel_names(const film *f);
+static GPtrArray *channel_names(const film *f, bool denoised);
 
 /* The image that the film becomes is not refused when all is rendered. */
 static bool reserve_image(film *f, GError **error)
 {
-    g_autoptr(GPtrArray) names = channel_names(f);
+    g_autoptr(GPtrArray) names = channel_names(f, f->halves);
     const size_t n_variance = 1; /* not among the names before there are passes */
     size_t size = n_pixels(f) * (names->len + n_variance) * sizeof(float);
     if (memory_reserve(size, "the image", error))
@@ -44,7 +45,7 @@ static bool reserve_image(film *f, GError **error)
     return f->image_size > 0;
 }
 
-bool film_open(film *f, const view *v, GError **error)
+bool film_open(film *f, const view *v, bool denoise, GError **error)
 {
     const film_settings *how = &v->film;
     int x1 = (int)ceilf(how->crop[1] * (float)how->width);
@@ -70,7 +71,7 @@ bool film_open(film *f, const view *v, GError **error)
     if (f->pass)
         f->pixels = big_alloc(n_pixels(f), sizeof *f->pixels, "the film", error);
     return f->pixels && open_groups(f, v->scene, error) && gbuffer_open(f, how, error) &&
-           reserve_image(f, error);
+           (!denoise || halves_open(f, error)) && reserve_image(f, error);
 }
 
 void film_clear(film *f)
@@ -81,6 +82,7 @@ void film_clear(film *f)
     big_free(f->groups);
     big_free(f->pass_surfaces);
     big_free(f->surfaces);
+    halves_clear(f);
     memory_release(f->image_size);
     *f = (film){0};
 }
@@ -247,6 +249,7 @@ static void end_pixels(size_t begin, size_t end, unsigned thread, void *data)
     for (size_t i = group_offset(f, begin); i < group_offset(f, end); i++)
         f->groups[i] += (double)f->pass_groups[i];
     gbuffer_end_pass(f, begin, end);
+    halves_end_pass(f, begin, end);
     for (size_t i = begin; i < end; i++) {
         film_pixel *pixel = &f->pixels[i];
         film_sum pass = {0};
@@ -330,7 +333,7 @@ static bool has_variance(const film *f)
 }
 
 /* Channel names: R G B, then layer.R ..., normal.X ..., depth.Z. */
-static GPtrArray *channel_names(const film *f)
+static GPtrArray *channel_names(const film *f, bool denoised)
 {
     GPtrArray *names = g_ptr_array_new_with_free_func(g_free);
     for (const char *c = "RGB"; *c; c++)
@@ -349,6 +352,8 @@ static GPtrArray *channel_names(const film *f)
             g_ptr_array_add(names, g_strdup_printf("light.%s.%c", f->group_names[i], *c));
     }
     gbuffer_add_names(f, names);
+    for (const char *c = "RGB"; *c && denoised; c++)
+        g_ptr_array_add(names, g_strdup_printf("denoised.%c", *c));
     return names;
 }
 
@@ -428,35 +433,52 @@ typedef struct image_loop {
     const film *film;
     image *image;
     size_t first;
+    const float *denoised; /* of the whole film; NULL: not among the channels */
 } image_loop;
 
 static void write_pixels(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     const image_loop *loop = data;
-    for (size_t i = begin; i < end; i++)
-        write_pixel(loop->film, loop->first + i,
-                    loop->image->pixels + i * (size_t)loop->image->n_channels);
+    for (size_t i = begin; i < end; i++) {
+        size_t n = (size_t)loop->image->n_channels;
+        float *pixel = loop->image->pixels + i * n;
+        write_pixel(loop->film, loop->first + i, pixel);
+        for (size_t c = 0; c < 3 && loop->denoised; c++)
+            pixel[n - 3 + c] = loop->denoised[3 * i + c];
+    }
 }
 
-image *film_image(const film *f, unsigned threads, GError **error)
+/* Rows of the picture; with what there is of the whole without noise, unless NULL. */
+static image *make_image(const film *f, int y, int rows, const float *denoised,
+                         unsigned threads, GError **error)
 {
-    return film_image_rows(f, 0, f->height, threads, error);
-}
-
-image *film_image_rows(const film *f, int y, int rows, unsigned threads, GError **error)
-{
-    g_autoptr(GPtrArray) names = channel_names(f);
+    g_autoptr(GPtrArray) names = channel_names(f, denoised);
     memory_release(f->image_size);
     image *img = image_new(f->width, rows, (int)names->len,
                            (const char *const *)names->pdata, error);
     memory_count(f->image_size);
     if (!img)
         return NULL;
-    image_loop loop = {f, img, (size_t)y * (size_t)f->width};
+    image_loop loop = {f, img, (size_t)y * (size_t)f->width, denoised};
     parallel_for((size_t)f->width * (size_t)rows, 1 << 12, threads, NULL, write_pixels,
                  &loop);
     color_space_chromaticities(f->space, img->chromaticities);
     image_header_set(img, "colorSpace", color_space_name(f->space));
     return img;
+}
+
+image *film_image(const film *f, unsigned threads, GError **error)
+{
+    float *denoised = film_can_denoise(f) ? film_denoise(f, threads, NULL, error) : NULL;
+    if (film_can_denoise(f) && !denoised)
+        return NULL;
+    image *img = make_image(f, 0, f->height, denoised, threads, error);
+    big_free(denoised);
+    return img;
+}
+
+image *film_image_rows(const film *f, int y, int rows, unsigned threads, GError **error)
+{
+    return make_image(f, y, rows, NULL, threads, error);
 }

@@ -73,13 +73,18 @@ typedef struct film {
     bool balanced; /**< by this matrix of XYZ */
     double balance[9];
     const color_space *space;
-    surface_sum *pass_surfaces; /**< of the pass; NULL: the film is no gbuffer */
-    surface_sum *surfaces;      /**< of the passes done */
-    size_t image_size;          /**< bytes reserved for film_image */
+    surface_sum *pass_surfaces;    /**< of the pass; NULL: the film is no gbuffer */
+    surface_sum *surfaces;         /**< of the passes done */
+    struct guide_sum *pass_guides; /**< of the pass; NULL: the film has no halves */
+    struct half_pixel *halves;     /**< of the passes done: film_halves.h */
+    size_t denoise_size;           /**< bytes reserved for film_denoise */
+    bool no_time;      /**< there is none to denoise: film_can_denoise is false */
+    size_t image_size; /**< bytes reserved for film_image */
 } film;
 
-/** @brief An empty film for the view's crop window. */
-bool film_open(film *f, const view *v, GError **error);
+/** @brief An empty film for the view's crop window.
+ * @param denoise with what film_denoise needs */
+bool film_open(film *f, const view *v, bool denoise, GError **error);
 void film_clear(film *f);
 
 /** @brief What turns a pass' spectra into colours. */
@@ -124,9 +129,10 @@ void film_to_rgb(const film *f, const double sum[3], double weight, float out[3]
 
 /** @brief The picture: R G B, the layers' R G B, albedo, normal, depth; linear, film's
  * space. With two passes or more also variance.Y, the square of the standard error of
- * the luminance; with light groups their layers light.NAME; then those of a gbuffer.
+ * the luminance; with light groups their layers light.NAME; then those of a gbuffer; last
+ * denoised.R G B, of the passes done, where there is enough for film_denoise.
  * Of the pass under way, too, what its n_cells say; where that is all there is, pixels
  * that are still to come look like those beside. */
 image *film_image(const film *f, unsigned threads, GError **error);
-/** @brief Some of its rows only, from y on. */
+/** @brief Some of its rows only, from y on; never denoised. */
 image *film_image_rows(const film *f, int y, int rows, unsigned threads, GError **error);

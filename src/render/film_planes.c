@@ -1,5 +1,7 @@
 #include "render/film_planes.h"
 
+#include "render/film_halves.h"
+
 #include <string.h>
 
 size_t film_planes(const film *f, film_plane out[FILM_MOST_PLANES])
@@ -13,6 +15,8 @@ size_t film_planes(const film *f, film_plane out[FILM_MOST_PLANES])
     if (f->surfaces)
         out[n++] = (film_plane){"surfaces", f->surfaces, n_pixels, 0,
                                 sizeof *f->surfaces / sizeof(double)};
+    if (f->halves)
+        out[n++] = (film_plane){"halves", f->halves, n_pixels, HALF_FLOATS, N_LIGHTS};
     return n;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "render/film_halves.h"
 #include "render/gbuffer.h"
 
 #include <string.h>
@@ -55,6 +56,7 @@ static group_sums groups_of(const look *l, unsigned thread)
 typedef struct pixel_sums {
     film_sum film;
     surface_sum surface;
+    guide_sum guide;
 } pixel_sums;
 
 /* Where in the pixel and on the lens, and when, a sample looks. */
@@ -104,6 +106,7 @@ static void render_sample(look *l, vec2 pixel, sampler *random, unsigned thread,
     gbuffer_turn(v, from_eye.time, &sample);
     float dimmed = film_add(&sums->film, &l->film_pass, &sample, weight);
     const gbuffer_sample seen = {raster, at.u_lens, from_eye, weight, dimmed};
+    guide_add(&sums->guide, &l->film_pass, &sample, weight);
     gbuffer_add(&sums->surface, l->task.film, v, &l->film_pass, &seen, &sample);
     for (size_t k = 0; k < groups->n; k++)
         groups->sum[k] += weight * dimmed * groups->sample[k];
@@ -135,6 +138,7 @@ static void render_pixel(look *l, int x, int y, unsigned thread)
         return;
     film_put(l->task.film, x, y, &sums.film);
     gbuffer_put(l->task.film, x, y, &sums.surface);
+    halves_put(l->task.film, x, y, &sums.guide);
     film_put_groups(l->task.film, &l->film_pass, x, y, groups.sum);
 }
 

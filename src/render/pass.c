@@ -2,12 +2,17 @@
  * One pass of a render, whole or in part, and how far it is.
  */
 #include "base/clock.h"
+#include "render/film_halves.h"
 #include "render/pace.h"
 #include "render/render_state.h"
 #include "render/stop.h"
 
 /* The caller hears of progress no more often than this, s. */
 #define PROGRESS_INTERVAL 0.1
+
+/* Of a time that is given no more than this goes into denoising: else there is nothing to
+   denoise. */
+#define DENOISE_SHARE 0.4
 
 /* Of the time given so much goes into finding out how long writing takes, each time. */
 #define WRITE_SHARE 0.01
@@ -97,17 +102,21 @@ static void add_counts(render_statistics *st, const transport_counts *counts)
     }
 }
 
-/* How long writing takes is asked at the start, of the first pictures, and again when
-   half of the time is over: it depends on what the picture shows and what else the
-   machine does. */
+/* How long writing and denoising take is asked at the start, of the first pictures, and
+   again when half of the time is over: it depends on what the picture shows and what else
+   the machine does. */
 void render_time_writing(render *r)
 {
     double time = r->plan.how.time, elapsed = clock_seconds() - r->start;
-    bool is_due = r->passes_done <= 1 || !(r->after > 0.0) ||
+    bool is_due = r->passes_done <= 2 || !(r->after > 0.0) ||
                   (elapsed > 0.5 * time && r->timed_at < 0.5 * time);
     if (!(time > 0.0) || !is_due)
         return;
+    double denoising = film_denoise_seconds(&r->film, r->n_threads);
+    r->film.no_time = r->film.no_time || denoising > DENOISE_SHARE * time;
     r->after = pace_write_seconds(&r->film, r->n_threads, r->paths, WRITE_SHARE * time);
+    if (!r->film.no_time)
+        r->after += denoising;
     r->timed_at = elapsed;
 }
 

@@ -18,7 +18,7 @@ render *render_new(const view *v, const settings *how, GError **error)
     r->statistics.noise = (double)INFINITY;
     bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
     r->statistics.passes_wanted = open_end ? 0 : (int64_t)ceil(settings_most_passes(how));
-    if (film_open(&r->film, v, error))
+    if (film_open(&r->film, v, how->denoise, error))
         return r;
     render_free(r);
     return NULL;

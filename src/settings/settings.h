@@ -87,6 +87,7 @@ typedef struct settings {
     bool multiple_samples;
     int vcm_strategies; /**< vcm_choice */
     double alpha;       /**< Knaus & Zwicker 2011 */
+    bool denoise;       /**< with a picture without noise beside */
     int64_t seed;
     int64_t threads; /**< 0: one per processor */
     uint64_t given;  /**< bit i: row i of the table was set, by whatever name */

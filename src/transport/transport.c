@@ -24,6 +24,19 @@ void radiance_sample_note(radiance_sample *out, const surface_hit *hit, const bs
     out->uv = hit->uv;
 }
 
+bool radiance_sample_guide(radiance_sample *out, const surface_hit *hit, const bsdf *b,
+                           vec3 wo, vec3 eye, float arrives)
+{
+    light_guide *guide = &out->guide;
+    if (!(b->lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)) || !(arrives > 0.0f))
+        return false;
+    guide->albedo += arrives * bsdf_albedo(b, wo, LOBE_ALL);
+    guide->normal += arrives * face_forward(hit->n, wo);
+    guide->depth += arrives * length3(hit->p - eye);
+    guide->weight += arrives;
+    return true;
+}
+
 bool transport_scratch_init(transport_scratch *scratch, size_t n_groups, GError **error)
 {
     if (!estimate_scratch_init(&scratch->estimate, n_groups, error))

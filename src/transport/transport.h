@@ -28,6 +28,18 @@ typedef enum radiance_layer {
     N_LAYERS
 } radiance_layer;
 
+/** @brief What the denoiser goes by beside light: of the first surface that scatters
+ * diffusely or in a lobe with some width, as it is seen by way of mirrors and glass.
+ * Sums, where there are several, weighed by how much of their light arrives. */
+typedef struct light_guide {
+    spectrum albedo;
+    spectrum photons; /**< what a photon map says of the light that leaves it, however
+                         smooth and biased: any */
+    vec3 normal;      /**< shading normal, toward where it is seen from */
+    float depth;      /**< distance from the eye as the crow flies, m */
+    float weight;     /**< 0: nothing is seen yet */
+} light_guide;
+
 /** @brief What one camera ray found. */
 typedef struct radiance_sample {
     spectrum layers[N_LAYERS]; /**< radiance */
@@ -37,12 +49,19 @@ typedef struct radiance_sample {
     vec3 normal;      /**< shading normal of the first surface, toward the eye */
     float depth;      /**< distance to it, m; 0: none */
     vec3 p, n_geom;   /**< of it; the true normal toward the eye too */
-    vec2 uv;          /**< of it */
+    light_guide guide;
+    vec2 uv; /**< of it */
 } radiance_sample;
 
 /** @brief Notes the first surface, seen from a point in direction -wo. */
 void radiance_sample_note(radiance_sample *out, const surface_hit *hit, const bsdf *b,
                           vec3 wo, vec3 from);
+
+/** @brief Adds a surface to the guide if it ends what is specular.
+ * @param eye where the camera ray began @param arrives of the surface's light, mean over
+ * wavelengths @return whether it does */
+bool radiance_sample_guide(radiance_sample *out, const surface_hit *hit, const bsdf *b,
+                           vec3 wo, vec3 eye, float arrives);
 
 /** @brief Light that a pass found on its way from the lights, at a place of the film. */
 typedef struct splat {

@@ -124,7 +124,7 @@ static void test_planes(void)
 {
     g_autoptr(view) v = subject();
     film a, b;
-    g_assert_true(film_open(&a, v, NULL) && film_open(&b, v, NULL));
+    g_assert_true(film_open(&a, v, true, NULL) && film_open(&b, v, true, NULL));
     film_plane of_a[FILM_MOST_PLANES], of_b[FILM_MOST_PLANES];
     size_t n = film_planes(&a, of_a), total = film_count_sums(&a);
     g_assert_cmpuint(film_planes(&b, of_b), ==, n);

@@ -316,6 +316,7 @@ static const struct {
     {"multiple_samples", "/knob-meanings/multiple-samples"},
     {"vcm_strategies", "/vcm/strategies"},
     {"alpha", "/knob-meanings/alpha"},
+    {"denoise", "/film-denoise/raw-stays /film-denoise/less-noise"},
     {"seed", "/knob-meanings/seed"},
     {"threads", "/base/parallel/once /transport/threads"},
 };

@@ -7,11 +7,13 @@
 #include "render/render.h"
 #include "scene_text.h"
 
-/** Settings as "name=value" words; photon mapping where they say nothing else. */
+/** Settings as "name=value" words; photon mapping where they say nothing else, and no
+ * picture without noise beside. */
 static inline settings settings_with(const scene *s, const char *words)
 {
     settings how = s->settings;
     how.integrator = INTEGRATOR_PHOTONMAP;
+    how.denoise = false;
     g_auto(GStrv) list = g_strsplit(words, " ", -1);
     for (char **word = list; *word; word++) {
         g_auto(GStrv) pair = g_strsplit(*word, "=", 2);

@@ -7,7 +7,7 @@
 
 /* What the filter lost is put back as far as it is surely more than noise: so many of its
    standard errors are taken off its mean over a patch. */
-#define SURE 2.0f
+#define SURE 1.0f
 
 enum { N_PLANES = 3 };
 

@@ -9,6 +9,7 @@
 
 enum {
     LIGHT_PLANES = 39, /* of one light: see light_planes */
+    BLEND_PLANES = 7,  /* while blend_all works */
     OUTLIER_REACH = 2, /* pixels around one that may be an outlier */
 };
 
@@ -63,10 +64,11 @@ void denoiser_free(denoiser *d)
     g_free(d);
 }
 
-size_t denoise_memory(int width, int height, int n_feature_channels)
+size_t denoise_bytes(int n_feature_channels)
 {
-    grid g = grid_make(width, height, 1, NULL);
-    return g.n * sizeof(float) * (size_t)(LIGHT_PLANES + n_feature_channels);
+    const int doubts = n_feature_channels; /* at most */
+    return sizeof(float) *
+           (size_t)(LIGHT_PLANES + BLEND_PLANES + n_feature_channels + doubts);
 }
 
 static bool planes_new(const grid *g, float **planes, int n, GError **error)

@@ -54,5 +54,5 @@ int denoiser_add(denoiser *d, const denoise_layer *feature, GError **error);
 bool denoiser_filter(const denoiser *d, const denoise_layer *light, int divide_by,
                      float *out, GError **error);
 
-/** @brief Bytes that it takes while it works, about. */
-size_t denoise_memory(int width, int height, int n_feature_channels);
+/** @brief Bytes a pixel that it takes while it works, of large pictures. */
+size_t denoise_bytes(int n_feature_channels);

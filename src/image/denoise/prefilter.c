@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { AROUND = 5 /* pixels that are looked at in both directions */ };
+enum { AROUND = 4 /* pixels that are looked at in both directions */ };
 
 /* 1/k² of the bandwidth k = 1/2. */
 #define SHARPNESS 4.0f

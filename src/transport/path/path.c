@@ -102,6 +102,15 @@ static scene_event cross_medium(void *data, float length, const surface_hit *beh
     return path_meets_medium(walk, &walk->path, length, at) ? EVENT_MEDIUM : EVENT_NONE;
 }
 
+/* The first surface that is not specular guides the denoiser. */
+static void note_guide(const path_walk *walk, const camera_path *path,
+                       const surface_hit *hit, const bsdf *b)
+{
+    if (!(walk->out->guide.weight > 0.0f))
+        radiance_sample_guide(walk->out, hit, b, -path->at.ray.direction, walk->eye,
+                              spectrum_mean(path->at.throughput));
+}
+
 /* One more step of the path. @return false if it was the last. */
 static bool path_goes_on(path_walk *walk)
 {
@@ -117,6 +126,8 @@ static bool path_goes_on(path_walk *walk)
     scene_scatterer(walk->scene, &hit, &pass->w, path->at.wavelength, &pass->options, &b);
     if (event == EVENT_SURFACE && path->at.eye && !path->at.ray.media.participating)
         radiance_sample_note(walk->out, &hit, &b, -path->at.ray.direction, path->from);
+    if (event == EVENT_SURFACE)
+        note_guide(walk, path, &hit, &b);
     if (path_is_cut(walk, path, 1))
         return false;
     camera_path seen = *path;
@@ -151,6 +162,7 @@ void path_radiance(const void *data, const ray *r, sampler *random,
         .random = random,
         .scratch = scratch,
         .out = out,
+        .eye = r->origin,
     };
     while (!cancelled(pass->plan->cancel) && path_goes_on(&walk))
         continue;

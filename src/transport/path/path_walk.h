@@ -34,6 +34,7 @@ typedef struct path_walk {
     sampler *random;
     transport_scratch *scratch;
     radiance_sample *out;
+    vec3 eye; /* where the camera ray began */
 } path_walk;
 
 /** @brief Counts one more bounce by a lobe. */

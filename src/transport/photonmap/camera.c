@@ -17,6 +17,7 @@ typedef struct camera_tree {
     transport_scratch *scratch;
     radiance_sample *out;
     uint32_t n_branches;
+    vec3 eye; /* where the camera ray began */
 } camera_tree;
 
 /* One branch: a ray, and what its radiance counts in the pixel. */
@@ -28,6 +29,7 @@ typedef struct camera_branch {
     float glossy_pdf; /* pdf_solid_angle of a glossy direction; 0: specular or from the
                          camera */
     vec3 from;        /* the point the ray left */
+    bool guided;      /* it has met what the denoiser is guided by */
 } camera_branch;
 
 /* A branch on its way to the next surface. */
@@ -295,6 +297,10 @@ static void follow(camera_tree *tree, camera_branch branch)
         if (branch.at.eye)
             radiance_sample_note(tree->out, &hit, &b, -branch.at.ray.direction,
                                  branch.from);
+        branch.guided =
+            branch.guided ||
+            radiance_sample_guide(tree->out, &hit, &b, -branch.at.ray.direction,
+                                  tree->eye, spectrum_mean(branch.at.throughput));
         if (events_left(tree, &branch) == 0)
             return;
         plan_sides(tree, &branch, &b, p_follow);
@@ -309,7 +315,8 @@ void photonmap_radiance(const void *pass, const ray *r, sampler *random,
 {
     const photonmap_pass *from = pass;
     *out = (radiance_sample){.groups = out->groups};
-    camera_tree tree = {.pass = pass, .random = random, .scratch = scratch, .out = out};
+    camera_tree tree = {
+        .pass = pass, .random = random, .scratch = scratch, .out = out, .eye = r->origin};
     follow(&tree, (camera_branch){
                       .at = path_segment_from_eye(from->plan->view, r),
                       .eta2 = 1.0f,

@@ -11,6 +11,7 @@ typedef struct camera_walk {
     radiance_sample *out;
     size_t first_light, end_light; /* the light subpath that it connects to */
     partial_weights at_curve;      /* see leave_curve */
+    vec3 eye;                      /* where the camera ray began */
 } camera_walk;
 
 static void add(camera_walk *c, scattering_counts counts, int source, spectrum radiance)
@@ -365,6 +366,9 @@ static void follow(camera_walk *c)
         scene_bsdf(pass->scene, &hit, &pass->w, ALL_WAVELENGTHS, &options, &v.bsdf);
         if (walk->at.eye)
             radiance_sample_note(c->out, v.hit, &v.bsdf, v.wo, walk->from);
+        if (!(c->out->guide.weight > 0.0f))
+            radiance_sample_guide(c->out, &hit, &v.bsdf, v.wo, c->eye,
+                                  spectrum_mean(walk->at.throughput));
         if (!vcm_length_allowed(pass, walk->counts.n + 1) || !(cosine > 0.0f))
             return;
         weights_arrive(&walk->weights, length3_2(hit.p - walk->from), cosine);
@@ -395,7 +399,8 @@ void vcm_radiance(const void *data, const ray *r, sampler *random,
 {
     const vcm_pass *pass = data;
     *out = (radiance_sample){.groups = out->groups};
-    camera_walk c = {.pass = pass, .random = random, .scratch = scratch, .out = out};
+    camera_walk c = {
+        .pass = pass, .random = random, .scratch = scratch, .out = out, .eye = r->origin};
     c.walk = (vcm_walk){.at = path_segment_from_eye(pass->plan->view, r),
                         .from = r->origin,
                         .eta2 = 1.0f,

@@ -1,0 +1,405 @@
+#include "render/film_halves.h"
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "image/denoise/denoise.h"
+
+enum { LUMINANCE = 1 /* of X, Y, Z */, TRIAL_ROWS = 24 };
+
+static size_t n_pixels(const film *f)
+{
+    return (size_t)f->width * (size_t)f->height;
+}
+
+bool halves_open(film *f, GError **error)
+{
+    f->pass_guides = big_alloc(n_pixels(f), sizeof *f->pass_guides, "the film", error);
+    if (f->pass_guides)
+        f->halves = big_alloc(n_pixels(f), sizeof *f->halves, "the film", error);
+    if (!f->halves)
+        return false;
+    size_t size = n_pixels(f) * film_denoise_bytes(true);
+    if (memory_reserve(size, "denoising", error))
+        f->denoise_size = size;
+    return f->denoise_size > 0;
+}
+
+void halves_clear(film *f)
+{
+    big_free(f->pass_guides);
+    big_free(f->halves);
+    memory_release(f->denoise_size);
+}
+
+/* ---- Sums ---- */
+
+static void add_xyz(float sum[3], const wavelengths *w, spectrum value, float weight)
+{
+    float xyz[3];
+    spectrum_to_xyz(w, value, xyz);
+    for (int i = 0; i < 3; i++)
+        sum[i] += xyz[i] * weight;
+}
+
+void guide_add(guide_sum *sum, const film_pass *pass, const radiance_sample *sample,
+               float weight)
+{
+    const light_guide *guide = &sample->guide;
+    if (!(guide->weight > 0.0f))
+        return;
+    float share = weight / guide->weight;
+    add_xyz(sum->albedo, pass->w, guide->albedo * pass->white, share);
+    add_xyz(sum->photons, pass->w, guide->photons, share);
+    for (int i = 0; i < 3; i++)
+        sum->normal[i] += guide->normal[i] * share;
+    sum->depth += guide->depth * share;
+    sum->weight += weight;
+}
+
+void halves_put(film *f, int x, int y, const guide_sum *sum)
+{
+    if (f->halves)
+        f->pass_guides[(size_t)(y - f->y0) * (size_t)f->width + (size_t)(x - f->x0)] =
+            *sum;
+}
+
+static void add_floats(void *to, const void *from, int n)
+{
+    float *sum = to;
+    const float *number = from;
+    for (int i = 0; i < n; i++)
+        sum[i] += number[i];
+}
+
+void halves_end_pass(const film *f, size_t begin, size_t end)
+{
+    const size_t color = offsetof(film_sum, color) / sizeof(double);
+    for (size_t i = begin; i < end && f->halves; i++) {
+        half_pixel *pixel = &f->halves[i];
+        const float *number = f->pass[i].number;
+        double w = fabs((double)number[offsetof(film_sum, weight) / sizeof(double)]);
+        add_floats(&pixel->guides, &f->pass_guides[i], GUIDE_NUMBERS);
+        for (size_t l = 0; l < N_LIGHTS; l++) {
+            double y = (double)number[color + 3 * l + LUMINANCE];
+            pixel->y2[l] += w > 0.0 ? y * y / w : 0.0;
+        }
+        if (f->n_passes % 2 == 0) {
+            add_floats(&pixel->even, number, FILM_NUMBERS);
+            add_floats(&pixel->guides_even, &f->pass_guides[i], GUIDE_NUMBERS);
+        }
+    }
+}
+
+/* ---- Halves of a pixel ---- */
+
+/* Half 0 or 1 of a pixel's sums. */
+static film_sum half_of(const film *f, size_t i, int half)
+{
+    film_sum sum;
+    double *number = (double *)&sum;
+    const double *all = (const double *)&f->pixels[i].sum;
+    for (int k = 0; k < FILM_NUMBERS; k++) {
+        double even = (double)f->halves[i].even.number[k];
+        number[k] = half == 0 ? even : all[k] - even;
+    }
+    return sum;
+}
+
+static guide_sum guides_of(const film *f, size_t i, int half)
+{
+    guide_sum sum = f->halves[i].guides_even;
+    if (half == 0)
+        return sum;
+    float *number = (float *)&sum;
+    const float *all = (const float *)&f->halves[i].guides;
+    for (int k = 0; k < GUIDE_NUMBERS; k++)
+        number[k] = all[k] - number[k];
+    return sum;
+}
+
+/* Variance of the luminance of a layer's mean, by the scatter of its passes, each of
+   which has the more the less it weighs. */
+static float layer_variance(const film *f, size_t i, int layer)
+{
+    const film_sum *sum = &f->pixels[i].sum;
+    double y = sum->color[layer][LUMINANCE], w = fabs(sum->weight);
+    if (!(w > 0.0))
+        return 0.0f;
+    double scatter = fmax(f->halves[i].y2[layer] - y * y / w, 0.0);
+    double scale2 = (double)f->scale * (double)f->scale;
+    return (float)(scale2 * scatter / (w * (double)(f->n_passes - 1)));
+}
+
+/* ---- Features ---- */
+
+/* Differences of less than this part of a feature are none. */
+#define NO_DIFFERENCE 1e-5f
+
+static void mean_of(const double *sum, double weight, int n, float *out)
+{
+    for (int i = 0; i < n; i++)
+        out[i] = fabs(weight) > 0.0 ? (float)(sum[i] / weight) : 0.0f;
+}
+
+static void first_albedo(const film *f, size_t i, int half, float *out)
+{
+    film_sum sum = half_of(f, i, half);
+    film_to_rgb(f, sum.color[N_LAYERS], sum.surface_weight, out);
+}
+
+static void first_normal(const film *f, size_t i, int half, float *out)
+{
+    film_sum sum = half_of(f, i, half);
+    mean_of(sum.normal, sum.surface_weight, 3, out);
+}
+
+static void first_depth(const film *f, size_t i, int half, float *out)
+{
+    film_sum sum = half_of(f, i, half);
+    mean_of(&sum.depth, sum.surface_weight, 1, out);
+}
+
+static void guide_color(const film *f, const float xyz[3], float weight, float *out)
+{
+    double sum[3] = {(double)xyz[0], (double)xyz[1], (double)xyz[2]};
+    film_to_rgb(f, sum, (double)weight, out);
+}
+
+/* Of what is seen in a mirror only how it differs from the mirror counts: elsewhere it
+   says nothing new. */
+static void less_first(float *out, const float *first, int n)
+{
+    for (int i = 0; i < n; i++) {
+        float d = out[i] - first[i];
+        out[i] = fabsf(d) > NO_DIFFERENCE * fabsf(out[i]) ? d : 0.0f;
+    }
+}
+
+static void seen_albedo(const film *f, size_t i, int half, float *out)
+{
+    float first[3];
+    guide_sum sum = guides_of(f, i, half);
+    guide_color(f, sum.albedo, sum.weight, out);
+    first_albedo(f, i, half, first);
+    less_first(out, first, 3);
+}
+
+static void seen_normal(const film *f, size_t i, int half, float *out)
+{
+    float first[3];
+    guide_sum sum = guides_of(f, i, half);
+    for (int k = 0; k < 3; k++)
+        out[k] = sum.weight > 0.0f ? sum.normal[k] / sum.weight : 0.0f;
+    first_normal(f, i, half, first);
+    less_first(out, first, 3);
+}
+
+static void seen_depth(const film *f, size_t i, int half, float *out)
+{
+    float first;
+    guide_sum sum = guides_of(f, i, half);
+    *out = sum.weight > 0.0f ? sum.depth / sum.weight : 0.0f;
+    first_depth(f, i, half, &first);
+    less_first(out, &first, 1);
+}
+
+static void photon_guide(const film *f, size_t i, int half, float *out)
+{
+    guide_sum sum = guides_of(f, i, half);
+    guide_color(f, sum.photons, sum.weight, out);
+}
+
+typedef struct feature {
+    int n_channels;
+    void (*read)(const film *f, size_t i, int half, float *out);
+} feature;
+
+enum { ALBEDO = 0 }; /* by which light is divided that comes from the first surface */
+
+static const feature features[] = {
+    [ALBEDO] = {3, first_albedo},
+    {3, first_normal},
+    {1, first_depth},
+    {3, seen_albedo},
+    {3, seen_normal},
+    {1, seen_depth},
+    {3, photon_guide},
+};
+
+/* ---- The picture ---- */
+
+/* Memory while a layer is read. */
+typedef struct layer_room {
+    float *half[2], *variance, *out;
+} layer_room;
+
+typedef struct read_loop {
+    const film *f;
+    layer_room *room;
+    const feature *feature; /* NULL: light */
+    int layer;
+} read_loop;
+
+static void read_pixels(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const read_loop *loop = data;
+    const film *f = loop->f;
+    for (size_t i = begin; i < end; i++) {
+        for (int h = 0; h < 2; h++) {
+            if (loop->feature) {
+                size_t at = i * (size_t)loop->feature->n_channels;
+                loop->feature->read(f, i, h, loop->room->half[h] + at);
+                continue;
+            }
+            film_sum sum = half_of(f, i, h);
+            float *rgb = loop->room->half[h] + 3 * i;
+            film_to_rgb(f, sum.color[loop->layer], sum.weight, rgb);
+            for (int c = 0; c < 3; c++)
+                rgb[c] *= f->scale;
+        }
+        if (!loop->feature)
+            loop->room->variance[i] = layer_variance(f, i, loop->layer);
+    }
+}
+
+static void read_all(read_loop *loop, unsigned threads)
+{
+    parallel_for(n_pixels(loop->f), 1 << 12, threads, NULL, read_pixels, loop);
+}
+
+static bool add_features(const film *f, denoiser *d, layer_room *room, unsigned threads,
+                         GError **error)
+{
+    for (size_t k = 0; k < G_N_ELEMENTS(features); k++) {
+        read_loop loop = {f, room, &features[k], 0};
+        const denoise_layer layer = {
+            features[k].n_channels, {room->half[0], room->half[1]}, NULL};
+        read_all(&loop, threads);
+        if (denoiser_add(d, &layer, error) < 0)
+            return false;
+    }
+    return true;
+}
+
+/* What is not filtered. */
+static void start_with_emission(const film *f, float *out)
+{
+    for (size_t i = 0; i < n_pixels(f); i++) {
+        const film_sum *sum = &f->pixels[i].sum;
+        film_to_rgb(f, sum->color[LAYER_EMISSION], sum->weight, out + 3 * i);
+        for (int c = 0; c < 3; c++)
+            out[3 * i + (size_t)c] *= f->scale;
+    }
+}
+
+static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
+                          unsigned threads, float *out, GError **error)
+{
+    start_with_emission(f, out);
+    for (int l = 0; l < N_LIGHTS; l++) {
+        read_loop loop = {f, room, NULL, l};
+        const denoise_layer layer = {3, {room->half[0], room->half[1]}, room->variance};
+        read_all(&loop, threads);
+        if (!denoiser_filter(d, &layer, l == LAYER_SPECULAR ? -1 : ALBEDO, room->out,
+                             error))
+            return false;
+        for (size_t i = 0; i < 3 * n_pixels(f); i++)
+            out[i] += room->out[i];
+    }
+    return true;
+}
+
+/* Of all samples, those of the even passes. */
+static float share_of_even(const film *f)
+{
+    const size_t weight = offsetof(film_sum, weight) / sizeof(double);
+    double even = 0.0, all = 0.0;
+    for (size_t i = 0; i < n_pixels(f); i++) {
+        even += (double)f->halves[i].even.number[weight];
+        all += f->pixels[i].sum.weight;
+    }
+    return (float)(even / all);
+}
+
+/* Processes that deal passes out may have given all to one half. */
+#define LEAST_SHARE 0.05f
+
+bool film_can_denoise(const film *f)
+{
+    if (!f->halves || f->n_passes < 2 || f->no_time)
+        return false;
+    float share = share_of_even(f);
+    return share > LEAST_SHARE && share < 1.0f - LEAST_SHARE;
+}
+
+static bool open_room(const film *f, layer_room *room, GError **error)
+{
+    size_t n = n_pixels(f), size = 3 * sizeof(float);
+    room->half[0] = big_alloc(n, size, "denoising", error);
+    room->half[1] = room->half[0] ? big_alloc(n, size, "denoising", error) : NULL;
+    room->out = room->half[1] ? big_alloc(n, size, "denoising", error) : NULL;
+    room->variance = room->out ? big_alloc(n, sizeof(float), "denoising", error) : NULL;
+    return room->variance != NULL;
+}
+
+static void close_room(layer_room *room)
+{
+    big_free(room->half[0]);
+    big_free(room->half[1]);
+    big_free(room->out);
+    big_free(room->variance);
+}
+
+static float *denoise(const film *f, const denoise_size *size, GError **error)
+{
+    layer_room room = {0};
+    float *out = NULL;
+    g_autoptr(denoiser) d = denoiser_new(size, error);
+    bool done = d && open_room(f, &room, error) &&
+                add_features(f, d, &room, size->threads, error) &&
+                (out = big_alloc(n_pixels(f), 3 * sizeof *out, "denoising", error)) &&
+                filter_lights(f, d, &room, size->threads, out, error);
+    close_room(&room);
+    if (!done)
+        g_clear_pointer(&out, big_free);
+    return out;
+}
+
+float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
+                    GError **error)
+{
+    const denoise_size size = {f->width, f->height, share_of_even(f), threads, cancel};
+    memory_release(f->denoise_size);
+    float *out = denoise(f, &size, error);
+    memory_count(f->denoise_size);
+    return out;
+}
+
+double film_denoise_seconds(const film *f, unsigned threads)
+{
+    film part = *f;
+    if (!film_can_denoise(f))
+        return 0.0;
+    part.height = MIN(TRIAL_ROWS, f->height);
+    part.denoise_size = 0;
+    size_t first = (size_t)((f->height - part.height) / 2) * (size_t)f->width;
+    part.pixels += first;
+    part.halves += first;
+    double start = clock_seconds();
+    memory_release(f->denoise_size);
+    big_free(film_denoise(&part, 1, NULL, NULL));
+    memory_count(f->denoise_size);
+    double took = clock_seconds() - start;
+    return took * f->height / part.height / (double)threads;
+}
+
+size_t film_denoise_bytes(bool at_work)
+{
+    int n = 0;
+    for (size_t k = 0; k < G_N_ELEMENTS(features); k++)
+        n += features[k].n_channels;
+    if (!at_work)
+        return sizeof(half_pixel) + sizeof(guide_sum);
+    return sizeof(float) * (size_t)(4 * 3 + 1) + denoise_bytes(n);
+}

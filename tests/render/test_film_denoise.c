@@ -1,0 +1,168 @@
+/*
+ * film-denoise: what is shown beside the raw picture. Against the same room rendered for
+ * long, by every algorithm; and what it must leave as it is.
+ */
+#include "rooms.h"
+
+#include "base/memory.h"
+#include "image/arrange.h"
+#include "image/compare.h"
+
+#include <glib/gstdio.h>
+
+/* The room with a ball of glass, which throws a caustic, and a mirror on the wall. */
+#define HALL                                                                             \
+    ROOM_CAMERA SIZE(40) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS                         \
+        "AttributeBegin Translate 0.7 0 0 " GLASS_BALL "AttributeEnd\n"                  \
+        "Material \"conductor\" Shape \"trianglemesh\" \"point3 P\" [-1.8 1 0.3 -0.4 "   \
+        "1.8 0.3 -0.4 1.8 1.7 -1.8 1 1.7] \"integer indices\" [0 1 2 0 2 3]\n"
+
+static image_difference against(const image *img, const image *reference)
+{
+    image_difference d;
+    g_assert_true(image_compare(img, reference, &d, NULL));
+    return d;
+}
+
+/* relMSE of the raw picture and of that without noise. */
+typedef struct errors {
+    double raw, denoised;
+} errors;
+
+static errors errors_of(const image *img, const image *reference)
+{
+    g_autoptr(image) shown = image_layer(img, "denoised", NULL);
+    g_assert_nonnull(shown);
+    return (errors){against(img, reference).relmse, against(shown, reference).relmse};
+}
+
+static image *hall(const view *v, const char *integrator, int passes, int seed)
+{
+    g_autofree char *words =
+        g_strdup_printf("denoise=on integrator=%s spp=4 photons=8000 passes=%d seed=%d",
+                        integrator, passes, seed);
+    return render_with(v, words);
+}
+
+/* Passes of few samples show less than a third of their error, and more passes less of
+   it; all of it is far above that of the reference. */
+static void test_less_noise(void)
+{
+    g_autoptr(view) v = view_of(HALL);
+    g_autoptr(image) reference =
+        render_with(v, "integrator=path spp=16 passes=60 seed=9");
+    double before = (double)INFINITY;
+    for (int passes = 2; passes <= 8; passes *= 4) {
+        g_autoptr(image) img = hall(v, "path", passes, 1);
+        errors e = errors_of(img, reference);
+        g_test_message("%d passes: %g, denoised %g", passes, e.raw, e.denoised);
+        g_assert_cmpfloat(e.denoised, <, 0.4 * e.raw);
+        g_assert_cmpfloat(e.denoised, <, 0.7 * before);
+        before = e.denoised;
+    }
+}
+
+/* What a photon map errs by is smooth, or the same in both halves: there is little to
+   take out, and nothing must be lost. */
+static const struct {
+    const char *integrator;
+    double most; /* of the raw error */
+} algorithms[] = {{"vcm", 0.6}, {"photonmap", 1.05}, {"auto", 1.05}};
+
+static void test_algorithms(void)
+{
+    g_autoptr(view) v = view_of(HALL);
+    for (size_t i = 0; i < G_N_ELEMENTS(algorithms); i++) {
+        const char *integrator = algorithms[i].integrator;
+        g_autoptr(image) reference = hall(v, integrator, 30, 9);
+        g_autoptr(image) img = hall(v, integrator, 4, 1);
+        errors e = errors_of(img, reference);
+        g_test_message("%s: %g, denoised %g", integrator, e.raw, e.denoised);
+        g_assert_cmpfloat(e.denoised, <, algorithms[i].most * e.raw);
+    }
+}
+
+/* What is beside it is the same to the bit, and so is it with any number of threads. */
+static void test_raw_stays(void)
+{
+    g_autoptr(view) v = view_of(HALL);
+    g_autoptr(image) off = render_with(v, "integrator=auto spp=1 passes=3 threads=1");
+    g_autoptr(image) on =
+        render_with(v, "integrator=auto spp=1 passes=3 threads=1 denoise=on");
+    g_autoptr(image) others =
+        render_with(v, "integrator=auto spp=1 passes=3 threads=3 denoise=on");
+    g_assert_cmpint(on->n_channels, ==, off->n_channels + 3);
+    for (int c = 0; c < off->n_channels; c++) {
+        g_assert_cmpstr(on->channels[c], ==, off->channels[c]);
+        for (size_t i = 0; i < pixels_of(on); i++)
+            g_assert_cmpfloat(at(on, i, (size_t)c), ==, at(off, i, (size_t)c));
+    }
+    assert_same_bits(on, others);
+}
+
+/* Of one pass there are no halves. */
+static void test_one_pass(void)
+{
+    g_autoptr(view) v = view_of(HALL);
+    g_autoptr(image) one = render_with(v, "spp=1 passes=1 photons=500 denoise=on");
+    g_assert_cmpint(image_channel(one, "denoised.R"), ==, -1);
+    g_autoptr(image) two = render_with(v, "spp=1 passes=2 photons=500 denoise=on");
+    g_assert_cmpint(image_channel(two, "denoised.R"), >=, 0);
+}
+
+/* A scene in millimetres, with a sensor that is less sensitive, looks the same. */
+static void test_units(void)
+{
+    g_autoptr(view) v = view_of(HALL);
+    g_autoptr(view) small = view_of("Scale 0.001 0.001 0.001\n" HALL);
+    g_autoptr(image) a = hall(v, "path", 4, 1), b = hall(small, "path", 4, 1);
+    g_autoptr(image) of_a = image_layer(a, "denoised", NULL);
+    g_autoptr(image) of_b = image_layer(b, "denoised", NULL);
+    g_assert_cmpfloat(against(of_b, of_a).relmse, <, 0.1 * against(a, of_a).relmse);
+}
+
+/* What a PNG file of one picture is to show of another, to half a code. */
+static bool is_shown(const image *written, const char *png, const image *of)
+{
+    g_assert_true(image_write(written, png, NULL, NULL));
+    g_autoptr(image) shown = image_read(png, NULL, NULL);
+    bool same = true;
+    for (size_t i = 0; i < pixels_of(of) * 3; i++) {
+        float linear = CLAMP(of->pixels[i], 0.0f, 1.0f);
+        float off = srgb_encode(shown->pixels[i]) - srgb_encode(linear);
+        same = same && fabsf(off) < 0.6f / 255.0f;
+    }
+    return same;
+}
+
+/* Files of eight bits show it; its floats stay beside the raw ones. */
+static void test_files(void)
+{
+    g_autoptr(view) v = view_of(HALL);
+    g_autoptr(image) img = hall(v, "path", 2, 1);
+    g_autoptr(image) denoised = image_layer(img, "denoised", NULL);
+    g_autoptr(image) raw = image_layer(img, "raw", NULL);
+    g_autofree char *folder = g_dir_make_tmp("denoise-XXXXXX", NULL);
+    g_autofree char *png = g_build_filename(folder, "a.png", NULL);
+    g_assert_true(is_shown(img, png, denoised));
+    g_assert_true(is_shown(raw, png, raw));
+    g_assert_false(is_shown(img, png, raw));
+    g_autoptr(GError) error = NULL;
+    g_assert_null(image_layer(raw, "denoised", &error));
+    g_assert_error(error, NEPH_ERROR, ERROR_USAGE);
+    g_assert_nonnull(strstr(error->message, "raw"));
+    remove(png);
+    g_rmdir(folder);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/film-denoise/less-noise", test_less_noise);
+    g_test_add_func("/film-denoise/algorithms", test_algorithms);
+    g_test_add_func("/film-denoise/raw-stays", test_raw_stays);
+    g_test_add_func("/film-denoise/one-pass", test_one_pass);
+    g_test_add_func("/film-denoise/units", test_units);
+    g_test_add_func("/film-denoise/files", test_files);
+    return g_test_run();
+}
