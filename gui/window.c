@@ -131,6 +131,34 @@ static GtkWidget *header_make(window *w)
     return header;
 }
 
+static GtkWidget *example_make(const char *path)
+{
+    g_autofree char *name = g_path_get_basename(path);
+    *strrchr(name, '.') = '\0';
+    g_strdelimit(name, "-", ' ');
+    name[0] = g_ascii_toupper(name[0]);
+    GtkWidget *button = text_button_make(name, path, "win.open-path");
+    gtk_actionable_set_action_target(GTK_ACTIONABLE(button), "s", path);
+    gtk_widget_add_css_class(button, "flat");
+    return button;
+}
+
+/* The scenes that came with the program, in columns. */
+static GtkWidget *examples_make(char **paths)
+{
+    GtkWidget *columns = gtk_flow_box_new();
+    gtk_flow_box_set_selection_mode(GTK_FLOW_BOX(columns), GTK_SELECTION_NONE);
+    gtk_flow_box_set_homogeneous(GTK_FLOW_BOX(columns), TRUE);
+    gtk_flow_box_set_min_children_per_line(GTK_FLOW_BOX(columns), 2);
+    gtk_flow_box_set_max_children_per_line(GTK_FLOW_BOX(columns), 3);
+    for (; *paths; paths++) {
+        gtk_flow_box_insert(GTK_FLOW_BOX(columns), example_make(*paths), -1);
+        GtkWidget *child = gtk_widget_get_last_child(columns);
+        gtk_widget_set_focusable(child, FALSE);
+    }
+    return columns;
+}
+
 static GtkWidget *welcome_make(void)
 {
     GtkWidget *box = box_make(GTK_ORIENTATION_VERTICAL, 18, 24);
@@ -148,20 +176,15 @@ static GtkWidget *welcome_make(void)
     gtk_box_append(GTK_BOX(box), text);
     gtk_box_append(GTK_BOX(box), open);
     g_auto(GStrv) examples = document_examples();
-    if (examples[0])
+    if (examples[0]) {
         gtk_box_append(GTK_BOX(box), gtk_label_new("Or begin with an example:"));
-    for (size_t i = 0; examples[i]; i++) {
-        g_autofree char *base = g_path_get_basename(examples[i]);
-        *strrchr(base, '.') = '\0';
-        g_strdelimit(base, "-", ' ');
-        base[0] = g_ascii_toupper(base[0]);
-        GtkWidget *button = text_button_make(base, examples[i], "win.open-path");
-        gtk_actionable_set_action_target(GTK_ACTIONABLE(button), "s", examples[i]);
-        gtk_widget_set_halign(button, GTK_ALIGN_CENTER);
-        gtk_widget_add_css_class(button, "flat");
-        gtk_box_append(GTK_BOX(box), button);
+        gtk_box_append(GTK_BOX(box), examples_make(examples));
     }
-    return box;
+    GtkWidget *scroller = gtk_scrolled_window_new();
+    gtk_scrolled_window_set_policy(GTK_SCROLLED_WINDOW(scroller), GTK_POLICY_NEVER,
+                                   GTK_POLICY_AUTOMATIC);
+    gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(scroller), box);
+    return scroller;
 }
 
 static void make_photon_panel(window *w)

@@ -17,7 +17,7 @@ import pathlib
 import re
 import sys
 
-MOST = 47
+MOST = 48
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ["src/photon", "src/transport"]

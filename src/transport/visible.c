@@ -29,6 +29,7 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
     const scene_traveller who = {.scene = from->scene, .w = &from->w, .n_rays = &untold};
     path_segment path = path_segment_from_eye(from->view, r);
     float way = 0.0f;
+    int64_t bounces = 0;
     do {
         surface_hit hit;
         bsdf b;
@@ -51,7 +52,7 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
             return false;
         path.ray = hit_ray(&hit, next.wi);
         path.eye = NULL;
-    } while (sampler_1d(random) < MOST_SURVIVAL);
+    } while (sampler_1d(random) < most_survival(++bounces));
     return false;
 }
 

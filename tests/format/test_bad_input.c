@@ -163,7 +163,7 @@ static void test_options(void)
            "%s:1:24: unknown parameter 'pases' of Integrator \"photonmap\"");
     refuse(
         "Integrator \"photonmap\" \"integer passes\" -1\n" WORLD,
-        "%s:1:24: setting 'passes': expected a whole number from 0 to 1000000000, found "
+        "%s:1:24: setting 'passes': expected a number from 0 to 1000000000, found "
         "'-1'");
     refuse("Integrator \"photonmap\" \"float radius\" [1 2]\n" WORLD,
            "%s:1:24: parameter 'radius': expected one value, found 2");

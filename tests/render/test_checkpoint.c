@@ -160,7 +160,7 @@ static void test_all_is_listed(void)
     g_autoptr(view) v = subject();
     size_t left = memory_left();
     film f;
-    g_assert_true(film_open(&f, v, NULL));
+    g_assert_true(film_open(&f, v, true, NULL));
     film_plane planes[FILM_MOST_PLANES];
     size_t n = film_planes(&f, planes), n_pixels = (size_t)f.width * (size_t)f.height;
     size_t known = f.image_size + n_pixels * sizeof *f.pass +

@@ -307,7 +307,7 @@ static bool scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
     float survival = survival_with(path, flux);
     if (path->task->how->photon_survivors)
         survival = 1.0f; /* it had its roulette where it landed */
-    survival = minf(MOST_SURVIVAL, survival);
+    survival = minf(most_survival(path->n_followed + path->n_diffuse), survival);
     if (scattered) {
         float weight = mis_weight_at(path, hit, b, &next);
         path->mis_weight *= weight;

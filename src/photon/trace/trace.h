@@ -23,7 +23,7 @@
  * that moves is kept where that will be in the middle of the slice.
  *
  * Russian roulette keeps photons of near equal power: survive with p = g(β Φ)/g(Φ), or
- * MOST_SURVIVAL if that is less, Φ ← Φ β / p, where g is the mean or the maximum over
+ * most_survival() if that is less, Φ ← Φ β / p, where g is the mean or the maximum over
  * wavelengths.
  */
 #pragma once
@@ -33,9 +33,17 @@
 #include "photon/photon.h"
 #include "photon/trace/emit.h"
 
-/** The most that photons and paths from the eye survive a bounce with: they end also
- * among white walls and in a box of mirrors, after five hundred. */
-#define MOST_SURVIVAL 0.998f
+/** Photons and paths from the eye end also among white walls and in a box of mirrors,
+ * after about so many bounces: more than any picture shows. */
+#define LONG_PATH 500.0f
+
+/** @brief The most that a path survives with that has had n bounces: all but one for the
+ * first ones, so that clear glass brings no grain, and less and less on a long way. */
+static inline float most_survival(int64_t n)
+{
+    float part = (float)n / LONG_PATH;
+    return maxf(0.5f, 1.0f - part * part / LONG_PATH);
+}
 
 /** @brief Lobes that a path from the eye and a caustic photon go on by. */
 static inline unsigned photon_followed_lobes(const settings *how)

@@ -77,7 +77,8 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     camera_path_count(path, next.lobe);
     if (path->bounces < ROULETTE_BOUNCES)
         return !spectrum_is_black(path->at.throughput);
-    float p = minf(MOST_SURVIVAL, spectrum_mean(path->at.throughput) * path->eta2);
+    float p = minf(most_survival(path->bounces),
+                   spectrum_mean(path->at.throughput) * path->eta2);
     path->at.throughput /= p;
     return sampler_1d(walk->random) < p;
 }

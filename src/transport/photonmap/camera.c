@@ -245,7 +245,8 @@ static bool survives(camera_tree *tree, camera_branch *branch)
 {
     if (branch->n_followed < ROULETTE_BOUNCES)
         return true;
-    float p = minf(MOST_SURVIVAL, spectrum_mean(branch->at.throughput) * branch->eta2);
+    float p = minf(most_survival(branch->n_followed),
+                   spectrum_mean(branch->at.throughput) * branch->eta2);
     if (!(sampler_1d(tree->random) < p))
         return false;
     branch->at.throughput /= p;

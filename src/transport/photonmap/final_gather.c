@@ -297,7 +297,8 @@ static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b)
         !bsdf_sample_direction(b, -path->at.ray.direction, u.lobe, u.direction, followed,
                                TRANSPORT_RADIANCE, &next))
         return false;
-    float p = minf(MOST_SURVIVAL, spectrum_mean(next.weight) * next.eta * next.eta);
+    float p = minf(most_survival(path->bounces),
+                   spectrum_mean(next.weight) * next.eta * next.eta);
     if (!(u.roulette < p))
         return false;
     path->at.throughput *= next.weight / p;

@@ -2,8 +2,9 @@
 
 #include "transport/plan/work.h"
 
-/* Photons of a pass that it is tried with at most, for each of the camera's samples. */
-enum { PHOTONS_PER_SAMPLE = 8 };
+/* Photons of a pass that it is tried with at most: so many for each of the camera's
+   samples, and in the smallest picture so many that there is something to gather. */
+enum { PHOTONS_PER_SAMPLE = 8, PHOTONS_AT_ONCE = 4096 };
 
 /* No fewer photons than this share of all, if there must be any; and no fewer blurred
    gathers than this share: what is weighed by more stands out in the picture. */
@@ -18,7 +19,7 @@ uint64_t caustics_most(const transport_plan *plan)
     const film_settings *film = &plan->view->film;
     int64_t own = how->class_photons[PHOTON_CAUSTIC];
     int64_t samples = (int64_t)film->width * film->height * how->spp;
-    int64_t most = PHOTONS_PER_SAMPLE * samples;
+    int64_t most = MAX(PHOTONS_PER_SAMPLE * samples, PHOTONS_AT_ONCE);
     if (!caustic_casters_are_lit(plan->casters))
         return 0;
     return (uint64_t)(own > 0 ? own : MIN(settings_photons(how), most));

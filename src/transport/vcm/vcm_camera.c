@@ -289,7 +289,8 @@ static bool survives(camera_walk *c)
 {
     if (c->walk.counts.n < ROULETTE_BOUNCES)
         return true;
-    float p = fminf(MOST_SURVIVAL, spectrum_mean(c->walk.at.throughput) * c->walk.eta2);
+    float p = fminf(most_survival(c->walk.counts.n),
+                    spectrum_mean(c->walk.at.throughput) * c->walk.eta2);
     c->walk.at.throughput /= p;
     return sampler_1d(c->random) < p;
 }

@@ -259,7 +259,7 @@ static void arrive(light_walk *l, const surface_hit *hit)
 /* Keeps the power of subpaths even. */
 static bool survives(light_walk *l, spectrum before)
 {
-    float p = fminf(MOST_SURVIVAL,
+    float p = fminf(most_survival(l->walk.counts.n),
                     spectrum_mean(l->walk.at.throughput) / spectrum_mean(before));
     l->walk.at.throughput /= p;
     return sampler_1d(&l->random) < p;
