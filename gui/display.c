@@ -30,8 +30,19 @@ static int find_channel(const NephImage *image, const char *layer, const char *s
     return -1;
 }
 
+/* The picture without noise, where there is one; else as it was rendered. */
+#define SHOWN "denoised"
+#define AS_RENDERED "raw"
+
+static bool has_denoised(const NephImage *image)
+{
+    return find_channel(image, SHOWN, "R") >= 0;
+}
+
 bool display_channels(const NephImage *image, const char *layer, int channel[3])
 {
+    if (has_denoised(image))
+        layer = !*layer ? SHOWN : strcmp(layer, AS_RENDERED) == 0 ? "" : layer;
     static const char *const sets[][3] = {
         {"R", "G", "B"}, {"X", "Y", "Z"}, {"Y", "Y", "Y"}, {"Z", "Z", "Z"}};
     for (size_t i = 0; i < G_N_ELEMENTS(sets); i++) {
@@ -59,7 +70,7 @@ char **display_layers(const NephImage *image)
         g_autofree char *layer = g_strndup(name, (gsize)(dot - name));
         if (strcmp(layer, last) == 0)
             continue;
-        g_strv_builder_add(names, layer);
+        g_strv_builder_add(names, strcmp(layer, SHOWN) == 0 ? AS_RENDERED : layer);
         g_free(last);
         last = g_steal_pointer(&layer);
     }

@@ -33,8 +33,9 @@ typedef struct display_options {
 /** @brief The usual ones. */
 display_options display_defaults(void);
 
-/** @brief Channel numbers of a layer; grey ones have the same three times. false: the
- * image has no such layer. */
+/** @brief Channel numbers of a layer: "" is the picture without noise where there is one,
+ * "raw" then the picture as it was rendered; grey ones have the same three times. false:
+ * the image has no such layer. */
 bool display_channels(const NephImage *image, const char *layer, int channel[3]);
 
 /** @brief Names of the layers of an image, the picture ("") first; NULL-terminated, owned

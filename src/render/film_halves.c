@@ -31,6 +31,11 @@ void halves_clear(film *f)
     memory_release(f->denoise_size);
 }
 
+size_t film_guide_bytes(void)
+{
+    return sizeof(struct guide_sum);
+}
+
 /* ---- Sums ---- */
 
 static void add_xyz(float sum[3], const wavelengths *w, spectrum value, float weight)

@@ -64,5 +64,8 @@ float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
                     GError **error);
 /** @brief About how long it takes, s: tries some rows. 0 where it can not be done. */
 double film_denoise_seconds(const film *f, unsigned threads);
+/** @brief Bytes a pixel of what guides the denoiser in the pass under way. */
+size_t film_guide_bytes(void);
+
 /** @brief Bytes a pixel: of the sums, and while it is denoised. */
 size_t film_denoise_bytes(bool at_work);
