@@ -27,3 +27,11 @@ void film_get_sums(const film *f, size_t first, size_t n, double *out);
 void film_add_sums(film *f, size_t first, size_t n, const double *more);
 /** @brief Forgets the passes. */
 void film_reset(film *f);
+
+/** @brief All that an open film takes: its sums, the pass under way, and what is reserved
+ * for the image to come and for taking its noise out. */
+size_t film_bytes(const film *f);
+
+/** @brief What the film of a view will take, bytes; 0 where not even a small one can be
+ * had. */
+size_t film_bytes_for(const view *v, bool denoise);

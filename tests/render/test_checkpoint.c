@@ -4,7 +4,6 @@
  */
 #include "base/memory.h"
 #include "render/checkpoint.h"
-#include "render/film_halves.h"
 #include "render/film_planes.h"
 #include "rooms.h"
 
@@ -162,14 +161,7 @@ static void test_all_is_listed(void)
     size_t left = memory_left();
     film f;
     g_assert_true(film_open(&f, v, true, NULL));
-    film_plane planes[FILM_MOST_PLANES];
-    size_t n = film_planes(&f, planes), n_pixels = (size_t)f.width * (size_t)f.height;
-    size_t known = f.image_size + f.denoise_size + n_pixels * film_guide_bytes() +
-                   n_pixels * sizeof *f.pass +
-                   n_pixels * 3 * (size_t)f.n_groups * sizeof *f.pass_groups +
-                   (f.pass_surfaces ? n_pixels * sizeof *f.pass_surfaces : 0);
-    for (size_t i = 0; i < n; i++)
-        known += film_plane_bytes(&planes[i]);
+    size_t known = film_bytes(&f);
     size_t taken = left - memory_left();
     g_test_message("%zu bytes, %zu known", taken, known);
     g_assert_cmpuint(taken, >=, known);

@@ -1,6 +1,7 @@
 #include "api/describe/describe.h"
 
 #include "base/memory.h"
+#include "render/film_planes.h"
 
 #include <math.h>
 #include <string.h>
@@ -83,7 +84,7 @@ static void count_textures(const scene *s, summary *all)
 }
 
 /* Embree keeps about 90 bytes a triangle; a photon takes 52 bytes and as much again while
- * the map is built; the film some 25 numbers a pixel. */
+ * the map is built. */
 static size_t estimate_memory(const view *v, const summary *all)
 {
     size_t triangles = 0;
@@ -91,7 +92,7 @@ static size_t estimate_memory(const view *v, const summary *all)
         triangles += g_array_index(all->shapes, tally, i).n_triangles;
     return all->geometry_bytes + 90 * triangles +
            104 * (size_t)settings_photons(&v->scene->settings) +
-           200 * (size_t)v->film.width * (size_t)v->film.height;
+           film_bytes_for(v, v->scene->settings.denoise);
 }
 
 static void count_materials(const scene *s, summary *all)
