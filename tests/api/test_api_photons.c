@@ -241,13 +241,16 @@ static bool in_fog(const NephPhotons *photons, size_t i)
     return *medium != '\0';
 }
 
+/* More than any path through white fog has. */
+enum { MOST_EVENTS = 4096 };
+
 /* The event of its path that photon i is. */
 static const NephPhotonEvent *event_of(const NephPhotons *photons, size_t i,
-                                       NephPhotonEvent events[256])
+                                       NephPhotonEvent events[MOST_EVENTS])
 {
     NephPhoton p;
     neph_photons_get(photons, i, &p);
-    size_t n = MIN(neph_photons_path(photons, i, events, 256), 256);
+    size_t n = MIN(neph_photons_path(photons, i, events, MOST_EVENTS), MOST_EVENTS);
     uint32_t bounces = 0;
     for (size_t k = 0; k < n; k++) {
         const NephPhotonEvent *e = &events[k];
@@ -265,7 +268,7 @@ static void test_fog_paths(void)
 {
     g_autoptr(NephScene) scene = make_foggy_scene("0 1.8 0", true);
     g_autoptr(NephPhotons) photons = trace(scene, "3000");
-    NephPhotonEvent events[256];
+    NephPhotonEvent events[MOST_EVENTS];
     NephStatistics s;
     size_t n[NEPH_N_PHOTON_CLASSES][2] = {0}, n_all = neph_photons_count(photons);
     const double middle[3] = {0, 0, 0};
@@ -302,7 +305,7 @@ static void test_fog_flux(void)
 {
     g_autoptr(NephScene) scene = make_foggy_scene("0 0.0 0", false);
     g_autoptr(NephPhotons) photons = trace(scene, "2000");
-    NephPhotonEvent events[256];
+    NephPhotonEvent events[MOST_EVENTS];
     NephStatistics s;
     size_t n = 0;
     neph_photons_statistics(photons, &s);

@@ -63,7 +63,7 @@ static void test_layers(folder *f, gconstpointer data)
     g_assert_cmpfloat(json_find_number(normals.out, "rmse"), ==, 0.0);
     g_auto(result) missing = run(f, "image d.pfm --layer depth -o y.png");
     g_assert_cmpint(missing.code, ==, 2);
-    contains(missing.err, "the image has none");
+    contains(missing.err, "expected a layer's name (raw), found 'depth'");
 }
 
 /* A preset stands over the scene, and under what is said otherwise. */
