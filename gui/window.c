@@ -146,17 +146,13 @@ static GtkWidget *example_make(const char *path)
 /* The scenes that came with the program, in columns. */
 static GtkWidget *examples_make(char **paths)
 {
-    GtkWidget *columns = gtk_flow_box_new();
-    gtk_flow_box_set_selection_mode(GTK_FLOW_BOX(columns), GTK_SELECTION_NONE);
-    gtk_flow_box_set_homogeneous(GTK_FLOW_BOX(columns), TRUE);
-    gtk_flow_box_set_min_children_per_line(GTK_FLOW_BOX(columns), 2);
-    gtk_flow_box_set_max_children_per_line(GTK_FLOW_BOX(columns), 3);
-    for (; *paths; paths++) {
-        gtk_flow_box_insert(GTK_FLOW_BOX(columns), example_make(*paths), -1);
-        GtkWidget *child = gtk_widget_get_last_child(columns);
-        gtk_widget_set_focusable(child, FALSE);
-    }
-    return columns;
+    enum { COLUMNS = 3 };
+    GtkWidget *grid = gtk_grid_new();
+    gtk_grid_set_column_homogeneous(GTK_GRID(grid), TRUE);
+    for (int i = 0; paths[i]; i++)
+        gtk_grid_attach(GTK_GRID(grid), example_make(paths[i]), i % COLUMNS, i / COLUMNS,
+                        1, 1);
+    return grid;
 }
 
 static GtkWidget *welcome_make(void)
@@ -183,6 +179,7 @@ static GtkWidget *welcome_make(void)
     GtkWidget *scroller = gtk_scrolled_window_new();
     gtk_scrolled_window_set_policy(GTK_SCROLLED_WINDOW(scroller), GTK_POLICY_NEVER,
                                    GTK_POLICY_AUTOMATIC);
+    gtk_scrolled_window_set_min_content_height(GTK_SCROLLED_WINDOW(scroller), 400);
     gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(scroller), box);
     return scroller;
 }
