@@ -242,8 +242,9 @@ def convergence(r):
 
 
 def write(r, asked):
-    lines = ["# Results", "", "Made by `tools/experiments.py` (`./dev gallery`): every number and",
-             "picture below is from its renders.", ""]
+    quick = " --quick" if r.quick else ""
+    lines = ["# Results", "", f"Made by `tools/experiments.py{quick}` (`./dev gallery{quick}`): every",
+             "number and picture below is from its renders.", ""]
     for run in EXPERIMENTS:
         if asked and run.__name__ not in asked:
             continue

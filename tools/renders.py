@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 class Kept:
     """Pictures in a folder, each under a name that tells its scene and its options; one that is
-    newer than the scene's files is not made again."""
+    newer than the scene's files and than the program is not made again."""
 
     def __init__(self, program, folder):
         self.program = str(program)
@@ -30,7 +30,10 @@ class Kept:
         if not path.exists() or not stats.exists():
             return False
         made = path.stat().st_mtime
-        return all(f.stat().st_mtime < made for f in scene.parent.iterdir() if f.suffix == ".pbrt")
+        build = pathlib.Path(self.program).resolve().parent.parent
+        causes = [pathlib.Path(self.program), *build.glob("libnephroid.so"),
+                  *scene.parent.glob("*.pbrt")]
+        return all(f.stat().st_mtime < made for f in causes)
 
     def render(self, name, scene, *options):
         """The EXR of a scene (a path from the project's root); its statistics lie beside it."""

@@ -2,6 +2,7 @@
 
 #include "base/json.h"
 #include "image/arrange.h"
+#include "image/layers.h"
 #include "image/compare.h"
 #include "image/exposure.h"
 

@@ -9,10 +9,6 @@
  * so the mean over the image stays. NULL with ERROR_FAILED. */
 image *image_scaled(const image *img, int width, int height, GError **error);
 
-/** @brief One layer as R, G and B: NAME.R .G .B, NAME.X .Y .Z, or one channel thrice
- * (NAME.Y, NAME.Z, NAME). NULL with ERROR_USAGE and the list of layers. */
-image *image_layer(const image *img, const char *name, GError **error);
-
 /** @brief n images row by row in so many columns, as large as the largest in their row
  * and column, middle in their places, on dark grey with a gap between. R, G and B, which
  * all must have: else NULL with ERROR_INPUT. */

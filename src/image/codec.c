@@ -3,6 +3,7 @@
 #include "base/input.h"
 #include "base/memory.h"
 #include "base/output.h"
+#include "image/layers.h"
 
 #include <glib/gstdio.h>
 #include <limits.h>

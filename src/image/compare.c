@@ -15,8 +15,6 @@ typedef struct pair {
     size_t n_finite;
 } pair;
 
-static const char *const rgb_names[3] = {"R", "G", "B"};
-
 static bool comparable(const image *a, const image *b, GError **error)
 {
     if (a->width != b->width || a->height != b->height) {
@@ -195,7 +193,7 @@ image *image_difference_map(const image *a, const image *b, GError **error)
     pair p = {0};
     image *out = NULL;
     if (comparable(a, b, error) && pair_init(&p, a, b, error))
-        out = image_new(a->width, a->height, 3, rgb_names, error);
+        out = image_new(a->width, a->height, 3, image_rgb_names, error);
     if (out)
         fill_map(&p, out);
     pair_clear(&p);

@@ -4,6 +4,8 @@
  */
 #include "image/exposure.h"
 
+#include "image/layers.h"
+
 #include <math.h>
 
 enum { LEAST_STOP = -64, N_STOPS = 128, STEPS = 8, N_BINS = N_STOPS * STEPS };

@@ -7,6 +7,8 @@
 #include <stdint.h>
 #include <string.h>
 
+const char *const image_rgb_names[3] = {"R", "G", "B"};
+
 static bool size_allowed(int width, int height, int n_channels)
 {
     return width > 0 && height > 0 && n_channels > 0 &&
@@ -70,25 +72,6 @@ bool image_colors(const image *img, int rgba[4])
     int grey = img->n_channels == 1 ? 0 : image_channel(img, "Y");
     rgba[0] = rgba[1] = rgba[2] = grey;
     return grey >= 0;
-}
-
-/* Indices of NAME.R, NAME.G and NAME.B. */
-static bool find_layer(const image *img, const char *name, int rgb[3])
-{
-    for (int c = 0; c < 3; c++) {
-        g_autofree char *channel = g_strdup_printf("%s.%c", name, "RGB"[c]);
-        rgb[c] = image_channel(img, channel);
-    }
-    return rgb[0] >= 0 && rgb[1] >= 0 && rgb[2] >= 0;
-}
-
-bool image_shown_colors(const image *img, int rgba[4])
-{
-    int denoised[3];
-    bool found = image_colors(img, rgba);
-    if (find_layer(img, "denoised", denoised))
-        memcpy(rgba, denoised, sizeof denoised);
-    return found;
 }
 
 const char *image_header_get(const image *img, const char *key)

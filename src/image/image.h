@@ -48,15 +48,15 @@ image *image_new(int width, int height, int n_channels, const char *const *chann
 void image_free(image *img);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(image, image_free)
 
+/** @brief R, G, B: for image_new. */
+extern const char *const image_rgb_names[3];
+
 /** @brief Index of a channel by name, or -1. */
 int image_channel(const image *img, const char *name);
 /** @brief Indices of R, G, B and A, whatever their order in the image; A is -1 where
  * there is none. Grey (Y, or the only channel) stands for R, G and B.
  *  @return false: there are no colours */
 bool image_colors(const image *img, int rgba[4]);
-/** @brief Those of the picture that is shown: without noise (denoised.R, G, B), if it has
- * that, or image_colors. */
-bool image_shown_colors(const image *img, int rgba[4]);
 /** @brief A string of the header, or NULL. */
 const char *image_header_get(const image *img, const char *key);
 void image_header_set(image *img, const char *key, const char *value);

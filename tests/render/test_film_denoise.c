@@ -5,8 +5,8 @@
 #include "rooms.h"
 
 #include "base/memory.h"
-#include "image/arrange.h"
 #include "image/compare.h"
+#include "image/layers.h"
 
 #include <glib/gstdio.h>
 
