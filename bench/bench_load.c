@@ -6,11 +6,9 @@
  *
  *   bench_load [triangles, default 10000000]
  */
+#include "bench_mesh.h"
 #include "format/format.h"
 #include "format/ply/ply.h"
-#include "format/ply/ply_write.h"
-
-#include "base/memory.h"
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -19,7 +17,6 @@
 #endif
 
 #include <glib/gstdio.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -35,34 +32,6 @@ static void give_up(const GError *error)
 {
     fprintf(stderr, "bench_load: %s\n", error->message);
     exit(3);
-}
-
-/* A landscape of n x n quads. */
-static mesh landscape(size_t n)
-{
-    GError *error = NULL;
-    mesh m = {.n_vertices = (n + 1) * (n + 1), .n_triangles = 2 * n * n};
-    m.positions = big_alloc(3 * m.n_vertices + 1, sizeof(float), "mesh", &error);
-    m.indices = m.positions
-                    ? big_alloc(3 * m.n_triangles, sizeof(uint32_t), "mesh", &error)
-                    : NULL;
-    if (!m.indices)
-        give_up(error);
-    for (size_t i = 0; i < m.n_vertices; i++) {
-        float x = (float)(i % (n + 1)) / (float)n, y = (float)(i / (n + 1)) / (float)n;
-        m.positions[3 * i] = x;
-        m.positions[3 * i + 1] = 0.02f * sinf(40.0f * x) * cosf(31.0f * y);
-        m.positions[3 * i + 2] = y;
-    }
-    uint32_t *to = m.indices, row = (uint32_t)n + 1;
-    for (uint32_t j = 0; j < n; j++)
-        for (uint32_t i = 0; i < n; i++) {
-            uint32_t a = j * row + i;
-            const uint32_t quad[6] = {a, a + row, a + 1, a + 1, a + row, a + row + 1};
-            for (int k = 0; k < 6; k++)
-                *to++ = quad[k];
-        }
-    return m;
 }
 
 static double time_bytes(const char *path)
@@ -124,15 +93,13 @@ static double time_embree(const mesh *m)
 int main(int argc, char **argv)
 {
     size_t triangles = argc > 1 ? strtoull(argv[1], NULL, 10) : 10000000;
-    mesh m = landscape((size_t)sqrt(0.5 * (double)triangles));
+    mesh m = bench_mesh_make(triangles, bench_landscape);
     GError *error = NULL;
     g_autofree char *folder = g_dir_make_tmp("nephroid-load-XXXXXX", &error);
     g_autofree char *path = folder ? g_build_filename(folder, "a.ply", NULL) : NULL;
-    output *out = path ? output_open(path, &error) : NULL;
-    if (out)
-        ply_write(out, &m);
-    if (!out || !output_commit(out, &error))
+    if (!path)
         give_up(error);
+    bench_mesh_write(&m, path);
     size_t n = m.n_triangles;
     double embree = time_embree(&m);
     mesh_clear(&m);

@@ -1,12 +1,19 @@
 /*
- * Tracing: photons and camera paths in the Cornell box, on one thread, against Embree
- * alone on the very same rays. What the house adds to a ray (the hit's geometry, the
- * BSDF, random numbers, the store) is what is seen here; seconds are the thread's own, so
- * that a busy machine disturbs little, and the two are timed in turns.
+ * Tracing against Embree alone on the very same rays: what the house adds to a ray (the
+ * hit's geometry, the BSDF, random numbers, lights, the store or the film) is what is
+ * seen here. Every ray that Embree is asked is written down as it is asked, by the
+ * linker's --wrap; then the rays are asked again, of the same structure, and the whole is
+ * run again, in turns. Seconds are the thread's own, so that a busy machine disturbs
+ * little; what is printed is the median.
  *
- *   bench_trace [photons, default 100000]
+ *   bench_trace WHAT SCENE...     WHAT: photons, or an integrator of a camera pass
+ *
+ * SCENE is a file, or a number of triangles: a cave of so many, with a lamp in it. A line
+ * each: what, scene, rays, microseconds a ray of Embree and of ours, Embree over ours.
  */
+#include "bench_mesh.h"
 #include "format/format.h"
+#include "math/median.h"
 #include "photon/trace/trace.h"
 #include "render/render.h"
 
@@ -16,12 +23,12 @@
 #include <embree3/rtcore.h>
 #endif
 
-#include <float.h>
+#include <glib/gstdio.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
-enum { ROUNDS = 5 };
+enum { ROUNDS = 5, PHOTONS = 100000, SIDE = 192 };
 
 static double seconds(void)
 {
@@ -36,166 +43,201 @@ static void give_up(const char *what)
     exit(3);
 }
 
-/* ---- Embree alone ---- */
+/* ---- What Embree is asked ---- */
 
-typedef struct bare {
-    RTCDevice device;
+typedef struct asked {
+    struct RTCRay ray;
     RTCScene scene;
-} bare;
+    bool any; /* whether anything is in the way, or what is nearest */
+} asked;
 
-static bare bare_new(const scene *s)
+static GArray *recorded; /* NULL: nobody writes down */
+
+static void record(RTCScene of, const struct RTCRay *query, bool any)
 {
-    bare b = {.device = rtcNewDevice("threads=1,set_affinity=0")};
-    b.scene = rtcNewScene(b.device);
-    rtcSetSceneFlags(b.scene, RTC_SCENE_FLAG_ROBUST);
-    for (guint i = 0; i < s->shapes->len; i++) {
-        const shape *on = s->shapes->pdata[i];
-        if (!on->kind->triangles)
-            give_up("the scene must be of triangles");
-        const mesh *m = on->kind->triangles(on->self);
-        RTCGeometry g = rtcNewGeometry(b.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                   m->positions, 0, 3 * sizeof(float), m->n_vertices);
-        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                   m->indices, 0, 3 * sizeof(uint32_t), m->n_triangles);
-        rtcCommitGeometry(g);
-        rtcAttachGeometry(b.scene, g);
-        rtcReleaseGeometry(g);
-    }
-    rtcCommitScene(b.scene);
-    return b;
+    const asked one = {*query, of, any};
+    if (recorded)
+        g_array_append_val(recorded, one);
 }
 
-static void bare_free(bare *b)
-{
-    rtcReleaseScene(b->scene);
-    rtcReleaseDevice(b->device);
-}
-
-static double bare_time(const bare *b, const GArray *rays)
-{
-    double start = seconds();
-    for (guint i = 0; i < rays->len; i++) {
-        const ray *r = &g_array_index(rays, ray, i);
-        struct RTCRayHit query = {
-            .ray = {.org_x = r->origin[0],
-                    .org_y = r->origin[1],
-                    .org_z = r->origin[2],
-                    .tnear = FLT_MIN,
-                    .dir_x = r->direction[0],
-                    .dir_y = r->direction[1],
-                    .dir_z = r->direction[2],
-                    .tfar = r->t_max,
-                    .mask = ~0u},
-            .hit = {.geomID = RTC_INVALID_GEOMETRY_ID},
-        };
 #if RTC_VERSION_MAJOR >= 4
-        rtcIntersect1(b->scene, &query, NULL);
+typedef struct RTCIntersectArguments nearest_context;
+typedef struct RTCOccludedArguments any_context;
+#define PASS(context, query) query, context
+#define NO_CONTEXT(type) type *context = NULL
 #else
-        struct RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect1(b->scene, &context, &query);
+typedef struct RTCIntersectContext nearest_context;
+typedef struct RTCIntersectContext any_context;
+#define PASS(context, query) context, query
+#define NO_CONTEXT(type)                                                                 \
+    type none, *context = &none;                                                         \
+    rtcInitIntersectContext(context)
 #endif
-    }
-    return seconds() - start;
+
+void __real_rtcIntersect1(RTCScene, PASS(nearest_context *, struct RTCRayHit *));
+void __real_rtcOccluded1(RTCScene, PASS(any_context *, struct RTCRay *));
+void __wrap_rtcIntersect1(RTCScene, PASS(nearest_context *, struct RTCRayHit *));
+void __wrap_rtcOccluded1(RTCScene, PASS(any_context *, struct RTCRay *));
+
+void __wrap_rtcIntersect1(RTCScene of,
+                          PASS(nearest_context *context, struct RTCRayHit *query))
+{
+    record(of, &query->ray, false);
+    __real_rtcIntersect1(of, PASS(context, query));
 }
 
-static double intersect_time(const scene *s, const GArray *rays)
+void __wrap_rtcOccluded1(RTCScene of, PASS(any_context *context, struct RTCRay *query))
+{
+    record(of, query, true);
+    __real_rtcOccluded1(of, PASS(context, query));
+}
+
+static void ask_nearest(const asked *one)
+{
+    NO_CONTEXT(nearest_context);
+    struct RTCRayHit query = {.ray = one->ray, .hit.geomID = RTC_INVALID_GEOMETRY_ID};
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    __real_rtcIntersect1(one->scene, PASS(context, &query));
+}
+
+static void ask_any(const asked *one)
+{
+    NO_CONTEXT(any_context);
+    struct RTCRay query = one->ray;
+    __real_rtcOccluded1(one->scene, PASS(context, &query));
+}
+
+static double time_embree(const GArray *rays)
 {
     double start = seconds();
     for (guint i = 0; i < rays->len; i++) {
-        surface_hit hit;
-        scene_intersect(s, &g_array_index(rays, ray, i), &hit);
+        const asked *one = &g_array_index(rays, asked, i);
+        if (one->any)
+            ask_any(one);
+        else
+            ask_nearest(one);
     }
     return seconds() - start;
 }
 
-/* ---- Photons ---- */
+/* ---- What is run ---- */
 
-/* Every ray that photons travel, as their story tells it. */
-static void note_ray(const photon_event *event, void *data)
+static double time_photons(const view *v)
 {
-    ray r = {event->p, event->direction, INFINITY, 0.0f, {{0}, 0}};
-    if (event->kind == PHOTON_SCATTERED)
-        r = hit_ray(event->hit, event->direction);
-    else if (event->kind != PHOTON_EMITTED)
-        return;
-    g_array_append_val((GArray *)data, r);
-}
-
-static double trace_time(const trace_task *task)
-{
+    const trace_task task = {.scene = v->scene,
+                             .how = &v->scene->settings,
+                             .w = wavelengths_for_pass(1, 0),
+                             .photon_class = PHOTON_INDIRECT,
+                             .n_photons = PHOTONS};
     trace_result result;
     double start = seconds();
-    if (!photon_trace(task, false, &result, NULL))
+    if (!photon_trace(&task, false, &result, NULL))
         give_up("the photons can not be traced");
     double time = seconds() - start;
     trace_result_clear(&result);
     return time;
 }
 
-static void bench_photons(const scene *s, uint64_t n)
-{
-    trace_task task = {.scene = s,
-                       .how = &s->settings,
-                       .w = wavelengths_for_pass(1, 0),
-                       .photon_class = PHOTON_INDIRECT,
-                       .n_photons = n};
-    g_autoptr(GArray) rays = g_array_new(FALSE, FALSE, sizeof(ray));
-    for (uint64_t i = 0; i < n; i++)
-        photon_tell(&task, i, note_ray, rays);
-    bare b = bare_new(s);
-    double embree = HUGE_VAL, ours = HUGE_VAL, trace = HUGE_VAL;
-    for (int round = 0; round < ROUNDS; round++) {
-        embree = MIN(embree, bare_time(&b, rays));
-        ours = MIN(ours, intersect_time(s, rays));
-        trace = MIN(trace, trace_time(&task));
-    }
-    bare_free(&b);
-    double million = 1e-6 * (double)rays->len;
-    printf("%u rays of %llu photons, millions a second: Embree %.2f, scene_intersect "
-           "%.2f (%.2f of Embree), photon pass %.2f (%.2f of Embree)\n",
-           rays->len, (unsigned long long)n, million / embree, million / ours,
-           embree / ours, million / trace, embree / trace);
-}
-
-/* ---- Camera paths ---- */
-
-static void bench_camera(const view *v, const char *name, integrator_choice integrator)
+static double time_camera(const view *v, int integrator)
 {
     settings how = v->scene->settings;
     how.integrator = integrator;
-    how.passes = 1;
-    how.spp = 1;
-    how.threads = 1;
-    how.photons = 100000;
-    double best = HUGE_VAL;
-    render_statistics st = {0};
-    for (int round = 0; round < ROUNDS; round++) {
-        g_autoptr(render) r = render_new(v, &how, NULL);
-        double start = seconds();
-        if (!r || !render_run(r, NULL, NULL, NULL))
-            give_up("the scene can not be rendered");
-        double time = seconds() - start;
-        st = render_get_statistics(r);
-        best = MIN(best, time - st.time_trace - st.time_build);
+    how.passes = how.spp = how.threads = 1;
+    how.photons = PHOTONS;
+    g_autoptr(render) r = render_new(v, &how, NULL);
+    double start = seconds();
+    if (!r || !render_run(r, NULL, NULL, NULL))
+        give_up("the scene can not be rendered");
+    return seconds() - start;
+}
+
+/* @param integrator < 0: photons */
+static double time_ours(const view *v, int integrator)
+{
+    return integrator < 0 ? time_photons(v) : time_camera(v, integrator);
+}
+
+/* ---- Scenes ---- */
+
+/* A cave of about so many triangles, all of which rays may meet. */
+static char *write_cave(const char *folder, size_t triangles)
+{
+    static const char text[] =
+        "LookAt 0 0 0  1 0 0  0 0 1\n"
+        "Camera \"perspective\" \"float fov\" 70\nFilm \"rgb\"\nWorldBegin\n"
+        "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5]\n"
+        "Shape \"plymesh\" \"string filename\" \"cave.ply\"\n"
+        "AreaLightSource \"diffuse\" \"blackbody L\" 5000 \"bool twosided\" true\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [-.1 -.1 .6  .1 -.1 .6  -.1 .1 .6  .1 .1 .6]"
+        "\n";
+    mesh m = bench_mesh_make(triangles, bench_cave);
+    g_autofree char *ply = g_build_filename(folder, "cave.ply", NULL);
+    bench_mesh_write(&m, ply);
+    mesh_clear(&m);
+    char *path = g_build_filename(folder, "cave.pbrt", NULL);
+    if (!g_file_set_contents(path, text, -1, NULL))
+        give_up("no room for a scene");
+    return path;
+}
+
+static view *load(const char *path)
+{
+    g_autoptr(GError) error = NULL;
+    const load_options how = {.threads = 1};
+    view *v = format_load_view(path, &how, &error);
+    if (!v)
+        give_up(error->message);
+    v->owned->settings.threads = 1;
+    view_resize(v, SIDE, SIDE);
+    return v;
+}
+
+static view *load_cave(size_t triangles)
+{
+    g_autofree char *folder = g_dir_make_tmp("nephroid-trace-XXXXXX", NULL);
+    if (!folder)
+        give_up("no folder for a scene");
+    g_autofree char *path = write_cave(folder, triangles);
+    g_autofree char *ply = g_build_filename(folder, "cave.ply", NULL);
+    view *v = load(path);
+    g_unlink(path);
+    g_unlink(ply);
+    g_rmdir(folder);
+    return v;
+}
+
+static void bench(const char *what, int integrator, const char *which)
+{
+    size_t triangles = strtoull(which, NULL, 10);
+    g_autoptr(view) v = triangles > 0 ? load_cave(triangles) : load(which);
+    g_autofree char *name = g_path_get_basename(which);
+    g_autoptr(GArray) rays = g_array_new(FALSE, FALSE, sizeof(asked));
+    recorded = rays;
+    time_ours(v, integrator);
+    recorded = NULL;
+    float embree[ROUNDS], ours[ROUNDS];
+    for (int i = 0; i < ROUNDS; i++) {
+        embree[i] = (float)(1e6 * time_embree(rays) / rays->len);
+        ours[i] = (float)(1e6 * time_ours(v, integrator) / rays->len);
     }
-    double rays = (double)(st.camera_rays + st.shadow_rays);
-    printf("%s: %.2f million camera and shadow rays a second\n", name,
-           1e-6 * rays / best);
+    double least = (double)median(embree, ROUNDS), whole = (double)median(ours, ROUNDS);
+    printf("%s\t%s\t%u\t%.4f\t%.4f\t%.3f\n", what, name, rays->len, least, whole,
+           least / whole);
+    fflush(stdout);
 }
 
 int main(int argc, char **argv)
 {
-    uint64_t n = argc > 1 ? strtoull(argv[1], NULL, 10) : 100000;
-    const load_options how = {.threads = 1};
-    g_autoptr(view) v = format_load_view(BENCH_SCENE, &how, NULL);
-    if (!v)
-        give_up("no scene " BENCH_SCENE);
-    v->owned->settings.threads = 1;
-    view_resize(v, 192, 192);
-    bench_photons(v->scene, n);
-    bench_camera(v, "path", INTEGRATOR_PATH);
-    bench_camera(v, "photonmap", INTEGRATOR_PHOTONMAP);
+    int integrator = -1;
+    if (argc < 3)
+        give_up("expected 'photons' or an integrator, and scenes");
+    if (strcmp(argv[1], "photons") != 0) {
+        settings any = settings_default();
+        if (!settings_set(&any, "integrator", argv[1], NULL))
+            give_up("no such integrator");
+        integrator = any.integrator;
+    }
+    for (int i = 2; i < argc; i++)
+        bench(argv[1], integrator, argv[i]);
     return 0;
 }
