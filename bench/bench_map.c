@@ -48,7 +48,7 @@ typedef struct bench {
     peer_tree *peer;
 #endif
     double build[N_WHO];
-    photon_hits hits;
+    point_hits hits;
     estimate_scratch scratch;
     bsdf wall;
     double sink; /* what is computed must be used */
@@ -140,7 +140,7 @@ static void clear(bench *b)
 #ifdef HAVE_NANOFLANN
     peer_free(b->peer);
 #endif
-    photon_hits_clear(&b->hits);
+    point_hits_clear(&b->hits);
     estimate_scratch_clear(&b->scratch);
     places_clear(&b->asked);
 }

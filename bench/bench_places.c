@@ -83,13 +83,13 @@ typedef struct pilot {
     float scale;
 } pilot;
 
-static bool nearest(const void *data, vec3 p, photon_hits *hits)
+static bool nearest(const void *data, vec3 p, point_hits *hits)
 {
     const pilot *by = data;
     return photon_map_nearest(by->map, p, RADIUS_NEAREST, INFINITY, NULL, hits);
 }
 
-static float scaled(const void *data, vec3 p, float distance, photon_hits *hits)
+static float scaled(const void *data, vec3 p, float distance, point_hits *hits)
 {
     (void)p, (void)hits;
     return ((const pilot *)data)->scale * distance;
@@ -128,7 +128,7 @@ static place pixel_place(size_t i, size_t n)
 static void make_queries(places *of)
 {
     float *radii = g_new(float, of->n);
-    photon_hits hits = {0};
+    point_hits hits = {0};
     of->at = aligned_alloc(64, of->n * sizeof *of->at);
     for (size_t i = 0; i < of->n; i++) {
         sampler s = sampler_make(2, i);
@@ -140,7 +140,7 @@ static void make_queries(places *of)
         of->at[i].radius = radii[i];
     }
     of->typical = median(radii, of->n);
-    photon_hits_clear(&hits);
+    point_hits_clear(&hits);
     g_free(radii);
 }
 

@@ -2,14 +2,14 @@
  * What map benchmarks ask: photons on the faces of a unit box, and where and how far.
  *
  *   in no order      photons lie evenly, queries too, all with one radius
- *   in pixel order   photons are those of a light in the box, five times as dense below it
- *                    as in the corners and more; queries are what a camera in the box
- *                    sees, tile by tile as a picture is rendered, each with the radius of
- *                    its place as photon mapping takes it, from a radius cache over a
- *                    pilot of few photons
+ *   in pixel order   photons are those of a light in the box, five times as dense below
+ * it as in the corners and more; queries are what a camera in the box sees, tile by tile
+ * as a picture is rendered, each with the radius of its place as photon mapping takes it,
+ * from a radius cache over a pilot of few photons
  */
 #pragma once
 
+#include "photon/photon_map.h"
 #include "transport/radius_cache.h"
 
 /** @brief A query. */

@@ -21,7 +21,7 @@ REGISTRIES = [
     ('src/image/codec.def', 'codec_{0}', 'src/image/{1}.c'),
     ('src/format/format.def', '{0}_reader', 'src/format/{0}/'),
     ('src/settings/integrator.def', 'transport_{1}', 'src/transport/{1}/'),
-    ('src/settings/map.def', 'photon_map_{1}', 'src/photon/map/map_{1}.c'),
+    ('src/settings/map.def', 'point_index_{1}', 'src/photon/map/map_{1}.c'),
 ]
 
 

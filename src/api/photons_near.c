@@ -12,7 +12,7 @@
 #include "api/photons.h"
 
 #include "photon/kernel.h"
-#include "photon/map/query.h"
+#include "photon/photon_query.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -27,17 +27,17 @@ static vec3 to_vec3(const double v[3])
     return vec3_make((float)v[0], (float)v[1], (float)v[2]);
 }
 
-static point_query query_at(const NephPhotons *photons, int c, vec3 p, vec3 n)
+static photon_query query_at(const NephPhotons *photons, int c, vec3 p, vec3 n)
 {
     const photon_filter filter = {
         .n = n, .one_sided = true, .flatten = (float)photons->traced->plan.how.flatten};
-    return point_query_of(&photons->traced->stores[c], p, &filter);
+    return photon_query_of(&photons->traced->stores[c], p, &filter);
 }
 
-static bool counts(const point_query *query, size_t i, float r2, float *distance2)
+static bool counts(const photon_query *query, size_t i, float r2, float *distance2)
 {
-    *distance2 = query_distance2(query, i);
-    return *distance2 < r2 && query_accepts(query, i);
+    *distance2 = query_distance2(&query->at, &query->points, i);
+    return *distance2 < r2 && photon_query_accepts(query, i);
 }
 
 static int by_distance(const void *a, const void *b)
@@ -48,7 +48,7 @@ static int by_distance(const void *a, const void *b)
 
 /* Squared distance to the k-th nearest, or where all are asked for the furthest; r2 if
    fewer lie within. */
-static float nearest_radius2(const point_query *query, size_t k, float r2)
+static float nearest_radius2(const photon_query *query, size_t k, float r2)
 {
     g_autoptr(GArray) found = g_array_new(FALSE, FALSE, sizeof(float));
     float distance2;
@@ -63,7 +63,7 @@ static float nearest_radius2(const point_query *query, size_t k, float r2)
 
 /* Squared radius of a class: the given one, or that which a render would gather in. */
 static float radius2_of(const NephPhotons *photons, int c, double radius,
-                        const point_query *query)
+                        const photon_query *query)
 {
     double own = photons->traced->statistics.radius[c];
     const settings *how = &photons->traced->plan.how;
@@ -76,7 +76,7 @@ static float radius2_of(const NephPhotons *photons, int c, double radius,
                            how->radius > 0.0 ? square((float)own) : INFINITY);
 }
 
-static void estimate_class(const NephPhotons *photons, int c, const point_query *query,
+static void estimate_class(const NephPhotons *photons, int c, const photon_query *query,
                            float r2, NephEstimate *out)
 {
     const photon_store *store = &photons->traced->stores[c];
@@ -104,7 +104,7 @@ void neph_photons_estimate(const NephPhotons *photons, const double point[3],
 {
     *out = (NephEstimate){0};
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
-        point_query query = query_at(photons, c, to_vec3(point), to_vec3(normal));
+        photon_query query = query_at(photons, c, to_vec3(point), to_vec3(normal));
         estimate_class(photons, c, &query, radius2_of(photons, c, radius, &query), out);
     }
 }
@@ -125,7 +125,7 @@ size_t neph_photons_near(const NephPhotons *photons, const double point[3],
     size_t offset = 0;
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         const photon_store *store = &photons->traced->stores[c];
-        point_query query = query_at(photons, c, to_vec3(point), to_vec3(normal));
+        photon_query query = query_at(photons, c, to_vec3(point), to_vec3(normal));
         float r2 = radius2_of(photons, c, radius, &query);
         for (size_t i = 0; i < store->n; i++) {
             neighbour one = {offset + i, 0.0f};

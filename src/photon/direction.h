@@ -61,3 +61,10 @@ static inline lane_floats lane_directions_dot(lane_directions d, vec3 n)
     lane_floats nx = fill_lanes(n[0]), ny = fill_lanes(n[1]), nz = fill_lanes(n[2]);
     return fused_lanes(d.z, nz, fused_lanes(d.y, ny, d.x * nx));
 }
+
+/** @brief Bits of packed directions on the side of n. */
+static inline unsigned directions_on_side(lane_ints packed, vec3 n)
+{
+    return bits_below(fill_lanes(0.0f),
+                      lane_directions_dot(lane_directions_of(packed), n));
+}

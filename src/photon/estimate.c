@@ -13,8 +13,8 @@
 #include "photon/estimate.h"
 
 #include "base/memory.h"
-#include "photon/map/map_kind.h"
 #include "photon/neighbourhood.h"
+#include "photon/photon_query.h"
 
 /* Photons arrive in proportion to |wi·n_geom|, so without a limit on |wi·n| / |wi·n_geom|
  * the variance would not be finite; the light cut off is below 1/2000. */
@@ -25,7 +25,7 @@ enum { BLOCK = 256 }; /* size: of photons that are weighed at a time */
 typedef struct gather gather;
 
 struct gather {
-    point_query query;
+    photon_query query;
     const estimate_options *options;
     const bsdf *b;
     vec3 wo;
@@ -147,11 +147,11 @@ static void flush(gather *g)
 /* Of photons in the block that are within the radius, weight[] holding d², keeps those
  * that are accepted, and gives them their weights. */
 static inline __attribute__((always_inline)) void weigh_block(gather *g,
-                                                              const point_query *query)
+                                                              const photon_query *query)
 {
     const kernel kappa = g->options->kernel;
     const float inv_r2 = g->inv_r2;
-    const bool selects = query_selects(query);
+    const bool selects = photon_query_selects(query);
     size_t n = g->n_block, kept = 0;
     for (size_t i = 0; i < n; i++)
         __builtin_prefetch(query->store->flux + g->index[i]);
@@ -160,7 +160,7 @@ static inline __attribute__((always_inline)) void weigh_block(gather *g,
         unsigned bits = bits_first(n - i);
         lane_floats weight = kernel_eval_lanes(&kappa, load_lanes(g->weight + i), inv_r2);
         if (selects)
-            bits = query_accepted(query, g->index + i, bits);
+            bits = photon_query_accepted_of(query, g->index + i, bits);
         kept += pack_lane_pairs(weight, g->index + i, bits, g->weight + kept,
                                 g->index + kept);
     }
@@ -172,14 +172,14 @@ static inline __attribute__((always_inline)) void weigh_block(gather *g,
  * must not seem to when the block is written to. What the caller knows of it falls out of
  * the loop. */
 static inline __attribute__((always_inline)) void
-gather_by(gather *g, point_query query, const photon_run *runs, size_t n)
+gather_by(gather *g, photon_query query, const point_run *runs, size_t n)
 {
     const float r2 = g->r2;
     size_t n_block = 0;
-    for (const photon_run *run = runs; run < runs + n; run++) {
+    for (const point_run *run = runs; run < runs + n; run++) {
         for (size_t i = run->begin; i < run->end; i += LANES) {
             lane_floats d2;
-            unsigned bits = query_nearer(&query, i, run->end, r2, &d2);
+            unsigned bits = query_nearer(&query.at, &query.points, i, run->end, r2, &d2);
             if (HAS_WIDE_LANES || bits)
                 n_block += pack_lanes(d2, bits, (uint32_t)i, g->weight + n_block,
                                       g->index + n_block);
@@ -194,44 +194,44 @@ gather_by(gather *g, point_query query, const photon_run *runs, size_t n)
     weigh_block(g, &query);
 }
 
-static void gather_runs(const photon_run *runs, size_t n, void *data)
+static void gather_runs(const point_run *runs, size_t n, void *data)
 {
     gather *g = data;
     gather_by(g, g->query, runs, n);
 }
 
 /* The common kinds: on surfaces that do not transmit, ... */
-static void gather_runs_one_sided(const photon_run *runs, size_t n, void *data)
+static void gather_runs_one_sided(const point_run *runs, size_t n, void *data)
 {
     gather *g = data;
-    point_query query = g->query;
+    photon_query query = g->query;
     query.one_sided = true;
-    query.flat = false;
+    query.at.flat = false;
     query.face = 0;
     query.normal = query.curve = NULL;
     gather_by(g, query, runs, n);
 }
 
 /* ... and where photons keep normals. */
-static void gather_runs_alike(const photon_run *runs, size_t n, void *data)
+static void gather_runs_alike(const point_run *runs, size_t n, void *data)
 {
     gather *g = data;
-    point_query query = g->query;
+    photon_query query = g->query;
     query.one_sided = true;
     query.face = 0;
     query.curve = NULL;
     gather_by(g, query, runs, n);
 }
 
-static photon_run_visitor visitor_for(const point_query *query)
+static point_run_visitor visitor_for(const photon_query *query)
 {
     if (!query->one_sided || query->face || query->curve)
         return gather_runs;
-    return query->normal || query->flat ? gather_runs_alike : gather_runs_one_sided;
+    return query->normal || query->at.flat ? gather_runs_alike : gather_runs_one_sided;
 }
 
 /* Photons listed in hits. */
-static void gather_hits(gather *g, const photon_hits *hits)
+static void gather_hits(gather *g, const point_hits *hits)
 {
     for (size_t begin = 0; begin < hits->n; begin += BLOCK) {
         g->n_block = MIN(BLOCK, hits->n - begin);
@@ -251,23 +251,16 @@ static void set_radius2(gather *g, float r2)
     g->inv_r2 = 1.0f / r2;
 }
 
-static bool gather_within(gather *g, const photon_map *map, estimate_scratch *scratch)
+static void gather_within(gather *g, const photon_map *map)
 {
     float radius = g->options->radius;
     set_radius2(g, radius * radius);
-    scratch->hits.n = 0;
-    if (map->store.n == 0)
-        return true;
-    if (map->kind->runs)
-        map->kind->runs(map, g->query.p, radius, visitor_for(&g->query), g);
-    else if (!map->kind->within(map, &g->query, radius, &scratch->hits))
-        return false;
-    gather_hits(g, &scratch->hits);
-    return true;
+    point_index_runs(photon_map_index(map), g->query.at.p, radius, visitor_for(&g->query),
+                     g);
 }
 
 /* Index of the furthest hit. */
-static size_t furthest(const photon_hits *hits)
+static size_t furthest(const point_hits *hits)
 {
     size_t last = 0;
     for (size_t i = 1; i < hits->n; i++)
@@ -278,14 +271,14 @@ static size_t furthest(const photon_hits *hits)
 /* How far the k nearest are looked for. A thin curve may hold fewer: of it, as far as lie
    so many of all. */
 static bool search_radius(const gather *g, const photon_map *map, size_t k,
-                          photon_hits *hits, float *radius)
+                          point_hits *hits, float *radius)
 {
-    point_query any = g->query;
+    photon_query any = g->query;
     any.curve = NULL;
     *radius = g->options->radius;
     if (!g->options->curve)
         return true;
-    if (!map->kind->nearest(map, &any, k, *radius, hits))
+    if (!photon_map_query_nearest(map, &any, k, *radius, hits))
         return false;
     if (hits->n == k)
         *radius = minf(*radius, sqrtf(hits->distance2[furthest(hits)]));
@@ -296,12 +289,12 @@ static bool search_radius(const gather *g, const photon_map *map, size_t k,
 static bool gather_nearest(gather *g, const photon_map *map, estimate_scratch *scratch)
 {
     const estimate_options *options = g->options;
-    photon_hits *hits = &scratch->hits;
+    point_hits *hits = &scratch->hits;
     float radius = options->radius;
     hits->n = 0;
-    size_t k = MIN(options->nearest, map->store.n);
+    size_t k = MIN(options->nearest, g->query.store->n);
     if (k > 0 && (!search_radius(g, map, k, hits, &radius) ||
-                  !map->kind->nearest(map, &g->query, k, radius, hits)))
+                  !photon_map_query_nearest(map, &g->query, k, radius, hits)))
         return false;
     set_radius2(g, radius * radius);
     bool all_found = hits->n == options->nearest;
@@ -332,8 +325,11 @@ static bool gather_once(gather *g, const photon_map *map, estimate_scratch *scra
     g->sum = (spectrum){0};
     for (size_t i = 0; i < g->n_groups; i++)
         g->groups[i] = (spectrum){0};
-    bool done = g->options->nearest ? gather_nearest(g, map, scratch)
-                                    : gather_within(g, map, scratch);
+    bool done = true;
+    if (g->options->nearest)
+        done = gather_nearest(g, map, scratch);
+    else
+        gather_within(g, map);
     flush(g);
     return done;
 }
@@ -349,8 +345,8 @@ static bool gather_part(gather *g, const photon_map *map, neighbourhood *hood,
     *area *= neighbourhood_coverage(hood, &within.kernel);
     g->options = &within;
     g->hood = hood;
-    g->query.flat = true;
-    g->query.inv_flatten = 1.0f / NEIGHBOURHOOD_FLATTEN;
+    g->query.at.flat = true;
+    g->query.at.inv_flatten = 1.0f / NEIGHBOURHOOD_FLATTEN;
     bool done = gather_once(g, map, scratch);
     g->options = options;
     g->hood = NULL;
@@ -374,13 +370,14 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
     bool done = gather_once(g, map, scratch);
     float area = kernel_area(&options->kernel, g->r2);
     neighbourhood hood = {.scene = options->scene,
-                          .p = g->query.p,
-                          .n = g->query.n,
+                          .p = g->query.at.p,
+                          .n = g->query.at.n,
                           .radius = root_within(g->r2),
                           .time = options->time};
     bool bounded = g->n > 0 && isfinite(hood.radius);
     if (options->curve && bounded)
-        area = flat_curve_area(options->curve, g->query.p, hood.radius, &options->kernel);
+        area =
+            flat_curve_area(options->curve, g->query.at.p, hood.radius, &options->kernel);
     else if (options->scene && bounded && !neighbourhood_is_whole(&hood))
         done = gather_part(g, map, &hood, scratch, &area) && done;
     scratch->failed |= !done;
@@ -421,7 +418,7 @@ spectrum photon_estimate(const photon_map *map, vec3 p, const bsdf *b, vec3 wo,
         .curve = flat ? scene_curve_of(flat->scene, flat->hit) : 0,
     };
     gather g;
-    g.query = point_query_of(&map->store, p, &filter);
+    g.query = photon_query_of(photon_map_store(map), p, &filter);
     g.options = options;
     g.b = b;
     g.wo = wo;
@@ -439,7 +436,7 @@ spectrum photon_irradiance(const photon_map *map, vec3 p, vec3 n_geom,
 {
     photon_filter filter = {.n = n_geom, .one_sided = true, .flatten = options->flatten};
     gather g;
-    g.query = point_query_of(&map->store, p, &filter);
+    g.query = photon_query_of(photon_map_store(map), p, &filter);
     g.options = options;
     g.weigh = weigh_plain;
     return estimate(&g, map, scratch, info);
@@ -456,7 +453,7 @@ bool estimate_scratch_init(estimate_scratch *scratch, size_t n_groups, GError **
 
 void estimate_scratch_clear(estimate_scratch *scratch)
 {
-    photon_hits_clear(&scratch->hits);
+    point_hits_clear(&scratch->hits);
     disc_crossings_clear(&scratch->crossings);
     big_free(scratch->groups);
     scratch->groups = NULL;

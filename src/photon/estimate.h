@@ -20,7 +20,7 @@
 
 #include "photon/disc_set.h"
 #include "photon/flat_curve.h"
-#include "photon/map/map.h"
+#include "photon/photon_map.h"
 
 /** @brief How to estimate. */
 typedef struct estimate_options {
@@ -42,7 +42,7 @@ typedef struct estimate_options {
 /** @brief Scratch of one thread, reused from query to query: zero-initialise, clear at
  * the end. */
 typedef struct estimate_scratch {
-    photon_hits hits;
+    point_hits hits;
     disc_crossings crossings;
     bool failed;      /**< memory was refused in a query, which then gave zero */
     spectrum *groups; /**< owned, big_alloc'ed; each query leaves there what the photons

@@ -1,7 +1,7 @@
 #include "photon/neighbourhood.h"
 
 #include "math/sampler.h"
-#include "photon/map/query.h"
+#include "photon/photon_query.h"
 
 #include <string.h>
 

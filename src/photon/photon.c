@@ -11,16 +11,7 @@
 #include "photon/photon.h"
 
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "photon/direction.h"
-
-/* size: room after the last photon, so that eight can be loaded from any. */
-enum { STORE_BLOCK = 16 };
-
-static size_t padded(size_t n)
-{
-    return (n + STORE_BLOCK - 1) / STORE_BLOCK * STORE_BLOCK + STORE_BLOCK;
-}
 
 static bool grow(void *array, size_t n, size_t capacity, size_t size, GError **error)
 {
@@ -56,7 +47,7 @@ bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
         error_set(error, ERROR_FAILED, "out of memory: %zu photons", capacity);
         return false;
     }
-    size_t n = store->n, room = padded(capacity);
+    size_t n = store->n, room = points_padded(capacity);
     bool ok =
         grow(&store->x, n, room, sizeof *store->x, error) &&
         grow(&store->y, n, room, sizeof *store->y, error) &&
@@ -69,7 +60,7 @@ bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
         (!store->tagged || grow(&store->tag, n, room, sizeof *store->tag, error)) &&
         (!store->homed || grow(&store->home, n, room, sizeof *store->home, error));
     if (ok)
-        store->capacity = room - STORE_BLOCK;
+        store->capacity = room - points_padded(0);
     else if (store->capacity == 0)
         free_arrays(store);
     return ok;
@@ -142,84 +133,32 @@ size_t photon_store_bytes(const photon_store *store)
     each += store->oriented ? sizeof(uint32_t) : 0;
     each += store->tagged ? sizeof(uint32_t) : 0;
     each += store->homed ? sizeof(uint32_t) : 0;
-    return store->x ? (store->capacity + STORE_BLOCK) * each : 0;
+    return store->x ? (store->capacity + points_padded(0)) * each : 0;
 }
 
-/* One array being put in order: to[i] = from[order[i]]. */
-typedef struct permutation {
-    const size_t *order;
-    const void *from;
-    void *to;
-} permutation;
-
-static void permute_words(size_t begin, size_t end, unsigned thread, void *data)
+bool photon_store_follow(photon_store *store, const size_t *order, unsigned threads,
+                         GError **error)
 {
-    (void)thread;
-    const permutation *job = data;
-    const uint32_t *from = job->from;
-    uint32_t *to = job->to;
-    for (size_t i = begin; i < end; i++)
-        to[i] = from[job->order[i]];
-}
-
-static void permute_numbers(size_t begin, size_t end, unsigned thread, void *data)
-{
-    (void)thread;
-    const permutation *job = data;
-    const size_t *from = job->from;
-    size_t *to = job->to;
-    for (size_t i = begin; i < end; i++)
-        to[i] = from[job->order[i]];
-}
-
-static void permute_spectra(size_t begin, size_t end, unsigned thread, void *data)
-{
-    (void)thread;
-    const permutation *job = data;
-    const spectrum *from = job->from;
-    spectrum *to = job->to;
-    for (size_t i = begin; i < end; i++)
-        to[i] = from[job->order[i]];
-}
-
-static bool permute(void *array, const photon_store *store, const size_t *order,
-                    size_t size, unsigned threads, GError **error)
-{
-    void **old = array;
-    void *to = big_alloc(padded(store->n), size, "photons", error);
-    if (!to)
-        return false;
-    permutation job = {order, *old, to};
-    parallel_for(store->n, 1 << 14, threads, NULL,
-                 size == sizeof(spectrum) ? permute_spectra
-                 : size == sizeof(size_t) ? permute_numbers
-                                          : permute_words,
-                 &job);
-    big_free(*old);
-    *old = to;
+    const struct {
+        void *array;
+        size_t size;
+        bool kept;
+    } all[] = {
+        {&store->wi, sizeof *store->wi, true},
+        {&store->flux, sizeof *store->flux, !store->numbered},
+        {&store->number, sizeof *store->number, store->numbered},
+        {&store->normal, sizeof *store->normal, store->oriented},
+        {&store->tag, sizeof *store->tag, store->tagged},
+        {&store->home, sizeof *store->home, store->homed},
+    };
+    if (!order)
+        return true;
+    for (size_t i = 0; i < G_N_ELEMENTS(all); i++)
+        if (all[i].kept &&
+            !points_permute(all[i].array, store->n, all[i].size, order, threads, error))
+            return false;
+    store->capacity = points_padded(store->n) - points_padded(0);
     return true;
-}
-
-bool photon_store_permute(photon_store *store, const size_t *order, unsigned threads,
-                          GError **error)
-{
-    bool ok = permute(&store->x, store, order, sizeof *store->x, threads, error) &&
-              permute(&store->y, store, order, sizeof *store->y, threads, error) &&
-              permute(&store->z, store, order, sizeof *store->z, threads, error) &&
-              permute(&store->wi, store, order, sizeof *store->wi, threads, error) &&
-              (store->numbered ? permute(&store->number, store, order,
-                                         sizeof *store->number, threads, error)
-                               : permute(&store->flux, store, order, sizeof *store->flux,
-                                         threads, error)) &&
-              (!store->oriented || permute(&store->normal, store, order,
-                                           sizeof *store->normal, threads, error)) &&
-              (!store->tagged ||
-               permute(&store->tag, store, order, sizeof *store->tag, threads, error)) &&
-              (!store->homed ||
-               permute(&store->home, store, order, sizeof *store->home, threads, error));
-    if (ok)
-        store->capacity = padded(store->n) - STORE_BLOCK;
-    return ok;
 }
 
 /* The grid point (u, v), steps from the centre, with its flags. */

@@ -19,6 +19,7 @@
 #include "base/error.h"
 #include "color/spectrum.h"
 #include "math/vec.h"
+#include "photon/map/points.h"
 
 #include <stdint.h>
 
@@ -85,10 +86,18 @@ void photon_store_clear(photon_store *store);
 void photon_store_copy(const photon_store *to, size_t at, const photon_store *from);
 /** @brief Memory held. */
 size_t photon_store_bytes(const photon_store *store);
-/** @brief Photon i becomes the one that was order[i]. One array at a time, so the extra
- * memory is that of flux. On failure the store may only be cleared. */
-bool photon_store_permute(photon_store *store, const size_t *order, unsigned threads,
-                          GError **error);
+/** @brief The positions of a store; the arrays stay its own. */
+static inline point_arrays photon_points(const photon_store *store)
+{
+    return (point_arrays){store->n, store->x, store->y, store->z};
+}
+
+/** @brief After positions were put in an order (point_index_build), what lies at them
+ * follows: photon i is the one that was order[i]. NULL: they stayed as they were. One
+ * array at a time, so the extra memory is that of flux. On failure the store may only be
+ * cleared. */
+bool photon_store_follow(photon_store *store, const size_t *order, unsigned threads,
+                         GError **error);
 
 /** @brief Direction and flags in 32 bits; error below 1e-4 rad. */
 uint32_t direction_pack(vec3 w, unsigned flags);

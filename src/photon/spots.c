@@ -4,7 +4,7 @@
 #include "math/frame.h"
 #include "math/median.h"
 #include "math/warp.h"
-#include "photon/map/point_index.h"
+#include "photon/map/point_set.h"
 
 #include <string.h>
 
@@ -24,10 +24,10 @@ typedef struct disc {
 
 struct photon_spots {
     size_t n;
-    disc *discs;        /* MOST_SPOTS at most */
-    point_index *index; /* over their centres */
-    light_tree *tree;   /* over the discs */
-    float reach;        /* how far from a spot's centre a ray may land, at most */
+    disc *discs;      /* MOST_SPOTS at most */
+    point_set *index; /* over their centres */
+    light_tree *tree; /* over the discs */
+    float reach;      /* how far from a spot's centre a ray may land, at most */
 };
 
 /* ---- Building ---- */
@@ -77,24 +77,24 @@ static bool index_discs(photon_spots *spots, GError **error)
     vec3 centres[MOST_SPOTS];
     for (size_t i = 0; i < spots->n; i++)
         centres[i] = spots->discs[i].p;
-    spots->index = point_index_build(centres, NULL, spots->n, 1, error);
+    spots->index = point_set_build(centres, spots->n, 1, error);
     return spots->index != NULL;
 }
 
 /* The way to the furthest of the neighbours of each place. */
 static bool measure_ways(const photon_spots *spots, float ways[MOST_SPOTS])
 {
-    photon_hits hits = {0};
+    point_hits hits = {0};
     bool ok = true;
     for (size_t i = 0; i < spots->n && ok; i++) {
         float d2 = 0.0f;
-        ok = point_index_nearest(spots->index, spots->discs[i].p, NEIGHBOURS, INFINITY,
-                                 &hits);
+        ok = point_set_nearest(spots->index, spots->discs[i].p, NEIGHBOURS, INFINITY,
+                               &hits);
         for (size_t k = 0; k < hits.n; k++)
             d2 = maxf(d2, hits.distance2[k]);
         ways[i] = sqrtf(d2);
     }
-    photon_hits_clear(&hits);
+    point_hits_clear(&hits);
     return ok;
 }
 
@@ -146,7 +146,7 @@ void photon_spots_free(photon_spots *spots)
 {
     if (!spots)
         return;
-    point_index_free(spots->index);
+    point_set_free(spots->index);
     light_tree_free(spots->tree);
     g_aligned_free(spots->discs);
     g_free(spots);
@@ -190,10 +190,10 @@ bool photon_spots_landed(const photon_spots *spots, int spot, vec3 from, vec3 wi
 }
 
 float photon_spots_pdf(const photon_spots *spots, vec3 from, vec3 wi, vec3 landed,
-                       photon_hits *hits)
+                       point_hits *hits)
 {
     float sum = 0.0f;
-    if (!point_index_within(spots->index, landed, spots->reach, hits))
+    if (!point_set_within(spots->index, landed, spots->reach, hits))
         return 0.0f;
     for (size_t i = 0; i < hits->n; i++) {
         float pdf = disc_pdf(&spots->discs[hits->index[i]], from, wi, landed);

@@ -18,7 +18,7 @@
  */
 #pragma once
 
-#include "photon/map/map.h"
+#include "photon/photon_map.h"
 
 typedef struct photon_spots photon_spots;
 
@@ -50,4 +50,4 @@ bool photon_spots_landed(const photon_spots *spots, int spot, vec3 from, vec3 wi
  *  @param landed where the ray meets a surface
  *  @param hits scratch */
 float photon_spots_pdf(const photon_spots *spots, vec3 from, vec3 wi, vec3 landed,
-                       photon_hits *hits);
+                       point_hits *hits);

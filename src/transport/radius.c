@@ -40,7 +40,7 @@ static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
 typedef struct pilot {
     transport_plan *plan;
     wavelengths w;
-    point_index *sight; /* over the plan's */
+    point_set *sight; /* over the plan's */
 } pilot;
 
 /* A bound of a class' radii, and what turns the pilot's distances into radii. */
@@ -51,16 +51,16 @@ typedef struct radius_rule {
 } radius_rule;
 
 /* The finest radius of use at p: what is finer than a pixel cannot be seen. */
-static double least_radius(const radius_rule *rule, vec3 p, photon_hits *hits)
+static double least_radius(const radius_rule *rule, vec3 p, point_hits *hits)
 {
     const pilot *by = rule->pilot;
-    if (!point_index_nearest(by->sight, p, 1, INFINITY, hits) || hits->n == 0)
+    if (!point_set_nearest(by->sight, p, 1, INFINITY, hits) || hits->n == 0)
         return 0.0;
     return (double)by->plan->sight[hits->index[0]].pixel;
 }
 
 /* By the distance to the k-th nearest photon of the pilot; 0: there are none. */
-static float radius_by(const void *data, vec3 p, float distance, photon_hits *hits)
+static float radius_by(const void *data, vec3 p, float distance, point_hits *hits)
 {
     const radius_rule *rule = data;
     if (!(distance > 0.0f))
@@ -69,7 +69,7 @@ static float radius_by(const void *data, vec3 p, float distance, photon_hits *hi
     return (float)fmin(fmax(rule->scale * (double)distance, least), rule->largest);
 }
 
-static bool nearest_photons(const void *data, vec3 p, photon_hits *hits)
+static bool nearest_photons(const void *data, vec3 p, point_hits *hits)
 {
     const radius_rule *rule = data;
     return photon_map_nearest(rule->map, p, RADIUS_NEAREST, INFINITY, NULL, hits);
@@ -100,12 +100,12 @@ static double typical_radius(const radius_rule *rule, const radius_cache *cache,
     size_t n = at_photons ? MIN(store->n, RADIUS_PLACES) : plan->n_sight;
     float narrow = 0.2f * (float)rule->largest;
     float *radii = g_new0(float, n + 1);
-    photon_hits hits = {0};
+    point_hits hits = {0};
     for (size_t i = 0; i < n; i++)
         radii[i] = at_photons ? radius_cache_nth(cache, i)
                               : radius_cache_at(cache, plan->sight[i].p, narrow, &hits);
     double typical = store->n > 1 && n > 0 ? (double)median(radii, n) : (double)narrow;
-    photon_hits_clear(&hits);
+    point_hits_clear(&hits);
     g_free(radii);
     return typical;
 }
@@ -253,6 +253,6 @@ bool photonmap_choose_radii(transport_plan *plan, const cancel_flag *cancel,
         if (!(plan->how.radius > 0.0) && plan->n_photons[c] > 0)
             ok = choose_radius(&p, (photon_class)c, cancel, error);
     }
-    point_index_free(p.sight);
+    point_set_free(p.sight);
     return ok;
 }

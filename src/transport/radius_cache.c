@@ -5,11 +5,11 @@
 enum { CHUNK = 256 }; /* size: of a thread's work */
 
 struct radius_cache {
-    point_index *index;
+    point_set *index;
     float *radii; /* by the numbers of the index */
 };
 
-float radius_of_nearest(const photon_hits *nearest)
+float radius_of_nearest(const point_hits *nearest)
 {
     float furthest2 = 0.0f;
     for (size_t i = 0; i < nearest->n; i++)
@@ -28,14 +28,14 @@ static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
     (void)thread;
     const radius_loop *loop = data;
     const radius_source *source = loop->source;
-    photon_hits hits = {0};
+    point_hits hits = {0};
     for (size_t i = begin; i < end; i++) {
         vec3 p = loop->places[i];
         bool found = source->nearest(source->data, p, &hits);
         float distance = found ? radius_of_nearest(&hits) : 0.0f;
         loop->radii[i] = source->radius(source->data, p, distance, &hits);
     }
-    photon_hits_clear(&hits);
+    point_hits_clear(&hits);
 }
 
 radius_cache *radius_cache_build(const vec3 *places, size_t n,
@@ -44,7 +44,7 @@ radius_cache *radius_cache_build(const vec3 *places, size_t n,
 {
     g_autoptr(radius_cache) cache = g_new0(radius_cache, 1);
     cache->radii = g_new0(float, MAX(n, 1));
-    cache->index = point_index_build(places, NULL, n, 1, error);
+    cache->index = point_set_build(places, n, 1, error);
     if (!cache->index)
         return NULL;
     radius_loop loop = {places, source, cache->radii};
@@ -56,7 +56,7 @@ void radius_cache_free(radius_cache *cache)
 {
     if (!cache)
         return;
-    point_index_free(cache->index);
+    point_set_free(cache->index);
     g_free(cache->radii);
     g_free(cache);
 }
@@ -66,9 +66,9 @@ float radius_cache_nth(const radius_cache *cache, size_t i)
     return cache->radii[i];
 }
 
-float radius_cache_at(const radius_cache *cache, vec3 p, float none, photon_hits *hits)
+float radius_cache_at(const radius_cache *cache, vec3 p, float none, point_hits *hits)
 {
-    if (!point_index_nearest(cache->index, p, 1, INFINITY, hits) || hits->n == 0)
+    if (!point_set_nearest(cache->index, p, 1, INFINITY, hits) || hits->n == 0)
         return none;
     return cache->radii[hits->index[0]];
 }

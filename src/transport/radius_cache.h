@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "photon/map/point_index.h"
+#include "photon/map/point_set.h"
 
 /** Points whose distance tells how close they lie. */
 enum { RADIUS_NEAREST = 16 };
@@ -13,14 +13,14 @@ typedef struct radius_cache radius_cache;
 
 /** @brief Distance to the furthest of the RADIUS_NEAREST points found nearest; of fewer,
  * the distance at which there would be so many, spread as those are; 0 of none. */
-float radius_of_nearest(const photon_hits *nearest);
+float radius_of_nearest(const point_hits *nearest);
 
 /** @brief What radii are made from. Both calls are thread-safe. */
 typedef struct radius_source {
     /** Finds the RADIUS_NEAREST points nearest to p. @return false: memory is refused */
-    bool (*nearest)(const void *data, vec3 p, photon_hits *hits);
+    bool (*nearest)(const void *data, vec3 p, point_hits *hits);
     /** The radius at p, from radius_of_nearest there. @param hits scratch */
-    float (*radius)(const void *data, vec3 p, float distance, photon_hits *hits);
+    float (*radius)(const void *data, vec3 p, float distance, point_hits *hits);
     const void *data;
 } radius_source;
 
@@ -47,4 +47,4 @@ float radius_cache_nth(const radius_cache *cache, size_t i);
 
 /** @brief The radius nearest to p, or `none` if none is kept. Thread-safe.
  *  @param hits gets the place whose radius it is */
-float radius_cache_at(const radius_cache *cache, vec3 p, float none, photon_hits *hits);
+float radius_cache_at(const radius_cache *cache, vec3 p, float none, point_hits *hits);

@@ -87,12 +87,12 @@ void plan_look(transport_plan *plan)
     plan->planning += n * PHOTON_RAYS;
 }
 
-point_index *visible_index(const transport_plan *plan, GError **error)
+point_set *visible_index(const transport_plan *plan, GError **error)
 {
     vec3 *points = g_aligned_alloc0(MAX(plan->n_sight, 1), sizeof *points, 16);
     for (size_t i = 0; i < plan->n_sight; i++)
         points[i] = plan->sight[i].p;
-    point_index *index = point_index_build(points, NULL, plan->n_sight, 1, error);
+    point_set *index = point_set_build(points, plan->n_sight, 1, error);
     g_aligned_free(points);
     return index;
 }

@@ -13,7 +13,7 @@ size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point
 void plan_look(transport_plan *plan);
 
 /** @brief Over plan->sight, which must be filled; owned by the caller. */
-point_index *visible_index(const transport_plan *plan, GError **error);
+point_set *visible_index(const transport_plan *plan, GError **error);
 
 /** @brief The median width of a pixel's footprint on what the camera sees, m, but not
  * much more than on what it sees from nearby, before a landscape; 0 if it sees nothing.

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "math/sampler.h"
 #include "math/warp.h"
-#include "photon/map/map.h"
+#include "photon/photon_map.h"
 
 #include <glib.h>
 #include <stdlib.h>
@@ -165,7 +165,7 @@ static int compare_found(const void *a, const void *b)
 }
 
 /* Hits without the map's order, sorted by bits. */
-static found *sorted_hits(const photon_map *map, const photon_hits *hits)
+static found *sorted_hits(const photon_map *map, const point_hits *hits)
 {
     const photon_store *s = photon_map_store(map);
     found *all = g_new0(found, hits->n + 1);
@@ -179,8 +179,8 @@ static found *sorted_hits(const photon_map *map, const photon_hits *hits)
     return all;
 }
 
-static void assert_same_hits(const photon_map *a, const photon_hits *hits_a,
-                             const photon_map *b, const photon_hits *hits_b)
+static void assert_same_hits(const photon_map *a, const point_hits *hits_a,
+                             const photon_map *b, const point_hits *hits_b)
 {
     g_assert_cmpuint(hits_a->n, ==, hits_b->n);
     g_autofree found *found_a = sorted_hits(a, hits_a);
@@ -192,7 +192,7 @@ static void assert_same_hits(const photon_map *a, const photon_hits *hits_a,
 /* The list and another map of the same photons, and their hits. */
 typedef struct pair {
     photon_map *list, *other;
-    photon_hits list_hits, other_hits;
+    point_hits list_hits, other_hits;
     size_t n_found;
 } pair;
 
@@ -207,7 +207,7 @@ static void compare_within(pair *maps, vec3 p, float radius, const photon_filter
 static void compare_nearest(pair *maps, vec3 p, size_t k, float radius,
                             const photon_filter *filter)
 {
-    photon_hits *a = &maps->list_hits, *b = &maps->other_hits;
+    point_hits *a = &maps->list_hits, *b = &maps->other_hits;
     g_assert_true(photon_map_nearest(maps->list, p, k, radius, filter, a));
     g_assert_true(photon_map_nearest(maps->other, p, k, radius, filter, b));
     assert_same_hits(maps->list, a, maps->other, b);
@@ -241,8 +241,8 @@ static void clear_pair(pair *maps)
 {
     photon_map_free(maps->list);
     photon_map_free(maps->other);
-    photon_hits_clear(&maps->list_hits);
-    photon_hits_clear(&maps->other_hits);
+    point_hits_clear(&maps->list_hits);
+    point_hits_clear(&maps->other_hits);
 }
 
 static void test_same_as_list(map_choice choice)
@@ -308,7 +308,7 @@ static void test_list_by_definition(void)
     enum { N = 500 };
     photon_store store = make_store(place_cube, N);
     g_autoptr(photon_map) list = build_map(MAP_LIST, &store, 0, 1);
-    photon_hits hits = {0};
+    point_hits hits = {0};
     vec3 p = vec3_make(0.4f, 0.5f, 0.6f), n = normalize3(vec3_make(1, 2, 2));
     photon_filter filter = {.n = n, .one_sided = true, .flatten = 0.5f};
     g_assert_true(photon_map_within(list, p, 0.3f, &filter, &hits));
@@ -332,7 +332,7 @@ static void test_list_by_definition(void)
     g_assert_cmpuint(hits.n, ==, 40);
     g_assert_cmpuint(nearer, <, 40);
     g_assert_cmpuint(as_near, >=, 40);
-    photon_hits_clear(&hits);
+    point_hits_clear(&hits);
 }
 
 /* Of a curve only its photons, however they lie; else only those on no curve, of surfaces
@@ -358,7 +358,7 @@ static void test_curves_by_definition(void)
                         q.home == filter.curve;
         }
         g_autoptr(photon_map) map = build_map(kinds[i / 3], &store, 0.1f, 2);
-        photon_hits hits = {0};
+        point_hits hits = {0};
         g_assert_true(photon_map_within(map, p, 0.3f, &filter, &hits));
         g_assert_cmpuint(hits.n, ==, expected);
         g_assert_cmpuint(expected, >, 5);
@@ -367,7 +367,7 @@ static void test_curves_by_definition(void)
             g_assert_cmpfloat(hits.distance2[k], <, 0.09f);
             g_assert_cmpuint(photon_map_store(map)->home[hits.index[k]], ==, i % 3);
         }
-        photon_hits_clear(&hits);
+        point_hits_clear(&hits);
     }
 }
 
@@ -378,7 +378,7 @@ static void test_faces_by_definition(void)
     photon_store store = make_store(place_cube, N);
     g_autoptr(photon_map) list = build_map(MAP_LIST, &store, 0, 1);
     const photon_store *kept = photon_map_store(list);
-    photon_hits hits = {0};
+    point_hits hits = {0};
     vec3 p = vec3_make(0.4f, 0.5f, 0.6f), n = normalize3(vec3_make(1, 2, 2));
     for (int face = -1; face <= 1; face += 2) {
         photon_filter filter = {.n = n, .flatten = 1, .face = face};
@@ -393,7 +393,7 @@ static void test_faces_by_definition(void)
         g_assert_cmpuint(hits.n, ==, expected);
         g_assert_cmpuint(expected, >, 5);
     }
-    photon_hits_clear(&hits);
+    point_hits_clear(&hits);
 }
 
 static void test_empty(void)
@@ -402,12 +402,12 @@ static void test_empty(void)
         photon_store none = {0};
         g_autoptr(photon_map) map = photon_map_build(choice, &none, 0.1f, 1, NULL);
         g_assert_nonnull(map);
-        photon_hits hits = {.n = 5};
+        point_hits hits = {.n = 5};
         g_assert_true(photon_map_within(map, vec3_make(0, 0, 0), 1, NULL, &hits));
         g_assert_cmpuint(hits.n, ==, 0);
         g_assert_true(photon_map_nearest(map, vec3_make(0, 0, 0), 9, 1, NULL, &hits));
         g_assert_cmpuint(hits.n, ==, 0);
-        photon_hits_clear(&hits);
+        point_hits_clear(&hits);
     }
 }
 
@@ -484,14 +484,14 @@ static void test_query_refused(void)
         photon_store store = make_store(place_cube, 500);
         g_autoptr(photon_map) map = build_map(choice, &store, 0.1f, 1);
         for (unsigned n = 1; n <= 2; n++) {
-            photon_hits hits = {0};
+            point_hits hits = {0};
             big_alloc_fail_at(n);
             g_assert_false(photon_map_within(map, place_same(NULL), 9, NULL, &hits));
             big_alloc_fail_at(n);
             g_assert_false(photon_map_nearest(map, place_same(NULL), 9, 9, NULL, &hits));
             g_assert_true(photon_map_within(map, place_same(NULL), 9, NULL, &hits));
             g_assert_cmpuint(hits.n, ==, 500);
-            photon_hits_clear(&hits);
+            point_hits_clear(&hits);
         }
     }
 }

@@ -65,7 +65,7 @@ static double by_sampling(const photon_spots *spots, vec3 from, int part, int n)
 
 static double by_density(const photon_spots *spots, vec3 from, int part, int n)
 {
-    photon_hits hits = {0};
+    point_hits hits = {0};
     double sum = 0.0;
     for (int i = 0; i < n; i++) {
         sampler random = sampler_make(5, (uint64_t)i);
@@ -73,7 +73,7 @@ static double by_density(const photon_spots *spots, vec3 from, int part, int n)
         if (land(from, wi, &landed) && is_counted(landed, part))
             sum += (double)photon_spots_pdf(spots, from, wi, landed, &hits);
     }
-    photon_hits_clear(&hits);
+    point_hits_clear(&hits);
     return 4.0 * G_PI * sum / n;
 }
 

@@ -91,7 +91,7 @@ static void sort_bin(size_t bin, size_t end, unsigned thread, void *data)
 
 static bool sort_allocate(sorter *s, GError **error)
 {
-    const char *what = "sorting photons";
+    const char *what = "sorting points";
     s->counts = big_alloc(s->n_chunks, sizeof *s->counts, what, error);
     s->pairs = s->counts ? big_alloc(s->n, sizeof *s->pairs, what, error) : NULL;
     s->order = s->pairs ? big_alloc(s->n, sizeof *s->order, what, error) : NULL;

@@ -8,8 +8,8 @@
  * Group g of a level has groups 16g .. 16g + 15 below it, so there are no pointers; every
  * leaf but the last is full. Four binary splits at the median (in points, rounded to
  * whole subtrees as in Jensen's left-balanced tree) along the widest axis of the points
- * make one level. Photons lie on surfaces: boxes are then flat and prune far better than
- * planes, and sixteen are tested at once. 1.6 bytes a point.
+ * make one level. Points mostly lie on surfaces: boxes are then flat and prune far better
+ * than planes, and sixteen are tested at once. 1.6 bytes a point.
  *
  * A search within a radius goes down level by level, with lists of groups in place of a
  * stack: what a group's boxes say is appended without a branch.
@@ -20,12 +20,13 @@
 #include "photon/map/kdtree.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "math/box.h"
 
 enum {
     WIDTH = 16,      /* size: of a group */
     LEAF = 16,       /* size: points of one */
-    MAX_LEVELS = 15, /* size: of 2^64 photons, to spare */
+    MAX_LEVELS = 15, /* size: of 2^64 points, to spare */
     MAX_STACK = MAX_LEVELS * (WIDTH - 1) + WIDTH,
     TASK = 1 << 15, /* size: points that one task sorts down to leaves by itself */
 };
@@ -213,16 +214,12 @@ static unsigned levels_over(size_t n)
 size_t *kdtree_sort(const point_arrays *points, unsigned threads, GError **error)
 {
     kd_builder b = {.n = points->n, .points = points, .n_levels = levels_over(points->n)};
-    if (b.n > UINT32_MAX) {
-        error_set(error, ERROR_FAILED, "a tree holds at most 2^32 points, not %zu", b.n);
-        return NULL;
-    }
-    b.items = big_alloc(b.n, sizeof *b.items, "sorting photons", error);
+    b.items = big_alloc(b.n, sizeof *b.items, "sorting points", error);
     if (!b.items)
         return NULL;
     parallel_for(b.n, 1 << 14, threads, NULL, load_items, &b);
     split_all(&b, threads);
-    b.order = big_alloc(b.n, sizeof *b.order, "sorting photons", error);
+    b.order = big_alloc(b.n, sizeof *b.order, "sorting points", error);
     if (b.order)
         parallel_for(b.n, 1 << 14, threads, NULL, store_order, &b);
     big_free(b.items);
@@ -380,16 +377,16 @@ void kdtree_nearest(const kdtree *tree, nearest_set *set)
 /* The nearest so far: hit 0 of the set. */
 static void take_nearest(nearest_set *set, size_t leaf, size_t n)
 {
-    photon_hits *hits = set->hits;
+    point_hits *hits = set->hits;
     size_t end = MIN((leaf + 1) * LEAF, n);
     for (size_t i = leaf * LEAF; i < end; i += LANES) {
         lane_floats d2;
-        unsigned bits = query_nearer(set->query, i, end, set->limit, &d2);
+        unsigned bits = query_nearer(set->query, set->points, i, end, set->limit, &d2);
         float least = bits ? least_lane(d2, bits) : INFINITY;
         for (bits &= ~bits_below(fill_lanes(least), d2); bits; bits &= bits - 1u) {
             size_t place = i + (size_t)__builtin_ctz(bits);
-            if (hits->n > 0 && !nearest_before(set->query, place, least, hits->index[0],
-                                               hits->distance2[0]))
+            if (hits->n > 0 &&
+                !nearest_before(set, place, least, hits->index[0], hits->distance2[0]))
                 continue;
             hits->n = 1;
             hits->index[0] = (uint32_t)place;
@@ -420,7 +417,7 @@ typedef struct kd_search {
     const point_arrays *points;
     vec3 p;
     float limit; /* squared */
-    photon_run_visitor visit;
+    point_run_visitor visit;
     void *data;
 } kd_search;
 
@@ -431,13 +428,13 @@ enum { OPENED = 16 };
 static __attribute__((noinline)) void visit_leaves(const kd_search *s,
                                                    const uint32_t *leaves, size_t n)
 {
-    photon_run runs[OPENED * WIDTH];
+    point_run runs[OPENED * WIDTH];
     for (size_t i = 0; i < n; i++) {
         size_t begin = (size_t)leaves[i] * LEAF;
         __builtin_prefetch(s->points->x + begin);
         __builtin_prefetch(s->points->y + begin);
         __builtin_prefetch(s->points->z + begin);
-        runs[i] = (photon_run){begin, MIN(begin + LEAF, s->tree->n)};
+        runs[i] = (point_run){begin, MIN(begin + LEAF, s->tree->n)};
     }
     s->visit(runs, n, s->data);
 }
@@ -468,7 +465,7 @@ static void visit_nodes(const kd_search *s, unsigned level, const uint32_t *node
 }
 
 void kdtree_runs(const kdtree *tree, const point_arrays *points, vec3 p, float radius,
-                 photon_run_visitor visit, void *data)
+                 point_run_visitor visit, void *data)
 {
     const kd_search s = {tree, points, p, radius * radius, visit, data};
     visit_nodes(&s, tree->n_levels, (const uint32_t[]){0}, 1);

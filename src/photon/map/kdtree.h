@@ -1,5 +1,5 @@
 /*
- * The kd-tree over positions, of photons or of whatever else is kept by its place.
+ * The kd-tree over positions.
  *
  *   order = kdtree_sort(points) ─► the owner puts its arrays in this order
  *                               ─► kdtree_build(sorted points) ─► searches
@@ -12,8 +12,9 @@
 
 typedef struct kdtree kdtree;
 
-/** @brief The order that a tree wants points in, owned by the caller (big_free); NULL
- * when memory is refused. It does not depend on the number of threads. */
+/** @brief The order that a tree wants points in, fewer than 2^32, owned by the caller
+ * (big_free); NULL when memory is refused. It does not depend on the number of threads.
+ */
 size_t *kdtree_sort(const point_arrays *points, unsigned threads, GError **error);
 /** @brief Over points in this order: at least one. They are not kept. */
 kdtree *kdtree_build(const point_arrays *sorted, unsigned threads, GError **error);
@@ -26,6 +27,6 @@ void kdtree_nearest(const kdtree *tree, nearest_set *set);
  * of one. Much faster than kdtree_nearest. */
 void kdtree_nearest_one(const kdtree *tree, nearest_set *set);
 /** @brief Visits runs that hold every point within radius of p, as
- * photon_map_kind.runs. */
+ * point_index_kind.runs. */
 void kdtree_runs(const kdtree *tree, const point_arrays *points, vec3 p, float radius,
-                 photon_run_visitor visit, void *data);
+                 point_run_visitor visit, void *data);

@@ -3,7 +3,7 @@
  * where the processor has AVX-512. What is computed in a lane does not depend on how many
  * there are.
  *
- * What decides whether a photon is found (distances, sides) is computed with fused() and
+ * What decides whether a point is found (distances, sides) is computed with fused() and
  * fused_lanes(), spelled out operation by operation: left to itself a compiler may
  * contract a sum of products one way in the scalar twin and another in the vector, and
  * the maps would no longer agree to the bit.

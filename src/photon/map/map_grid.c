@@ -1,21 +1,21 @@
 /*
- * The grid: photons sorted by cell, so that a query reads a few runs of memory.
+ * The grid: points sorted by cell, so that a query reads a few runs of memory.
  *
  *   start[slot] ──► x[] y[] z[]   one run per cell, x fastest: the three cells of a row
  *                   wi[] flux[]   that a query meets are one run
  *
- * Workload: built once per pass from 10⁵..10⁸ photons, queried at every camera hit with
+ * Workload: built once per pass from 10⁵..10⁸ points, queried at every camera hit with
  * the radius it was built for. Cells are as wide as the radius, so a query meets 3×3×3
- * cells, nine runs, most of them empty since photons lie on surfaces; or up to four times
- * as wide where that makes the grid small enough: then few photons lie within the radius,
+ * cells, nine runs, most of them empty since points lie on surfaces; or up to four times
+ * as wide where that makes the grid small enough: then few points lie within the radius,
  * and looking at more is cheaper than hashing (8 within it: 73 ns in place of 259). With
- * no radius given, cells are sized so that there is one for every four photons.
+ * no radius given, cells are sized so that there is one for every four points.
  *
- * The grid covers the photons' bounds densely while it has at most one cell a photon.
+ * The grid covers the points' bounds densely while it has at most one cell a point.
  * Beyond that (a light in a landscape) rows of cells are hashed into that many slots: row
  * (y, z) begins at a hashed slot and x counts on from there, wrapping round. Photons of
  * far cells that share a slot fail the distance test; a query's rows that overlap are
- * merged, so that it meets no photon twice.
+ * merged, so that it meets none twice.
  *
  * Counting sort: O(n), no comparisons. Ma & McCool, "Low Latency Photon Mapping Using
  * Block Hashing", 2002.
@@ -23,23 +23,23 @@
 #include "base/memory.h"
 #include "math/sampler.h"
 #include "photon/map/cell_sort.h"
-#include "photon/map/map_kind.h"
+#include "photon/map/index_kind.h"
 #include "photon/map/nearest.h"
 
 enum {
     MAX_CELLS_AN_AXIS = 1 << 20, /* size: their numbers are exact in floats */
     MIN_SLOTS = 1 << 12,         /* size: of the smallest table */
-    MAX_HASHED_ROWS = 256,       /* size: a query that meets more looks at all photons */
+    MAX_HASHED_ROWS = 256,       /* size: a query that meets more looks at all points */
 };
 
 typedef struct grid {
-    vec3 low, high; /* of the photons */
+    vec3 low, high; /* of the points */
     float cell;     /* width, m */
     float inv_cell;
     int32_t count[3]; /* cells an axis */
     bool hashed;
     size_t n_slots;  /* a power of two if hashed */
-    uint32_t *start; /* photons of slot s: start[s] .. start[s + 1] - 1 */
+    uint32_t *start; /* points of slot s: start[s] .. start[s + 1] - 1 */
 } grid;
 
 /* Cells low..high an axis, inclusive. */
@@ -47,7 +47,7 @@ typedef struct cell_range {
     int32_t low[3], high[3];
 } cell_range;
 
-/* Monotone in x, and clamped: no photon is beyond the outermost cells. */
+/* Monotone in x, and clamped: no point is beyond the outermost cells. */
 static int32_t cell_index(const grid *g, int axis, float x)
 {
     float t = (x - g->low[axis]) * g->inv_cell;
@@ -62,19 +62,20 @@ static size_t row_slot(const grid *g, int32_t y, int32_t z)
     return ((size_t)z * (size_t)g->count[1] + (size_t)y) * (size_t)g->count[0];
 }
 
-static size_t slot_of_photon(size_t i, const void *data)
+static size_t slot_of_point(size_t i, const void *data)
 {
-    const photon_map *map = data;
-    const grid *g = map->index;
-    size_t x = (size_t)cell_index(g, 0, map->store.x[i]);
-    int32_t y = cell_index(g, 1, map->store.y[i]), z = cell_index(g, 2, map->store.z[i]);
+    const point_index *index = data;
+    const grid *g = index->structure;
+    size_t x = (size_t)cell_index(g, 0, index->points.x[i]);
+    int32_t y = cell_index(g, 1, index->points.y[i]),
+            z = cell_index(g, 2, index->points.z[i]);
     size_t slot = row_slot(g, y, z) + x;
     return g->hashed ? slot & (g->n_slots - 1) : slot;
 }
 
 /* ---- Building ---- */
 
-static void find_bounds(grid *g, const photon_store *s)
+static void find_bounds(grid *g, const point_arrays *s)
 {
     g->low = vec3_make(INFINITY, INFINITY, INFINITY);
     g->high = -g->low;
@@ -111,7 +112,7 @@ static double choose_cell(grid *g, float radius, double most)
     return count_cells(g, radius);
 }
 
-/* The same when no radius is known: a cell for every four photons. */
+/* The same when no radius is known: a cell for every four points. */
 static double choose_cell_by_density(grid *g, float extent, size_t n)
 {
     float cell = extent;
@@ -141,39 +142,37 @@ static void shape_grid(grid *g, size_t n, float radius)
     g->n_slots = g->hashed ? power_of_two_at_most(most) : (size_t)cells;
 }
 
-static void grid_free(photon_map *map)
+static void grid_free(point_index *index)
 {
-    grid *g = map->index;
+    grid *g = index->structure;
     big_free(g->start);
     big_free(g);
 }
 
-static bool grid_build(photon_map *map, float radius, unsigned threads, GError **error)
+static size_t *grid_sort(point_index *index, float radius, unsigned threads,
+                         GError **error)
 {
-    grid *g = map->index = big_alloc(1, sizeof *g, "photon grid", error);
+    grid *g = index->structure = big_alloc(1, sizeof *g, "grid of points", error);
     if (!g)
-        return false;
-    find_bounds(g, &map->store);
-    shape_grid(g, map->store.n, radius);
-    g->start = big_alloc(g->n_slots + 1, sizeof *g->start, "photon grid", error);
+        return NULL;
+    find_bounds(g, &index->points);
+    shape_grid(g, index->points.n, radius);
+    g->start = big_alloc(g->n_slots + 1, sizeof *g->start, "grid of points", error);
     if (!g->start)
-        return false;
-    size_t *order = cell_sort(map->store.n, g->n_slots, slot_of_photon, map, g->start,
-                              threads, error);
-    bool ok = order && photon_store_permute(&map->store, order, threads, error);
-    big_free(order);
-    return ok;
+        return NULL;
+    return cell_sort(index->points.n, g->n_slots, slot_of_point, index, g->start, threads,
+                     error);
 }
 
-static size_t grid_bytes(const photon_map *map)
+static size_t grid_bytes(const point_index *index)
 {
-    const grid *g = map->index;
+    const grid *g = index->structure;
     return sizeof *g + (g->n_slots + 1) * sizeof *g->start;
 }
 
 /* ---- Runs ---- */
 
-/* The cells that [p - r, p + r] meets; false if it misses the photons' bounds. */
+/* The cells that [p - r, p + r] meets; false if it misses the points' bounds. */
 static bool cells_within(const grid *g, vec3 p, float radius, cell_range *range)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -247,16 +246,15 @@ static void hashed_runs(const grid *g, const cell_range *range, run_batch *batch
     }
 }
 
-static void grid_runs(const photon_map *map, vec3 p, float radius,
-                      photon_run_visitor visit, void *data)
+static void grid_runs(const point_index *index, vec3 p, float radius,
+                      point_run_visitor visit, void *data)
 {
-    const grid *g = map->index;
+    const grid *g = index->structure;
     cell_range range;
     if (!cells_within(g, p, radius, &range))
         return;
-    const point_arrays points = photon_points(&map->store);
     run_batch batch;
-    run_batch_begin(&batch, &points, visit, data);
+    run_batch_begin(&batch, &index->points, visit, data);
     if (g->hashed)
         hashed_runs(g, &range, &batch);
     else
@@ -266,34 +264,34 @@ static void grid_runs(const photon_map *map, vec3 p, float radius,
 
 /* ---- Nearest ---- */
 
-static void count_runs(const photon_run *runs, size_t n, void *data)
+static void count_runs(const point_run *runs, size_t n, void *data)
 {
     for (size_t i = 0; i < n; i++)
         *(size_t *)data += runs[i].end - runs[i].begin;
 }
 
-static void nearest_runs(const photon_run *runs, size_t n, void *data)
+static void nearest_runs(const point_run *runs, size_t n, void *data)
 {
     for (size_t i = 0; i < n; i++)
         nearest_add_run(data, runs[i].begin, runs[i].end);
 }
 
-/* The radius beyond which there is no photon. */
+/* The radius beyond which there is no point. */
 static float radius_of_all(const grid *g, vec3 p)
 {
     vec3 reach = max3(abs3(p - g->low), abs3(p - g->high));
     return 1.001f * length3(reach);
 }
 
-/* A first radius, from the number of photons in the cells around p, taken to lie on a
+/* A first radius, from the number of points in the cells around p, taken to lie on a
  * surface: a little more than k should be in it. */
-static float guess_radius(const photon_map *map, vec3 p, size_t k, float largest)
+static float guess_radius(const point_index *index, vec3 p, size_t k, float largest)
 {
-    const grid *g = map->index;
+    const grid *g = index->structure;
     float radius = 0.5f * g->cell;
     size_t found = 0;
     for (; radius < largest; radius *= 2.0f) {
-        grid_runs(map, p, radius, count_runs, &found);
+        grid_runs(index, p, radius, count_runs, &found);
         if (found > 0)
             break;
     }
@@ -309,21 +307,21 @@ static float grow_radius(float radius, size_t n, size_t k)
     return radius * clampf(sqrtf(wanted), 1.25f, 3.0f);
 }
 
-/* Searches shells growing outwards until k photons are within the radius searched. */
-static bool grid_nearest(const photon_map *map, const point_query *query, size_t k,
-                         float radius, photon_hits *hits)
+/* Searches shells growing outwards until k points are within the radius searched. */
+static bool grid_nearest(const point_index *index, const point_query *query, size_t k,
+                         float radius, point_hits *hits)
 {
-    const grid *g = map->index;
+    const grid *g = index->structure;
     nearest_set set;
-    if (!nearest_begin(&set, query, k, radius, hits))
+    if (!nearest_begin(&set, &index->points, query, k, radius, hits))
         return false;
     float all = radius_of_all(g, query->p);
     float largest = all < radius ? all : radius;
-    float r = guess_radius(map, query->p, k, largest);
+    float r = guess_radius(index, query->p, k, largest);
     for (;; r = grow_radius(r, hits->n, k)) {
         bool last = !(r < largest);
         nearest_restart(&set, last ? radius : r);
-        grid_runs(map, query->p, last ? radius : r, nearest_runs, &set);
+        grid_runs(index, query->p, last ? radius : r, nearest_runs, &set);
         if (last || hits->n >= k)
             break;
     }
@@ -331,12 +329,11 @@ static bool grid_nearest(const photon_map *map, const point_query *query, size_t
     return true;
 }
 
-const photon_map_kind photon_map_grid = {
+const point_index_kind point_index_grid = {
     .name = "grid",
-    .build = grid_build,
+    .sort = grid_sort,
     .free = grid_free,
     .bytes = grid_bytes,
     .runs = grid_runs,
-    .within = photon_map_within_runs,
     .nearest = grid_nearest,
 };

@@ -1,58 +1,57 @@
 /*
- * Photons in a kd-tree (kdtree.h).
+ * The kd-tree (kdtree.h) as a kind of point index.
  */
-#include "base/memory.h"
+#include "photon/map/index_kind.h"
 #include "photon/map/kdtree.h"
-#include "photon/map/map_kind.h"
 
-static void map_kdtree_free(photon_map *map)
-{
-    kdtree_free(map->index);
-}
-
-static bool map_kdtree_build(photon_map *map, float radius, unsigned threads,
-                             GError **error)
+static size_t *tree_sort(point_index *index, float radius, unsigned threads,
+                         GError **error)
 {
     (void)radius;
-    point_arrays points = photon_points(&map->store);
-    size_t *order = kdtree_sort(&points, threads, error);
-    bool sorted = order && photon_store_permute(&map->store, order, threads, error);
-    big_free(order);
-    if (!sorted)
-        return false;
-    points = photon_points(&map->store);
-    map->index = kdtree_build(&points, threads, error);
-    return map->index != NULL;
+    return kdtree_sort(&index->points, threads, error);
 }
 
-static size_t map_kdtree_bytes(const photon_map *map)
+static bool tree_build(point_index *index, unsigned threads, GError **error)
 {
-    return kdtree_bytes(map->index);
+    index->structure = kdtree_build(&index->points, threads, error);
+    return index->structure != NULL;
 }
 
-static bool map_kdtree_nearest(const photon_map *map, const point_query *query, size_t k,
-                               float radius, photon_hits *hits)
+static void tree_free(point_index *index)
+{
+    kdtree_free(index->structure);
+}
+
+static size_t tree_bytes(const point_index *index)
+{
+    return kdtree_bytes(index->structure);
+}
+
+static void tree_runs(const point_index *index, vec3 p, float radius,
+                      point_run_visitor visit, void *data)
+{
+    kdtree_runs(index->structure, &index->points, p, radius, visit, data);
+}
+
+static bool tree_nearest(const point_index *index, const point_query *query, size_t k,
+                         float radius, point_hits *hits)
 {
     nearest_set set;
-    if (!nearest_begin(&set, query, k, radius, hits))
+    if (!nearest_begin(&set, &index->points, query, k, radius, hits))
         return false;
-    kdtree_nearest(map->index, &set);
+    if (k == 1 && !query_selects(query))
+        kdtree_nearest_one(index->structure, &set);
+    else
+        kdtree_nearest(index->structure, &set);
     return true;
 }
 
-static void map_kdtree_runs(const photon_map *map, vec3 p, float radius,
-                            photon_run_visitor visit, void *data)
-{
-    const point_arrays points = photon_points(&map->store);
-    kdtree_runs(map->index, &points, p, radius, visit, data);
-}
-
-const photon_map_kind photon_map_kdtree = {
+const point_index_kind point_index_kdtree = {
     .name = "kdtree",
-    .build = map_kdtree_build,
-    .free = map_kdtree_free,
-    .bytes = map_kdtree_bytes,
-    .runs = map_kdtree_runs,
-    .within = photon_map_within_runs,
-    .nearest = map_kdtree_nearest,
+    .sort = tree_sort,
+    .build = tree_build,
+    .free = tree_free,
+    .bytes = tree_bytes,
+    .runs = tree_runs,
+    .nearest = tree_nearest,
 };

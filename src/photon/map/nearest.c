@@ -10,46 +10,32 @@ static int compare(float a, float b)
     return (a > b) - (a < b);
 }
 
-static int compare_photons(const photon_store *s, size_t a, size_t b)
+/* Of those at one distance. */
+static int compare_ties(const nearest_set *set, size_t a, size_t b)
 {
-    int order = compare(s->x[a], s->x[b]);
-    order = order ? order : compare(s->y[a], s->y[b]);
-    order = order ? order : compare(s->z[a], s->z[b]);
-    order = order ? order : (s->wi[a] > s->wi[b]) - (s->wi[a] < s->wi[b]);
-    if (s->numbered)
-        return order ? order
-                     : (s->number[a] > s->number[b]) - (s->number[a] < s->number[b]);
-    for (int lane = 0; lane < N_WAVELENGTHS && !order; lane++)
-        order = compare(s->flux[a][lane], s->flux[b][lane]);
-    return order;
+    const point_arrays *points = set->points;
+    const point_query *query = set->query;
+    int order = compare(points->x[a], points->x[b]);
+    order = order ? order : compare(points->y[a], points->y[b]);
+    order = order ? order : compare(points->z[a], points->z[b]);
+    if (!order && query->rules && query->rules->compare)
+        return query->rules->compare(query->data, a, b);
+    return order ? order : (a > b) - (a < b);
 }
 
-/* Of those at one distance: photons by all that they are, other points by place and
-   number. */
-static int compare_ties(const point_query *query, size_t a, size_t b)
-{
-    if (query->store)
-        return compare_photons(query->store, a, b);
-    int order = compare(query->x[a], query->x[b]);
-    order = order ? order : compare(query->y[a], query->y[b]);
-    order = order ? order : compare(query->z[a], query->z[b]);
-    size_t i = query->number[a], j = query->number[b];
-    return order ? order : (i > j) - (i < j);
-}
-
-bool nearest_before(const point_query *query, size_t a, float da, size_t b, float db)
+bool nearest_before(const nearest_set *set, size_t a, float da, size_t b, float db)
 {
     int order = compare(da, db);
-    return (order ? order : compare_ties(query, a, b)) < 0;
+    return (order ? order : compare_ties(set, a, b)) < 0;
 }
 
-bool nearest_begin(nearest_set *set, const point_query *query, size_t k, float radius,
-                   photon_hits *hits)
+bool nearest_begin(nearest_set *set, const point_arrays *points, const point_query *query,
+                   size_t k, float radius, point_hits *hits)
 {
     size_t full = 2 * k + LANES;
-    *set = (nearest_set){.query = query, .hits = hits, .k = k, .full = full};
+    *set = (nearest_set){points, query, hits, .k = k, .full = full};
     /* Above the buffer lies room for the copy that quickselect works on. */
-    bool ok = photon_hits_reserve(hits, 2 * (full + LANES));
+    bool ok = point_hits_reserve(hits, 2 * (full + LANES));
     nearest_restart(set, radius);
     return ok;
 }
@@ -102,14 +88,14 @@ static float select_value(float *a, size_t n, size_t rank)
 }
 
 /* Hoare's partition of index[low, high); returns where the upper part begins. */
-static size_t partition_ties(const point_query *query, uint32_t *index, size_t low,
+static size_t partition_ties(const nearest_set *set, uint32_t *index, size_t low,
                              size_t high)
 {
     size_t pivot = index[low + (high - low - 1) / 2], i = low, j = high - 1;
     for (;; i++, j--) {
-        while (compare_ties(query, index[i], pivot) < 0)
+        while (compare_ties(set, index[i], pivot) < 0)
             i++;
-        while (compare_ties(query, index[j], pivot) > 0)
+        while (compare_ties(set, index[j], pivot) > 0)
             j--;
         if (i >= j)
             return j + 1;
@@ -120,11 +106,11 @@ static size_t partition_ties(const point_query *query, uint32_t *index, size_t l
 }
 
 /* Moves the k first of index[0, n) to its front. */
-static void select_ties(const point_query *query, uint32_t *index, size_t n, size_t k)
+static void select_ties(const nearest_set *set, uint32_t *index, size_t n, size_t k)
 {
     size_t low = 0, high = n;
     while (high - low > 1 && k > low && k < high) {
-        size_t split = partition_ties(query, index, low, high);
+        size_t split = partition_ties(set, index, low, high);
         if (k < split)
             high = split;
         else
@@ -134,7 +120,7 @@ static void select_ties(const point_query *query, uint32_t *index, size_t n, siz
 
 /* Keeps hits nearer than limit, in their order; those that tie with it follow them.
  * Returns how many are nearer. */
-static size_t keep_nearer(photon_hits *hits, float limit, uint32_t *ties)
+static size_t keep_nearer(point_hits *hits, float limit, uint32_t *ties)
 {
     size_t nearer = 0, tied = 0;
     for (size_t i = 0; i < hits->n; i++) {
@@ -152,7 +138,7 @@ static size_t keep_nearer(photon_hits *hits, float limit, uint32_t *ties)
 
 void nearest_cut(nearest_set *set)
 {
-    photon_hits *hits = set->hits;
+    point_hits *hits = set->hits;
     if (hits->n < set->k)
         return;
     size_t room = set->full + LANES;
@@ -163,7 +149,7 @@ void nearest_cut(nearest_set *set)
     size_t nearer = keep_nearer(hits, kth, ties);
     size_t wanted = set->k - nearer;
     if (hits->n > set->k)
-        select_ties(set->query, ties, hits->n - nearer, wanted);
+        select_ties(set, ties, hits->n - nearer, wanted);
     for (size_t i = 0; i < wanted; i++) {
         hits->index[nearer + i] = ties[i];
         hits->distance2[nearer + i] = kth;
@@ -174,10 +160,11 @@ void nearest_cut(nearest_set *set)
 
 void nearest_add_run(nearest_set *set, size_t begin, size_t end)
 {
-    photon_hits *hits = set->hits;
+    point_hits *hits = set->hits;
     for (size_t i = begin; i < end; i += LANES) {
         lane_floats distance2;
-        unsigned bits = query_block(set->query, i, end, set->limit, &distance2);
+        unsigned bits =
+            query_block(set->query, set->points, i, end, set->limit, &distance2);
         if (!bits)
             continue;
         hits->n += pack_lanes(distance2, bits, (uint32_t)i, hits->distance2 + hits->n,

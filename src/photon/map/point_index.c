@@ -1,157 +1,88 @@
-#include "photon/map/point_index.h"
-
+/*
+ * The point index: the front door.
+ */
 #include "base/memory.h"
-#include "photon/map/kdtree.h"
+#include "photon/map/index_kind.h"
 
-/* size: room after the last point, so that eight can be loaded from any. */
-enum { PADDING = LANES };
-
-struct point_index {
-    size_t n;
-    float *x, *y, *z; /* sorted */
-    uint32_t *normal; /* packed, in that order; NULL: there are none */
-    size_t *number;   /* the owner's, in that order */
-    kdtree *tree;     /* NULL: there are no points */
+static const point_index_kind *const kinds[] = {
+#define MAP(choice, word) [MAP_##choice] = &point_index_##word,
+#include "settings/map.def"
+#undef MAP
 };
 
-static point_arrays arrays_of(const point_index *index)
+/* @return false when memory is refused */
+static bool sort_points(point_index *index, point_arrays *points, float radius,
+                        unsigned threads, size_t **order, GError **error)
 {
-    return (point_arrays){index->n, index->x, index->y, index->z};
+    if (!index->kind->sort)
+        return true;
+    *order = index->kind->sort(index, radius, threads, error);
+    bool ok = *order && point_arrays_permute(points, *order, threads, error);
+    if (!ok)
+        g_clear_pointer(order, big_free);
+    index->points = *points;
+    return ok;
 }
 
-static bool make_room(point_index *index, bool with_normals, GError **error)
-{
-    if (with_normals)
-        index->normal = big_alloc(index->n + PADDING, sizeof *index->normal,
-                                  "points in space", error);
-    if (with_normals && !index->normal)
-        return false;
-    float **arrays[] = {&index->x, &index->y, &index->z};
-    for (int axis = 0; axis < 3; axis++) {
-        *arrays[axis] =
-            big_alloc(index->n + PADDING, sizeof(float), "points in space", error);
-        if (!*arrays[axis])
-            return false;
-    }
-    return true;
-}
-
-static void place_points(const point_index *index, const vec3 *points)
-{
-    for (size_t i = 0; i < index->n; i++) {
-        vec3 p = points[index->number ? index->number[i] : i];
-        index->x[i] = p[0];
-        index->y[i] = p[1];
-        index->z[i] = p[2];
-    }
-}
-
-static bool sort_points(point_index *index, const vec3 *points, unsigned threads,
-                        GError **error)
-{
-    const point_arrays arrays = arrays_of(index);
-    place_points(index, points);
-    index->number = kdtree_sort(&arrays, threads, error);
-    if (!index->number)
-        return false;
-    place_points(index, points);
-    index->tree = kdtree_build(&arrays, threads, error);
-    return index->tree != NULL;
-}
-
-point_index *point_index_build(const vec3 *points, const uint32_t *normals, size_t n,
-                               unsigned threads, GError **error)
+point_index *point_index_build(map_choice choice, point_arrays *points, float radius,
+                               unsigned threads, size_t **order, GError **error)
 {
     g_autoptr(point_index) index = g_new0(point_index, 1);
-    index->n = n;
-    if (n > 0 && (!make_room(index, normals != NULL, error) ||
-                  !sort_points(index, points, threads, error)))
+    float usable = radius > 0.0f && isfinite(radius) ? radius : 0.0f;
+    index->kind = kinds[choice];
+    index->points = *points;
+    *order = NULL;
+    if (points->n > UINT32_MAX) {
+        error_set(error, ERROR_FAILED, "an index holds at most 2^32 points, not %zu",
+                  points->n);
         return NULL;
-    for (size_t i = 0; i < n && normals; i++)
-        index->normal[i] = normals[index->number[i]];
-    return g_steal_pointer(&index);
+    }
+    if (points->n == 0)
+        return g_steal_pointer(&index);
+    if (!sort_points(index, points, usable, threads, order, error))
+        return NULL;
+    if (!index->kind->build || index->kind->build(index, threads, error))
+        return g_steal_pointer(&index);
+    g_clear_pointer(order, big_free);
+    return NULL;
 }
 
 void point_index_free(point_index *index)
 {
-    if (!index)
-        return;
-    kdtree_free(index->tree);
-    big_free(index->x);
-    big_free(index->y);
-    big_free(index->z);
-    big_free(index->normal);
-    big_free(index->number);
+    if (index && index->structure)
+        index->kind->free(index);
     g_free(index);
 }
 
-size_t point_index_number(const point_index *index, size_t place)
+size_t point_index_bytes(const point_index *index)
 {
-    return index->number[place];
+    return sizeof *index + (index->structure ? index->kind->bytes(index) : 0);
 }
 
-vec3 point_index_position(const point_index *index, size_t place)
+void point_index_runs(const point_index *index, vec3 p, float radius,
+                      point_run_visitor visit, void *data)
 {
-    return vec3_make(index->x[place], index->y[place], index->z[place]);
+    if (index->points.n > 0)
+        index->kind->runs(index, p, radius, visit, data);
 }
 
-static point_query query_at(const point_index *index, vec3 p)
-{
-    return (point_query){
-        .number = index->number, .x = index->x, .y = index->y, .z = index->z, .p = p};
-}
-
-/* From places in the sorted arrays to the owner's numbers. */
-static void name_hits(const point_index *index, photon_hits *hits)
-{
-    for (size_t i = 0; i < hits->n; i++)
-        hits->index[i] = (uint32_t)index->number[hits->index[i]];
-}
-
-bool point_index_within(const point_index *index, vec3 p, float radius, photon_hits *hits)
+bool point_index_within(const point_index *index, const point_query *query, float radius,
+                        point_hits *hits)
 {
     hits->n = 0;
-    if (!index->tree)
+    if (index->points.n == 0)
         return true;
-    const point_arrays points = arrays_of(index);
-    const point_query query = query_at(index, p);
-    within_search search = {&query, hits, radius * radius, false};
-    kdtree_runs(index->tree, &points, p, radius, within_runs, &search);
-    name_hits(index, hits);
+    if (index->kind->within)
+        return index->kind->within(index, query, radius, hits);
+    within_search search = {&index->points, query, hits, radius * radius, false};
+    index->kind->runs(index, query->p, radius, within_runs, &search);
     return !search.refused;
 }
 
-static bool find_nearest(const point_index *index, const point_query *query, size_t k,
-                         float radius, photon_hits *hits)
+bool point_index_nearest(const point_index *index, const point_query *query, size_t k,
+                         float radius, point_hits *hits)
 {
     hits->n = 0;
-    size_t wanted = MIN(k, index->n);
-    nearest_set set;
-    if (wanted == 0)
-        return true;
-    if (!nearest_begin(&set, query, wanted, radius, hits))
-        return false;
-    if (wanted == 1 && !query_selects(query))
-        kdtree_nearest_one(index->tree, &set);
-    else
-        kdtree_nearest(index->tree, &set);
-    name_hits(index, hits);
-    return true;
-}
-
-bool point_index_nearest(const point_index *index, vec3 p, size_t k, float radius,
-                         photon_hits *hits)
-{
-    const point_query query = query_at(index, p);
-    return find_nearest(index, &query, k, radius, hits);
-}
-
-bool point_index_nearest_facing(const point_index *index, vec3 p, vec3 n, size_t k,
-                                float radius, photon_hits *hits)
-{
-    point_query query = query_at(index, p);
-    query.wi = index->normal;
-    query.n = n;
-    query.one_sided = true;
-    return find_nearest(index, &query, k, radius, hits);
+    size_t wanted = MIN(k, index->points.n);
+    return wanted == 0 || index->kind->nearest(index, query, wanted, radius, hits);
 }

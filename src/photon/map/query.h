@@ -1,65 +1,57 @@
 /*
- * The query: what each photon is tested with, prepared once a search. The scalar form
- * is what "found" means; the form for a lane each gives the same bits.
+ * The query: where one asks, how distance is measured, and which points count. The scalar
+ * form is what "found" means; the form for a lane each gives the same bits.
  *
  *   distance2   (dx² + dy²) + dz², or (d·n / flatten)² where that is larger
- *   accepted    where photons keep curves: it is on the same one, or on none
- *               where photons keep normals: the photon's surface is not turned by more
- *               than 60 degrees, so that walls at a corner are told apart
- *               one-sided: the photon's direction lies on the side of n
- *               of one face: its direction and its flag say that its own surface lies
- *               alike, or it lies in the plane, |d·n|² < 1e-5 |d|² (so that triangles of
- *               a sheet may be wound as they like)
  *
- * Rounding is monotone at each step, so |dx| < r holds in floats for every photon within
+ * What lies at the points is their owner's, and so is the answer whether one counts: the
+ * index hands it places in the sorted arrays.
+ *
+ * Rounding is monotone at each step, so |dx| < r holds in floats for every point within
  * r: a structure that looks at all x in [p - r, p + r] misses none.
  */
 #pragma once
 
-#include "photon/direction.h"
-#include "photon/map/map.h"
+#include "math/vec.h"
+#include "photon/map/points.h"
+
+/** @brief What an owner of points says of those at places of the sorted arrays. */
+typedef struct point_rules {
+    /** Whether the point counts. NULL: all do. */
+    bool (*accepts)(const void *data, size_t place);
+    /** The same of the points first .. first + LANES - 1: those of bits that count. */
+    unsigned (*accepted)(const void *data, size_t first, unsigned bits);
+    /** Order of two points that lie at one place in space, as of qsort. NULL: that of the
+     * sorted arrays. */
+    int (*compare)(const void *data, size_t a, size_t b);
+} point_rules;
 
 typedef struct point_query {
-    const photon_store *store; /* NULL: of points that are no photons (point_index.h) */
-    const size_t *number;      /* of those, their owner's */
-    const float *x, *y, *z;    /* of the store or the points */
-    const uint32_t *wi; /* what one_sided and face look at: of points their normals */
-    const uint32_t *normal, *curve; /* NULL if they keep none */
     vec3 p;
-    vec3 n;
-    bool one_sided, flat;
-    int face;
-    uint32_t on_curve;
-    float inv_flatten;
+    vec3 n;                   /**< unit; of flat ones */
+    bool flat;                /**< distance is the larger of |d| and |d·n| inv_flatten */
+    float inv_flatten;        /**< 1/flatten */
+    const point_rules *rules; /**< NULL: every point counts */
+    const void *data;         /**< handed to the rules */
 } point_query;
 
-static inline point_query point_query_of(const photon_store *store, vec3 p,
-                                         const photon_filter *filter)
+/** @brief True if some points may not count. */
+static inline bool query_selects(const point_query *query)
 {
-    point_query query = {.store = store, .p = p};
-    query.x = store->x;
-    query.y = store->y;
-    query.z = store->z;
-    query.wi = store->wi;
-    if (filter) {
-        bool on_curve = filter->curve != 0;
-        query.normal = on_curve ? NULL : store->normal;
-        query.curve = store->home;
-        query.on_curve = filter->curve;
-        query.n = filter->n;
-        query.one_sided = filter->one_sided;
-        query.face = on_curve ? 0 : filter->face;
-        query.flat = !on_curve && filter->flatten < 1.0f;
-        query.inv_flatten = 1.0f / maxf(filter->flatten, 1e-3f);
-    }
-    return query;
+    return query->rules && query->rules->accepts;
 }
 
-/** @brief Squared distance to photon i. */
-static inline float query_distance2(const point_query *query, size_t i)
+static inline bool query_accepts(const point_query *query, size_t place)
 {
-    const photon_store *s = query->store;
-    float x = s->x[i] - query->p[0], y = s->y[i] - query->p[1], z = s->z[i] - query->p[2];
+    return !query_selects(query) || query->rules->accepts(query->data, place);
+}
+
+/** @brief Squared distance to point i. */
+static inline float query_distance2(const point_query *query, const point_arrays *points,
+                                    size_t i)
+{
+    float x = points->x[i] - query->p[0], y = points->y[i] - query->p[1],
+          z = points->z[i] - query->p[2];
     float d2 = fused(z, z, fused(y, y, x * x));
     if (!query->flat)
         return d2;
@@ -69,51 +61,13 @@ static inline float query_distance2(const point_query *query, size_t i)
     return height2 > d2 ? height2 : d2;
 }
 
-/** @brief Squared sine of the elevation over the plane within which any face is the same.
- */
-#define SAME_PLANE 1e-5f
-
-/** @brief True if photon i lies on the query's face, or in its plane. */
-static inline bool query_is_face(const point_query *query, size_t i)
+/** @brief query_distance2 of points i .. i + LANES - 1. */
+static inline lane_floats query_distance2_lanes(const point_query *query,
+                                                const point_arrays *points, size_t i)
 {
-    const photon_store *s = query->store;
-    bool above = direction_dot(query->wi[i], query->n) > 0.0f;
-    bool behind = direction_flags(query->wi[i]) & PHOTON_BEHIND;
-    if (above == (behind == (query->face < 0)))
-        return true;
-    float x = s->x[i] - query->p[0], y = s->y[i] - query->p[1], z = s->z[i] - query->p[2];
-    float dot = fused(z, query->n[2], fused(y, query->n[1], x * query->n[0]));
-    return dot * dot <= SAME_PLANE * fused(z, z, fused(y, y, x * x));
-}
-
-/** @brief Squared cosine of the angle from which on surfaces are not the same. */
-#define SAME_SURFACE 0.25f
-
-/** @brief True if the surface of photon i is not turned away from the query's. */
-static inline bool query_is_alike(const point_query *query, size_t i)
-{
-    vec3 o = direction_octahedron(query->normal[i]);
-    float dot = direction_dot(query->normal[i], query->n);
-    return dot * dot > SAME_SURFACE * fused(o[2], o[2], fused(o[1], o[1], o[0] * o[0]));
-}
-
-static inline bool query_accepts(const point_query *query, size_t i)
-{
-    if (query->curve && query->curve[i] != query->on_curve)
-        return false;
-    if (query->normal && !query_is_alike(query, i))
-        return false;
-    if (query->face && !query_is_face(query, i))
-        return false;
-    return !query->one_sided || direction_dot(query->wi[i], query->n) > 0.0f;
-}
-
-/** @brief query_distance2 of photons i .. i + LANES - 1. */
-static inline lane_floats query_distance2_lanes(const point_query *query, size_t i)
-{
-    lane_floats x = load_lanes(query->x + i) - query->p[0],
-                y = load_lanes(query->y + i) - query->p[1],
-                z = load_lanes(query->z + i) - query->p[2];
+    lane_floats x = load_lanes(points->x + i) - query->p[0],
+                y = load_lanes(points->y + i) - query->p[1],
+                z = load_lanes(points->z + i) - query->p[2];
     lane_floats d2 = fused_lanes(z, z, fused_lanes(y, y, x * x));
     if (!query->flat)
         return d2;
@@ -124,72 +78,23 @@ static inline lane_floats query_distance2_lanes(const point_query *query, size_t
     return max_lanes(height * height, d2);
 }
 
-/** @brief Bits of packed directions on the side of n. */
-static inline unsigned query_sides(const point_query *query, lane_ints wi)
-{
-    lane_directions d = lane_directions_of(wi);
-    return bits_below(fill_lanes(0.0f), lane_directions_dot(d, query->n));
-}
-
-/** @brief query_is_alike by packed normals. */
-static inline unsigned query_alike(const point_query *query, lane_ints normal)
-{
-    lane_directions n = lane_directions_of(normal);
-    lane_floats dot = lane_directions_dot(n, query->n);
-    lane_floats length2 = fused_lanes(n.z, n.z, fused_lanes(n.y, n.y, n.x * n.x));
-    return bits_below(SAME_SURFACE * length2, dot * dot);
-}
-
-/** @brief Bits of those photons of i .. min(i + LANES, end) - 1 that are nearer than
- * limit, accepted or not; *distance2 of all. */
+/** @brief Bits of those points of i .. min(i + LANES, end) - 1 that are nearer than
+ * limit, counting or not; *distance2 of all. */
 static inline __attribute__((always_inline)) unsigned
-query_nearer(const point_query *query, size_t i, size_t end, float limit,
-             lane_floats *distance2)
+query_nearer(const point_query *query, const point_arrays *points, size_t i, size_t end,
+             float limit, lane_floats *distance2)
 {
-    *distance2 = query_distance2_lanes(query, i);
+    *distance2 = query_distance2_lanes(query, points, i);
     return bits_below(*distance2, fill_lanes(limit)) & bits_first(end - i);
 }
 
-/** @brief True if some photons are not accepted. */
-static inline bool query_selects(const point_query *query)
-{
-    return query->one_sided || query->normal || query->curve || query->face;
-}
-
-/** @brief Of those photons in bits, the bits of those that are accepted; the photon of a
- * lane is index[lane], also where its bit is not set. */
+/** @brief query_nearer that count. */
 static inline __attribute__((always_inline)) unsigned
-query_accepted(const point_query *query, const uint32_t *index, unsigned bits)
+query_block(const point_query *query, const point_arrays *points, size_t i, size_t end,
+            float limit, lane_floats *distance2)
 {
-    if (query->one_sided)
-        bits &= query_sides(query, gather_lanes(query->wi, index));
-    if (query->normal)
-        bits &= query_alike(query, gather_lanes(query->normal, index));
-    for (unsigned left = query->curve || query->face ? bits : 0u; left;
-         left &= left - 1u) {
-        int lane = __builtin_ctz(left);
-        bool alike = !query->curve || query->curve[index[lane]] == query->on_curve;
-        if (!alike || (query->face && !query_is_face(query, index[lane])))
-            bits &= ~(1u << lane);
-    }
-    return bits;
-}
-
-/** @brief query_nearer that are accepted. */
-static inline unsigned query_block(const point_query *query, size_t i, size_t end,
-                                   float limit, lane_floats *distance2)
-{
-    unsigned bits = query_nearer(query, i, end, limit, distance2);
-    if (bits && query->one_sided)
-        bits &= query_sides(query, load_lane_ints(query->wi + i));
-    if (bits && query->normal)
-        bits &= query_alike(query, load_lane_ints(query->normal + i));
-    for (unsigned left = query->curve || query->face ? bits : 0u; left;
-         left &= left - 1u) {
-        size_t lane = (size_t)__builtin_ctz(left);
-        bool alike = !query->curve || query->curve[i + lane] == query->on_curve;
-        if (!alike || (query->face && !query_is_face(query, i + lane)))
-            bits &= ~(1u << lane);
-    }
+    unsigned bits = query_nearer(query, points, i, end, limit, distance2);
+    if (bits && query_selects(query))
+        bits = query->rules->accepted(query->data, i, bits);
     return bits;
 }

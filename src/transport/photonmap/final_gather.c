@@ -14,6 +14,7 @@
 #include "transport/photonmap/photonmap_medium.h"
 
 #include "base/memory.h"
+#include "photon/direction.h"
 
 /* ---- Irradiance kept at photon positions ---- */
 
@@ -28,7 +29,6 @@ typedef struct irradiance_loop {
     const photonmap_pass *pass;
     const photon_store *points;
     irradiance_cache *out;
-    vec3 *places; /* of the cache */
     size_t offset;
     int slice;
     bool *failed;
@@ -80,7 +80,9 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
     for (size_t i = begin; i < end && ready; i++) {
         photon p = photon_store_get(loop->points, i);
         size_t at = loop->offset + i;
-        loop->places[at] = p.p;
+        loop->out->places.x[at] = p.p[0];
+        loop->out->places.y[at] = p.p[1];
+        loop->out->places.z[at] = p.p[2];
         loop->out->normal[at] = loop->points->normal[i];
         spectrum *groups = n_groups > 0 ? loop->out->groups + at * n_groups : NULL;
         const map_place place = {loop->pass, loop->slice, p.p, p.n};
@@ -91,16 +93,16 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
     estimate_scratch_clear(&scratch);
 }
 
-static bool add_points(photonmap_pass *pass, int slice, const trace_result *points,
-                       vec3 *places, irradiance_cache *out, GError **error)
+/* @param offset of the first of them in the cache */
+static bool add_points(const photonmap_pass *pass, int slice, const trace_result *points,
+                       size_t offset, irradiance_cache *out, GError **error)
 {
     size_t n = points->photons.n, n_chunks = n / 256 + 1;
     g_autofree bool *failed = g_new0(bool, n_chunks);
     irradiance_loop loop = {.pass = pass,
                             .points = &points->photons,
                             .out = out,
-                            .places = places,
-                            .offset = out->n,
+                            .offset = offset,
                             .slice = slice,
                             .failed = failed};
     if (!parallel_for(n, 256, (unsigned)pass->how->threads, pass->plan->cancel,
@@ -108,7 +110,6 @@ static bool add_points(photonmap_pass *pass, int slice, const trace_result *poin
         error_set(error, ERROR_CANCELLED, "cancelled");
         return false;
     }
-    out->n += n;
     for (size_t i = 0; i < n_chunks; i++) {
         if (failed[i]) {
             error_set(error, ERROR_FAILED, "out of memory for irradiance estimates");
@@ -123,6 +124,7 @@ void irradiance_cache_free(irradiance_cache *cache)
     if (!cache)
         return;
     point_index_free(cache->index);
+    point_arrays_clear(&cache->places);
     big_free(cache->normal);
     big_free(cache->irradiance);
     big_free(cache->groups);
@@ -132,8 +134,10 @@ void irradiance_cache_free(irradiance_cache *cache)
 static irradiance_cache *cache_with_room(size_t n, size_t n_groups, GError **error)
 {
     const char *what = "kept irradiance";
+    size_t padded = points_padded(n);
     irradiance_cache *cache = g_new0(irradiance_cache, 1);
-    cache->normal = big_alloc(n, sizeof *cache->normal, what, error);
+    if (point_arrays_make(&cache->places, n, what, error))
+        cache->normal = big_alloc(padded, sizeof *cache->normal, what, error);
     if (cache->normal)
         cache->irradiance = big_alloc(n, sizeof *cache->irradiance, what, error);
     if (cache->irradiance && n_groups > 0)
@@ -144,24 +148,38 @@ static irradiance_cache *cache_with_room(size_t n, size_t n_groups, GError **err
     return NULL;
 }
 
+/* Sorts the places, and what is kept at them likewise. */
+static bool sort_cache(irradiance_cache *cache, size_t n_groups, unsigned threads,
+                       GError **error)
+{
+    size_t n = cache->places.n, *order = NULL;
+    cache->index =
+        point_index_build(MAP_KDTREE, &cache->places, 0.0f, threads, &order, error);
+    bool ok =
+        cache->index &&
+        (!order || (points_permute(&cache->normal, n, sizeof *cache->normal, order,
+                                   threads, error) &&
+                    points_permute(&cache->irradiance, n, sizeof *cache->irradiance,
+                                   order, threads, error) &&
+                    (!cache->groups ||
+                     points_permute(&cache->groups, n, n_groups * sizeof *cache->groups,
+                                    order, threads, error))));
+    big_free(order);
+    return ok;
+}
+
 bool irradiance_cache_build(photonmap_pass *pass, int slice, const trace_result *points,
                             size_t n, GError **error)
 {
-    size_t total = 0;
+    size_t total = 0, n_groups = (size_t)pass->scene->n_light_groups;
     for (size_t i = 0; i < n; i++)
         total += points[i].photons.n;
-    irradiance_cache *cache =
-        cache_with_room(total, (size_t)pass->scene->n_light_groups, error);
+    irradiance_cache *cache = cache_with_room(total, n_groups, error);
     pass->irradiance[slice] = cache;
-    vec3 *places = cache ? big_alloc(total, sizeof *places, "places", error) : NULL;
-    bool ok = places != NULL;
-    for (size_t i = 0; i < n && ok; i++)
-        ok = add_points(pass, slice, &points[i], places, cache, error);
-    if (ok)
-        cache->index = point_index_build(places, cache->normal, total,
-                                         (unsigned)pass->how->threads, error);
-    big_free(places);
-    return ok && cache->index;
+    bool ok = cache != NULL;
+    for (size_t i = 0, offset = 0; i < n && ok; offset += points[i++].photons.n)
+        ok = add_points(pass, slice, &points[i], offset, cache, error);
+    return ok && sort_cache(cache, n_groups, (unsigned)pass->how->threads, error);
 }
 
 /* What moves is looked up where its photons are kept. */
@@ -178,7 +196,7 @@ static map_place place_of(const photonmap_pass *pass, const shading_point *at)
     return place;
 }
 
-static float kept_reach(const map_place *at, photon_hits *hits)
+static float kept_reach(const map_place *at, point_hits *hits)
 {
     float least = INFINITY;
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
@@ -190,16 +208,39 @@ static float kept_reach(const map_place *at, photon_hits *hits)
     return KEPT_REACH * least;
 }
 
+/* ---- Places that face a surface ---- */
+
+typedef struct facing {
+    const uint32_t *normal; /* packed, of the places */
+    vec3 n;
+} facing;
+
+static bool faces(const void *data, size_t place)
+{
+    const facing *f = data;
+    return direction_dot(f->normal[place], f->n) > 0.0f;
+}
+
+static unsigned faces_lanes(const void *data, size_t first, unsigned bits)
+{
+    const facing *f = data;
+    return bits & directions_on_side(load_lane_ints(f->normal + first), f->n);
+}
+
+static const point_rules facing_rules = {.accepts = faces, .accepted = faces_lanes};
+
 /* The nearest kept irradiance of a surface that lies alike, among the few nearest of all.
    @return false: there is none within reach */
 static bool kept_irradiance(const map_place *at, estimate_scratch *scratch,
                             spectrum *irradiance, const spectrum **groups)
 {
     const photonmap_pass *pass = at->pass;
-    photon_hits *hits = &scratch->hits;
+    point_hits *hits = &scratch->hits;
     const irradiance_cache *kept = pass->irradiance[at->slice];
     float best = INFINITY, reach = kept_reach(at, hits);
-    if (!point_index_nearest_facing(kept->index, at->p, at->n, NEAREST_KEPT, reach, hits))
+    const facing by = {kept->normal, at->n};
+    const point_query query = {.p = at->p, .rules = &facing_rules, .data = &by};
+    if (!point_index_nearest(kept->index, &query, NEAREST_KEPT, reach, hits))
         scratch->failed = true;
     for (size_t i = 0; i < hits->n; i++) {
         size_t k = hits->index[i];

@@ -14,8 +14,8 @@ extern const photon_sender photonmap_photons;
 
 /** @brief Irradiance at places of surfaces. */
 typedef struct irradiance_cache {
-    size_t n;
-    point_index *index;   /**< by places and normals; numbers are those of the arrays */
+    point_arrays places;
+    point_index *index;   /**< of the places; all arrays are in its order */
     uint32_t *normal;     /**< packed (direction_pack) */
     spectrum *irradiance; /**< W/m² per nm */
     spectrum *groups; /**< its parts by light groups, [place * n_light_groups + group];
@@ -64,7 +64,7 @@ estimate_options photonmap_estimate_options(const settings *how, photon_class c,
 
 /** @brief The same in a pass at a place, whose radius is its own. @param hits scratch */
 estimate_options photonmap_options_at(const photonmap_pass *pass, photon_class c, vec3 p,
-                                      photon_hits *hits);
+                                      point_hits *hits);
 
 /** @brief Radiance toward wo from the photons of one class around the hit. */
 spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
@@ -95,8 +95,8 @@ spectrum final_gather(const photonmap_pass *pass, const shading_point *at,
 bool irradiance_cache_build(photonmap_pass *pass, int slice, const trace_result *points,
                             size_t n, GError **error);
 
-/** @brief Sets plan->n_photons: classes with a budget of their own keep it, the rest share
- * `photons` evenly. The casters must have been found. */
+/** @brief Sets plan->n_photons: classes with a budget of their own keep it, the rest
+ * share `photons` evenly. The casters must have been found. */
 void photonmap_share_photons(transport_plan *plan);
 
 /** @brief Chooses plan->radius of each class that is needed. */

@@ -32,7 +32,7 @@ estimate_options photonmap_estimate_options(const settings *how, photon_class c,
 /* A place further from its radius' own place than that radius reaches is emptier still.
    No radius is so much larger than the typical one that a look-up gets slow. */
 static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
-                          photon_hits *hits)
+                          point_hits *hits)
 {
     const radius_cache *radii = pass->plan->radius_cache[c];
     float typical = pass->estimates[c].radius;
@@ -47,7 +47,7 @@ static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
 }
 
 estimate_options photonmap_options_at(const photonmap_pass *pass, photon_class c, vec3 p,
-                                      photon_hits *hits)
+                                      point_hits *hits)
 {
     estimate_options options = pass->estimates[c];
     options.radius = local_radius(pass, c, p, hits);

@@ -19,7 +19,7 @@ static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     radius_loop *loop = data;
-    photon_hits hits = {0};
+    point_hits hits = {0};
     for (size_t i = begin; i < end; i++) {
         const photon_store *s = loop->store;
         vec3 p = vec3_make(s->x[i], s->y[i], s->z[i]);
@@ -29,7 +29,7 @@ static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
                                 ? radius_cache_at(loop->of_pass_0, p, typical, &hits)
                                 : typical);
     }
-    photon_hits_clear(&hits);
+    point_hits_clear(&hits);
 }
 
 bool photonmap_keep_in_media(photonmap_pass *pass, int slice, photon_class c,

@@ -36,7 +36,7 @@ typedef struct guide_trial {
 typedef struct trials {
     trace_task task;
     transport_plan *plan;
-    point_index *visible;     /* over plan->sight */
+    point_set *visible;       /* over plan->sight */
     float most_reach;         /* of all of them, m */
     double pixels_each;       /* that a visible point stands for */
     emission_record *records; /* one per trial, value 0 if it did not arrive */
@@ -72,9 +72,9 @@ static float most_reach(const transport_plan *plan)
 }
 
 /* Square of the reach of the visible point that p lies by; 0: out of sight. */
-static float sight_at(const trials *all, vec3 p, photon_hits *hits)
+static float sight_at(const trials *all, vec3 p, point_hits *hits)
 {
-    if (!point_index_nearest(all->visible, p, 1, all->most_reach, hits) || hits->n == 0)
+    if (!point_set_nearest(all->visible, p, 1, all->most_reach, hits) || hits->n == 0)
         return 0.0f;
     float reach = reach_of(all->plan, &all->plan->sight[hits->index[0]]);
     return hits->distance2[0] < reach * reach ? reach * reach : 0.0f;
@@ -106,7 +106,7 @@ static float sight_in_medium(const trials *all, const surface_hit *hit)
 
 typedef struct trial {
     const trials *all;
-    photon_hits *hits;
+    point_hits *hits;
     float value;
     trial_noise noise;
 } trial;
@@ -146,7 +146,7 @@ static void run_trials(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     trials *all = data;
-    photon_hits hits = {0};
+    point_hits hits = {0};
     for (size_t i = begin; i < end; i++) {
         emission_record *record = &all->records[all->n_known + i];
         trial t = {.all = all, .hits = &hits};
@@ -155,7 +155,7 @@ static void run_trials(size_t begin, size_t end, unsigned thread, void *data)
         record->value = t.value;
         all->noise[all->n_known + i] = t.noise;
     }
-    photon_hits_clear(&hits);
+    point_hits_clear(&hits);
 }
 
 /* A photon that is drawn with density d instead of uniformly brings 1/d of it. */
@@ -330,7 +330,7 @@ bool aim_caustics(transport_plan *plan, aim_result *result, const cancel_flag *c
     if (!transport_plan_find_casters(plan, error))
         return false;
     plan_look(plan);
-    g_autoptr(point_index) visible = visible_index(plan, error);
+    g_autoptr(point_set) visible = visible_index(plan, error);
     if (!visible)
         return false;
     g_autoptr(emission_guide) guide = guides ? emission_guide_new() : NULL;

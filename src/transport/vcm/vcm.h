@@ -121,7 +121,7 @@ bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **
 
 /** @brief Of a vertex that chance has led to: one over one more than the light
  * vertices that merging finds there. @param hits scratch */
-float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, photon_hits *hits);
+float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, point_hits *hits);
 
 /** @brief The strategies of a vcm_choice. */
 vcm_strategies vcm_strategies_of(int choice);

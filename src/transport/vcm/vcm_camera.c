@@ -269,7 +269,7 @@ static void merge(camera_walk *c, const vcm_vertex *v)
 {
     const vcm_pass *pass = c->pass;
     const settings *how = &pass->plan->how;
-    const photon_hits *hits = &c->scratch->estimate.hits;
+    const point_hits *hits = &c->scratch->estimate.hits;
     const kernel kappa = {(kernel_choice)how->class_kernel[PHOTON_INDIRECT],
                           (float)how->class_cone_k[PHOTON_INDIRECT]};
     float r2 = square(pass->radius);

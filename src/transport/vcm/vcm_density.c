@@ -10,12 +10,12 @@
 /* id: a pass that no render reaches. */
 #define PILOT_PASS 0xfffffffeu
 
-static bool nearest(const void *vertices, vec3 p, photon_hits *hits)
+static bool nearest(const void *vertices, vec3 p, point_hits *hits)
 {
-    return point_index_nearest(vertices, p, RADIUS_NEAREST, INFINITY, hits);
+    return point_set_nearest(vertices, p, RADIUS_NEAREST, INFINITY, hits);
 }
 
-static float distance_itself(const void *data, vec3 p, float distance, photon_hits *hits)
+static float distance_itself(const void *data, vec3 p, float distance, point_hits *hits)
 {
     (void)data, (void)p, (void)hits;
     return distance;
@@ -25,13 +25,13 @@ static float distance_itself(const void *data, vec3 p, float distance, photon_hi
 static radius_cache *radii_among(const vec3 *points, size_t n, unsigned threads,
                                  GError **error)
 {
-    g_autoptr(point_index) index = point_index_build(points, NULL, n, threads, error);
+    g_autoptr(point_set) index = point_set_build(points, n, threads, error);
     if (!index)
         return NULL;
     size_t n_places = MIN(n, RADIUS_PLACES);
     vec3 *places = g_aligned_alloc0(MAX(n_places, 1), sizeof *places, 16);
     for (size_t i = 0; i < n_places; i++)
-        places[i] = points[point_index_number(index, radius_place(i, n))];
+        places[i] = points[point_set_number(index, radius_place(i, n))];
     const radius_source source = {nearest, distance_itself, index};
     radius_cache *cache = radius_cache_build(places, n_places, &source, threads, error);
     g_aligned_free(places);

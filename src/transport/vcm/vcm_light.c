@@ -20,7 +20,7 @@ typedef struct light_chunk {
     splat *splats;
     size_t n_vertices, vertex_capacity, n_splats, splat_capacity;
     uint64_t n_rays, n_shadow_rays, n_not_finite;
-    photon_hits hits; /* scratch */
+    point_hits hits; /* scratch */
     GError *error;
 } light_chunk;
 
@@ -348,7 +348,7 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
             follow(&l);
         loop->pass->light.end[i] = out->n_vertices;
     }
-    photon_hits_clear(&out->hits);
+    point_hits_clear(&out->hits);
 }
 
 /* Puts chunk c's vertices and splats behind those before it. */
@@ -409,7 +409,7 @@ void vcm_tell_light(const vcm_pass *pass, uint64_t i, photon_listener listener,
     l.tell_data = data;
     if (emit(&l))
         follow(&l);
-    photon_hits_clear(&unused.hits);
+    point_hits_clear(&unused.hits);
     chunk_clear(&unused);
 }
 

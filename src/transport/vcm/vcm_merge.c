@@ -53,7 +53,7 @@ static vertex_search search_around(const vcm_pass *pass, const vcm_vertex *v)
 static void leave_out_unseen(const vertex_search *s, const neighbourhood *hood)
 {
     const photon_store *store = photon_map_store(s->pass->map);
-    photon_hits *hits = &s->scratch->hits;
+    point_hits *hits = &s->scratch->hits;
     size_t kept = 0;
     for (size_t i = 0; i < hits->n; i++) {
         size_t k = hits->index[i];
@@ -68,7 +68,7 @@ static void leave_out_unseen(const vertex_search *s, const neighbourhood *hood)
 /* The light vertices around the place. @return false: none, or memory is refused. */
 static bool find(const vertex_search *s)
 {
-    photon_hits *hits = &s->scratch->hits;
+    point_hits *hits = &s->scratch->hits;
     bool done =
         photon_map_within(s->pass->map, s->at.p, s->pass->radius, &s->filter, hits);
     s->scratch->failed |= !done;

@@ -95,7 +95,7 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
 
 /* Vertices of a light subpath per square metre around p, on average, by the plan's
    vertex_radii; 0: too few to tell. */
-static float density_at(const transport_plan *plan, vec3 p, photon_hits *hits)
+static float density_at(const transport_plan *plan, vec3 p, point_hits *hits)
 {
     float radius = radius_cache_at(plan->vertex_radii, p, 0.0f, hits);
     if (!(radius > 0.0f))
@@ -105,7 +105,7 @@ static float density_at(const transport_plan *plan, vec3 p, photon_hits *hits)
     return isfinite(density) ? density : FLT_MAX;
 }
 
-float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, photon_hits *hits)
+float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, point_hits *hits)
 {
     if (!pass->plan->vertex_radii)
         return 1.0f;

@@ -1,23 +1,21 @@
 /*
- * Photon maps: three structures behind one interface, same answers.
+ * The photon map: a photon store, and a point index over its positions
+ * (map/point_index.h), of any kind.
  *
- *   list     no structure, scalar loops: the oracle of the others
- *   kdtree   balanced, eight-wide; n log n to build; indifferent to radius and density
- *   grid     cells of about the radius; linear to build; the default
+ *   x[] y[] z[] ──► index ──► order ──► wi[] flux[] .. follow it
  *
  * Built once from a store, const afterwards; queries write only into the caller's struct.
- * A photon is "within r" if its squared distance is < r². Photons that tie for the k-th
- * place are taken in the order of (x, y, z, wi, flux or number), compared as numbers: no
- * index needs to be kept for it, and photons that tie even then are interchangeable. So
- * all maps find the same photons to the bit.
+ * Photons that tie for the k-th place are taken in the order of (x, y, z, wi, flux or
+ * number), compared as numbers: no index needs to be kept for it, and photons that tie
+ * even then are interchangeable. So maps of all kinds find the same photons to the bit.
  *
- * Memory kept: that of the photons; the kdtree adds about 2, the grid at most 4.
+ * Memory kept: that of the photons and of the index.
  */
 #pragma once
 
 #include "base/parallel.h"
+#include "photon/map/point_index.h"
 #include "photon/photon.h"
-#include "settings/settings.h"
 
 typedef struct photon_map photon_map;
 
@@ -38,16 +36,6 @@ typedef struct photon_filter {
                        those on none */
 } photon_filter;
 
-/** @brief Photons found: indices into photon_map_store(map) and squared distances.
- * Zero-initialise, clear at the end; reused from query to query. */
-typedef struct photon_hits {
-    size_t n, capacity;
-    uint32_t *index;
-    float *distance2;
-} photon_hits;
-
-void photon_hits_clear(photon_hits *hits);
-
 /** @brief What MAP_AUTO stands for: where radii of queries differ much, a grid has cells
  * that are too small for one and too large for the other. */
 static inline map_choice photon_map_chosen(map_choice wanted, bool radii_differ)
@@ -65,13 +53,16 @@ photon_map *photon_map_build(map_choice choice, photon_store *store, float radiu
 void photon_map_free(photon_map *map);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(photon_map, photon_map_free)
 const photon_store *photon_map_store(const photon_map *map);
+/** @brief By places in the store. */
+const point_index *photon_map_index(const photon_map *map);
 size_t photon_map_bytes(const photon_map *map); /**< memory kept */
 
-/** @brief All photons within radius, in no order. hits->n is reset first.
+/** @brief All photons within radius, in no order, by their places in the store. hits->n
+ * is reset first.
  *  @param filter NULL: every photon counts
  *  @return false when memory is refused */
 bool photon_map_within(const photon_map *map, vec3 p, float radius,
-                       const photon_filter *filter, photon_hits *hits);
+                       const photon_filter *filter, point_hits *hits);
 /** @brief The k nearest within radius (INFINITY allowed), in no order; else as within. */
 bool photon_map_nearest(const photon_map *map, vec3 p, size_t k, float radius,
-                        const photon_filter *filter, photon_hits *hits);
+                        const photon_filter *filter, point_hits *hits);
