@@ -13,7 +13,7 @@
 #include <string.h>
 
 static struct {
-    char *output, *trace, *size, **classes;
+    char *output, *trace, *size, *save, *passes, **classes;
     gboolean quiet;
     overrides settings;
 } given;
@@ -24,10 +24,14 @@ static const GOptionEntry entries[] = {
      "picture "
      "of them over the wireframe (.png, .jpg, .exr, .hdr, .pfm)",
      "FILE"},
-    {"size", 0, 0, G_OPTION_ARG_STRING, &given.size, "Size of that picture, pixels",
-     "WxH"},
+    {"size", 0, 0, G_OPTION_ARG_STRING, &given.size,
+     "Size of that picture, or of those that --save is planned for, pixels", "WxH"},
     {"class", 0, 0, G_OPTION_ARG_STRING_ARRAY, &given.classes,
      "Only direct, indirect or caustic photons in it; may be given again", "NAME"},
+    {"save", 0, 0, G_OPTION_ARG_FILENAME, &given.save,
+     "Keep them there for render --photons, with the plan that they are sent by", "FILE"},
+    {"passes", 0, 0, G_OPTION_ARG_STRING, &given.passes,
+     "With --save: those of the first N passes (1)", "N"},
     {"trace", 0, 0, G_OPTION_ARG_STRING, &given.trace,
      "Print every event of the first N photons of each class instead", "N"},
     {"set", 's', 0, G_OPTION_ARG_STRING_ARRAY, &given.settings.set,
@@ -61,26 +65,24 @@ typedef struct job {
     int width, height; /* 0: the scene's */
     unsigned classes;  /* bit c: of that class */
     bool draws;        /* a picture */
-    guint64 n_logged;
+    guint64 n_logged, n_passes;
     unsigned threads;
 } job;
 
-static int print_counts(const NephPhotons *photons, const char *integrator)
+static int print_counts(const NephStatistics *s, const char *integrator)
 {
-    NephStatistics s;
-    neph_photons_statistics(photons, &s);
     GString *out = g_string_new(NULL);
-    g_string_append_printf(out, "trace time  %14.3f s\n", s.time_trace);
-    g_string_append_printf(out, "photon rays %14" G_GUINT64_FORMAT, s.photon_rays);
-    if (s.time_trace > 0.0)
+    g_string_append_printf(out, "trace time  %14.3f s\n", s->time_trace);
+    g_string_append_printf(out, "photon rays %14" G_GUINT64_FORMAT, s->photon_rays);
+    if (s->time_trace > 0.0)
         g_string_append_printf(out, "   %.3f M/s",
-                               1e-6 * (double)s.photon_rays / s.time_trace);
+                               1e-6 * (double)s->photon_rays / s->time_trace);
     g_string_append_printf(out, "\n%-11s %14s %14s\n", "", "emitted", "stored");
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
-        if (s.emitted[c] > 0)
+        if (s->emitted[c] > 0)
             g_string_append_printf(
                 out, "%-11s %14" G_GUINT64_FORMAT " %14" G_GUINT64_FORMAT "\n", names[c],
-                s.emitted[c], s.stored[c]);
+                s->emitted[c], s->stored[c]);
         else
             g_string_append_printf(out, "%-11s not sent by integrator %s here\n",
                                    names[c], integrator);
@@ -107,11 +109,27 @@ static int trace(const job *j, const NephScene *scene, const NephSettings *setti
     if (!photons)
         return report_error(error);
     g_autofree char *integrator = neph_settings_get(settings, "integrator");
-    int result = given.quiet ? EXIT_DONE : print_counts(photons, integrator);
+    NephStatistics s;
+    neph_photons_statistics(photons, &s);
+    int result = given.quiet ? EXIT_DONE : print_counts(&s, integrator);
     if (given.output && !write_output(j, scene, photons, &error))
         result = report_error(error);
     else if (given.output && !given.quiet)
         result = print_result("wrote %s\n", given.output);
+    return result;
+}
+
+static int save(const job *j, const NephScene *scene, const NephSettings *settings)
+{
+    g_autoptr(GError) error = NULL;
+    NephStatistics s;
+    const NephSaveOptions options = {.passes = (int64_t)j->n_passes, .statistics = &s};
+    g_autofree char *integrator = neph_settings_get(settings, "integrator");
+    if (!neph_photons_save(scene, settings, given.save, &options, &error))
+        return report_error(error);
+    int result = given.quiet ? EXIT_DONE : print_counts(&s, integrator);
+    if (!result && !given.quiet)
+        result = print_result("wrote %s\n", given.save);
     return result;
 }
 
@@ -139,12 +157,15 @@ static int work_on(const char *file, const job *j)
     int result = EXIT_DONE;
     if ((given.output &&
          !neph_file_spares(given.output, neph_scene_files(scene), &error)) ||
+        (given.save && !neph_file_spares(given.save, neph_scene_files(scene), &error)) ||
         (j->width && !neph_scene_resize(scene, j->width, j->height, &error)) ||
         !overrides_apply(&given.settings, settings, &error))
         result = report_error(error);
     if (!result && j->n_logged)
         result = print_event_log(scene, settings, (size_t)j->n_logged);
-    if (!result && (!j->n_logged || given.output))
+    if (!result && given.save)
+        result = save(j, scene, settings);
+    if (!result && ((!j->n_logged && !given.save) || given.output))
         result = trace(j, scene, settings);
     return result;
 }
@@ -182,12 +203,21 @@ static bool is_picture(const char *path)
 static bool job_init(job *j, GError **error)
 {
     *j = (job){.draws = is_picture(given.output)};
-    if (!j->draws && (given.size || given.classes)) {
+    if (!j->draws && ((given.size && !given.save) || given.classes)) {
         g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_USAGE,
                     "--size and --class are of a picture: -o FILE.png");
         return false;
     }
-    return (!given.trace ||
+    if (given.passes && !given.save) {
+        g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_USAGE,
+                    "--passes: expected --save FILE too");
+        return false;
+    }
+    j->n_passes = 1;
+    return (!given.passes || argument_count("--passes", given.passes, 1, G_MAXINT32,
+                                            &j->n_passes, error)) &&
+           (!given.save || neph_file_can_write(given.save, error)) &&
+           (!given.trace ||
             argument_count("--trace", given.trace, 1, 1000000, &j->n_logged, error)) &&
            (!given.size ||
             argument_size("--size", given.size, &j->width, &j->height, error)) &&

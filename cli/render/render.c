@@ -18,7 +18,8 @@
 
 static struct {
     char **outputs, **layers;
-    char *size, *exposure, *stats, *every, *checkpoint, *checkpoint_every, *resume;
+    char *size, *exposure, *stats, *every, *checkpoint, *checkpoint_every, *resume,
+        *photons;
     gboolean quiet, explain;
     overrides settings;
 } given;
@@ -53,6 +54,8 @@ static const GOptionEntry entries[] = {
      "Write it every so many seconds, after a pass (60)", "SECONDS"},
     {"resume", 0, 0, G_OPTION_ARG_FILENAME, &given.resume,
      "Go on from such a file, with its settings and size", "FILE"},
+    {"photons", 0, 0, G_OPTION_ARG_FILENAME, &given.photons,
+     "Use the photons that 'photons --save' has kept there, with their settings", "FILE"},
     {"integrator", 0, 0, G_OPTION_ARG_STRING, &given.settings.integrator,
      "How light is followed; settings has them all", "NAME"},
     {"threads", 'j', 0, G_OPTION_ARG_STRING, &given.settings.threads,
@@ -91,7 +94,10 @@ static const usage how = {
         "before the\nfirst is done it writes nothing. A second one ends at once.\n\n"
         "--resume takes the settings of the checkpoint in place of the scene's; only "
         "passes, time,\nnoise and threads may be changed. Time counts from the first "
-        "start.\n",
+        "start.\n\n"
+        "--photons takes the settings that the photons were sent by in place of the "
+        "scene's; only\npasses, time, noise, threads, denoise and kernels may be "
+        "changed, and the camera and the size.\n",
     .entries = entries,
     .loads_scene = true};
 
@@ -151,6 +157,8 @@ static bool check_distinct(const job *j, const NephScene *scene, GError **error)
     g_strv_builder_addv(builder, (const char **)neph_scene_files(scene));
     if (given.settings.file)
         g_strv_builder_add(builder, given.settings.file);
+    if (given.photons)
+        g_strv_builder_add(builder, given.photons);
     g_auto(GStrv) inputs = g_strv_builder_end(builder);
     const char *const *others = (const char *const *)inputs;
     for (char **path = j->outputs; *path; path++) {
@@ -190,7 +198,8 @@ static NephSettings *settings_before(job *j, const NephScene *scene, GError **er
 {
     int width, height;
     if (!given.resume)
-        return neph_scene_settings(scene);
+        return given.photons ? neph_photons_settings(given.photons, NULL, error)
+                             : neph_scene_settings(scene);
     NephSettings *settings =
         neph_checkpoint_settings(given.resume, &width, &height, error);
     if (settings && !j->width) {
@@ -222,7 +231,9 @@ static NephRender *prepare(job *j, NephScene *scene, GError **error)
         (!j->width || neph_scene_resize(scene, j->width, j->height, error)) &&
         choose_outputs(j, scene, error))
         render = neph_render_new(scene, settings, error);
-    if (render && !resume(j, render, error))
+    if (render &&
+        ((given.photons && !neph_render_use_photons(render, given.photons, error)) ||
+         !resume(j, render, error)))
         g_clear_pointer(&render, neph_render_free);
     if (render && !given.quiet)
         overrides_tell_unread(&given.settings, settings);

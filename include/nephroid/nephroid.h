@@ -1,5 +1,6 @@
 /*
- * Nephroid: a photon-mapping renderer. The only installed header.
+ * Nephroid: a photon-mapping renderer. The header to include; it brings photons.h, which
+ * is about photons without a picture.
  *
  *   neph_scene_load ─► neph_scene_settings ─► neph_render_new ─┐
  *           ┌──────────────────────────────────────────────────┘
@@ -320,8 +321,8 @@ NEPH_API NephImage *neph_image_sheet(const NephImage *const *images, size_t n,
                                      size_t columns, GError **error);
 
 /** @brief One layer as an image of R, G and B: "caustic", "normal" (X, Y and Z), "depth"
- * (all three alike), "raw" (R, G and B as they were rendered) ... Owned by caller. NEPH_ERROR_USAGE with the list of layers if
- * there is none of that name. */
+ * (all three alike), "raw" (R, G and B as they were rendered) ... Owned by caller.
+ * NEPH_ERROR_USAGE with the list of layers if there is none of that name. */
 NEPH_API NephImage *neph_image_layer(const NephImage *image, const char *name,
                                      GError **error);
 /** @brief Errors over R, G and B of an image a against its reference b. */
@@ -485,9 +486,10 @@ NEPH_API char *neph_statistics_text(const NephStatistics *statistics, bool json)
 
 /* ---- One picture by many processes ---- */
 
-/* Each process loads the scene, makes a render of the same settings (`time` 0) and renders
-   passes that one of them deals out, each number once. Their sums are added up in that
-   one. The picture is that of one process, but for the order in which sums are rounded. */
+/* Each process loads the scene, makes a render of the same settings (`time` 0) and
+   renders passes that one of them deals out, each number once. Their sums are added up in
+   that one. The picture is that of one process, but for the order in which sums are
+   rounded. */
 
 /** @brief Renders pass number index (from 0) onto the sums, whole, whatever `passes`,
  * `time` and `noise` say. Not to be mixed with neph_render_run. progress may be NULL; its
@@ -502,8 +504,8 @@ NEPH_API void neph_render_get_sums(const NephRender *render, size_t first, size_
 /** @brief Adds to them those of another process ... */
 NEPH_API void neph_render_add_sums(NephRender *render, size_t first, size_t n,
                                    const double *more);
-/** @brief ... and, when all are added, its passes, rays and seconds. The sums are those of
- * passes 0 to their number again before neph_render_save_checkpoint. */
+/** @brief ... and, when all are added, its passes, rays and seconds. The sums are those
+ * of passes 0 to their number again before neph_render_save_checkpoint. */
 NEPH_API void neph_render_add_statistics(NephRender *render, const NephStatistics *more);
 /** @brief Forgets sums and counts, which another process has; what is planned stays. */
 NEPH_API void neph_render_forget(NephRender *render);
@@ -514,100 +516,6 @@ NEPH_API NephSettings *neph_render_settings(const NephRender *render);
  * program, scene and plan, which is made if it was not. Owned by the caller; NULL with an
  * error. */
 NEPH_API char *neph_render_fingerprint(NephRender *render, GError **error);
-
-/* ---- Photons alone ---- */
-
-typedef struct NephPhoton {
-    float position[3], direction[3]; /**< direction: to where it came from, unit; off by
-                                        1e-4 at most, and not at all, but on what moves,
-                                        after neph_photons_follow */
-    float rgb[3];                    /**< flux as linear sRGB, W of 683 lm */
-    NephPhotonClass photon_class;
-    uint32_t bounces; /**< scatterings before it landed; 0 until neph_photons_follow */
-} NephPhoton;
-
-typedef struct NephPhotons NephPhotons;
-/** @brief Traces the photons that pass 0 of a render with these settings stores, as it
- * plans and sends them, without rendering. Classes that such a render does not send have
- * none, and `emitted` 0 in the statistics: of integrator path all, of auto all but
- * caustics; the light vertices of vcm are counted as indirect. Where something moves,
- * each slice of the shutter's time has the flux of the lamps. The scene must outlive
- * them. */
-NEPH_API NephPhotons *neph_photons_trace(const NephScene *scene,
-                                         const NephSettings *settings, GError **error);
-/** @brief The same, as long as go_on says so; else NULL with NEPH_ERROR_CANCELLED. */
-NEPH_API NephPhotons *neph_photons_trace_while(const NephScene *scene,
-                                               const NephSettings *settings,
-                                               NephGoOnFunc go_on, void *data,
-                                               GError **error);
-/** @brief Finds every photon's path, which bounces and neph_photons_path tell. Takes
- * about as long as tracing did. go_on may be NULL. */
-NEPH_API bool neph_photons_follow(NephPhotons *photons, NephGoOnFunc go_on, void *data,
-                                  GError **error);
-NEPH_API void neph_photons_free(NephPhotons *photons);
-NEPH_API size_t neph_photons_count(const NephPhotons *photons);
-/** @brief @return false if there are fewer; out is then zero */
-NEPH_API bool neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out);
-/** @brief The medium in which photon i was scattered, "" if it landed on a surface or is
- * none; the scene's. Those count for no estimate on a surface. */
-NEPH_API const char *neph_photons_medium(const NephPhotons *photons, size_t i);
-NEPH_API void neph_photons_statistics(const NephPhotons *photons, NephStatistics *out);
-/** @brief Binary PLY: x y z, nx ny nz (direction), red green blue (flux), all float, and
- * class. */
-NEPH_API bool neph_photons_write_ply(const NephPhotons *photons, const char *path,
-                                     GError **error);
-/** @brief The event log of the first n photons of each class, one line an event:
- * position, surface, what happened, flux. Each line is given to write. */
-NEPH_API bool neph_photons_event_log(const NephScene *scene, const NephSettings *settings,
-                                     size_t n,
-                                     void (*write)(const char *line, void *data),
-                                     void *data, GError **error);
-
-typedef enum {
-    NEPH_PHOTON_EMITTED,
-    NEPH_PHOTON_STORED,
-    NEPH_PHOTON_SCATTERED,
-    NEPH_PHOTON_ABSORBED,
-    NEPH_PHOTON_ENDED, /**< no lobe left for its class, or the bounce limit */
-    NEPH_PHOTON_LEFT   /**< the scene */
-} NephPhotonEventKind;
-
-/** @brief What happened to a photon at one place. */
-typedef struct NephPhotonEvent {
-    NephPhotonEventKind kind;
-    float position[3];
-    float direction[3];   /**< whither it goes on */
-    float rgb[3];         /**< its flux after the event, linear sRGB, W */
-    const char *what;     /**< "emitted", "diffuse reflected", "scattered" (in a medium),
-                             ...; static */
-    const char *material; /**< of the surface, or the medium, or of the light that emitted
-                             it its kind; "" if none; the scene's */
-} NephPhotonEvent;
-
-/** @brief The life of the emitted photon that left photon i: at most capacity events go
- * to events. @return how many there are; 0 until neph_photons_follow, and of no photon */
-NEPH_API size_t neph_photons_path(const NephPhotons *photons, size_t i,
-                                  NephPhotonEvent *events, size_t capacity);
-
-/** @brief What an estimate of irradiance at a point is made of, map by map. */
-typedef struct NephEstimate {
-    double radius[NEPH_N_PHOTON_CLASSES]; /**< within which photons count, m */
-    size_t n[NEPH_N_PHOTON_CLASSES];      /**< photons within it, on the normal's side */
-    double irradiance[NEPH_N_PHOTON_CLASSES][3]; /**< linear sRGB, W/m²: kernel-weighed
-                                                    flux over the kernel's area */
-} NephEstimate;
-
-/** @brief The estimate of irradiance on a surface at a point, with the kernels of the
- * settings, without probing edges. radius: m; 0: as a render would gather, within those
- * of the statistics or nearer than the last of so many nearest. */
-NEPH_API void neph_photons_estimate(const NephPhotons *photons, const double point[3],
-                                    const double normal[3], double radius,
-                                    NephEstimate *out);
-/** @brief The photons that the estimate counts, none of them in a medium, nearest first:
- * at most capacity go to index. @return how many there are */
-NEPH_API size_t neph_photons_near(const NephPhotons *photons, const double point[3],
-                                  const double normal[3], double radius, size_t *index,
-                                  size_t capacity);
 
 /* ---- What a scene is made of ---- */
 
@@ -673,11 +581,12 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephSettings, neph_settings_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephScene, neph_scene_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephImage, neph_image_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephRender, neph_render_free)
-G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephPhotons, neph_photons_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephBsdfPlot, neph_bsdf_plot_free)
 
 #ifdef __cplusplus
 }
 #endif
+
+#include <nephroid/photons.h>
 
 #endif

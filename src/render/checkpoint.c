@@ -1,21 +1,12 @@
 #include "render/checkpoint.h"
 
-#include "base/input.h"
 #include "base/output.h"
+#include "render/checked_file.h"
 #include "render/film_planes.h"
 
 #include <string.h>
-#include <unistd.h>
-#include <zlib.h>
 
-enum {
-    BLOCK = 1 << 20,
-    MOST_HEADER = 1 << 20,
-    FIRST_LINE = 64, /* at most */
-};
-
-static const char magic[] = "nephroid checkpoint ";
-static const char form[] = "1";
+static const checked_kind kind = {"checkpoint", "checkpoint", "1"};
 
 void checkpoint_clear(checkpoint *c)
 {
@@ -101,23 +92,6 @@ static GString *header_text(const checkpoint *c, const film *f)
 
 /* ---- Writing ---- */
 
-static uint32_t checksum(const void *data, size_t size)
-{
-    return (uint32_t)crc32(0, data, (uInt)size);
-}
-
-static void write_plane(FILE *to, const film_plane *plane)
-{
-    size_t size = film_plane_bytes(plane);
-    const char *data = plane->data;
-    for (size_t at = 0; at < size; at += BLOCK) {
-        size_t n = MIN(size - at, (size_t)BLOCK);
-        uint32_t check = checksum(data + at, n);
-        fwrite(data + at, 1, n, to);
-        fwrite(&check, sizeof check, 1, to);
-    }
-}
-
 bool checkpoint_write(const checkpoint *c, const film *f, const char *path,
                       GError **error)
 {
@@ -128,70 +102,19 @@ bool checkpoint_write(const checkpoint *c, const film *f, const char *path,
         return false;
     GString *header = header_text(c, f);
     FILE *to = output_stream(out);
-    fprintf(to, "%s%s %zu %08x\n", magic, form, (size_t)header->len,
-            checksum(header->str, header->len));
-    fwrite(header->str, 1, header->len, to);
+    checked_begin(to, &kind, header);
     g_string_free(header, TRUE);
     for (size_t i = 0; i < n; i++)
-        write_plane(to, &planes[i]);
+        checked_put(to, planes[i].data, film_plane_bytes(&planes[i]));
     return output_commit(out, error);
 }
 
 /* ---- Reading ---- */
 
 typedef struct reader {
-    const char *path;
-    FILE *from;
-    size_t size;       /* of the file */
+    checked_reader file;
     GPtrArray *planes; /* char *, "NAME BYTES" */
 } reader;
-
-static bool refuse(const reader *r, GError **error, const char *format, ...)
-    G_GNUC_PRINTF(3, 4);
-
-static bool refuse(const reader *r, GError **error, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    g_autofree char *why = g_strdup_vprintf(format, args);
-    va_end(args);
-    error_set(error, ERROR_INPUT, "%s: %s", r->path, why);
-    return false;
-}
-
-static bool refuse_short(const reader *r, GError **error)
-{
-    return refuse(r, error, "the checkpoint is cut off after %zu bytes", r->size);
-}
-
-/* The first line. @return the header, owned by the caller; NULL with an error */
-static char *read_header(const reader *r, GError **error)
-{
-    char line[FIRST_LINE];
-    size_t length = 0;
-    unsigned check = 0;
-    char version[8] = "";
-    if (!fgets(line, sizeof line, r->from) || !g_str_has_prefix(line, magic)) {
-        refuse(r, error, "expected a checkpoint, found another file");
-        return NULL;
-    }
-    if (sscanf(line + strlen(magic), "%7s %zu %x", version, &length, &check) < 1 ||
-        strcmp(version, form) != 0) {
-        refuse(r, error, "expected a checkpoint of form %s, found form '%s'", form,
-               version);
-        return NULL;
-    }
-    g_autofree char *text = length <= MOST_HEADER ? g_malloc0(length + 1) : NULL;
-    if (!text || fread(text, 1, length, r->from) != length) {
-        refuse_short(r, error);
-        return NULL;
-    }
-    if (checksum(text, length) != check) {
-        refuse(r, error, "the checkpoint is damaged: its header's checksum is wrong");
-        return NULL;
-    }
-    return g_steal_pointer(&text);
-}
 
 static bool read_count(render_statistics *st, const char *name, const char *value)
 {
@@ -213,7 +136,7 @@ static bool read_line(reader *r, checkpoint *c, char *line, GError **error)
 {
     char *rest = strchr(line, ' ');
     if (!rest)
-        return refuse(r, error, "the checkpoint is damaged: '%s'", line);
+        return checked_refuse_damaged(&r->file, line, error);
     *rest++ = '\0';
     char *value = strstr(rest, " = "), **text = text_field(c, line);
     bool is_how = strcmp(line, "how") == 0, is_asked = strcmp(line, "asked") == 0;
@@ -234,7 +157,8 @@ static bool read_line(reader *r, checkpoint *c, char *line, GError **error)
         return settings_set(is_how ? &c->how : &c->asked, rest, value, error);
     if (value && strcmp(line, "count") == 0 && read_count(&c->statistics, rest, value))
         return true;
-    return refuse(r, error, "the checkpoint is damaged: '%s %s'", line, rest);
+    return checked_refuse(&r->file, error, "the checkpoint is damaged: '%s %s'", line,
+                          rest);
 }
 
 static bool read_lines(reader *r, checkpoint *c, const char *header, GError **error)
@@ -248,44 +172,28 @@ static bool read_lines(reader *r, checkpoint *c, const char *header, GError **er
     int64_t passes = c->statistics.passes;
     bool has_passes = passes > 0 && passes <= G_MAXINT32;
     return (c->program && c->scene && c->plan && has_passes) ||
-           refuse(r, error, "the checkpoint is damaged: its header is not whole");
+           checked_refuse_damaged(&r->file, "its header is not whole", error);
 }
 
 /* The film's planes are those of the file. */
 static bool check_planes(const reader *r, const film_plane *planes, size_t n,
                          GError **error)
 {
-    size_t bytes = (size_t)ftell(r->from);
+    size_t bytes = checked_at(&r->file);
     bool same = n == r->planes->len;
     for (size_t i = 0; i < n && same; i++) {
         size_t size = film_plane_bytes(&planes[i]);
         g_autofree char *expected = g_strdup_printf("%s %zu", planes[i].name, size);
         same = strcmp(expected, r->planes->pdata[i]) == 0;
-        bytes += size + (size + BLOCK - 1) / BLOCK * sizeof(uint32_t);
+        bytes += checked_size(size);
     }
     if (!same)
-        return refuse(r, error, "the checkpoint is of a picture with other layers");
-    if (r->size < bytes)
-        return refuse_short(r, error);
-    return r->size == bytes ||
-           refuse(r, error, "the checkpoint is damaged: something follows its end");
-}
-
-static bool read_plane(const reader *r, const film_plane *plane, GError **error)
-{
-    size_t size = film_plane_bytes(plane);
-    char *data = plane->data;
-    for (size_t at = 0; at < size; at += BLOCK) {
-        size_t n = MIN(size - at, (size_t)BLOCK);
-        uint32_t check;
-        if (fread(data + at, 1, n, r->from) != n ||
-            fread(&check, sizeof check, 1, r->from) != 1)
-            return refuse_short(r, error);
-        if (checksum(data + at, n) != check)
-            return refuse(r, error,
-                          "the checkpoint is damaged: a checksum of its film is wrong");
-    }
-    return true;
+        return checked_refuse(&r->file, error,
+                              "the checkpoint is of a picture with other layers");
+    if (r->file.size < bytes)
+        return checked_refuse_short(&r->file, error);
+    return r->file.size == bytes ||
+           checked_refuse_damaged(&r->file, "something follows its end", error);
 }
 
 static bool read_film(const reader *r, film *f, GError **error)
@@ -294,35 +202,24 @@ static bool read_film(const reader *r, film *f, GError **error)
     size_t n = film_planes(f, planes);
     bool ok = check_planes(r, planes, n, error);
     for (size_t i = 0; i < n && ok; i++)
-        ok = read_plane(r, &planes[i], error);
+        ok = checked_get(&r->file, planes[i].data, film_plane_bytes(&planes[i]), "film",
+                         error);
     if (!ok)
         film_reset(f);
     return ok;
 }
 
-static bool read_all(reader *r, checkpoint *c, film *f, GError **error)
-{
-    g_autofree char *header = read_header(r, error);
-    return header && read_lines(r, c, header, error) && (!f || read_film(r, f, error));
-}
-
 bool checkpoint_read(checkpoint *c, film *f, const char *path, GError **error)
 {
-    reader r = {.path = path};
+    reader r;
     *c = (checkpoint){0};
-    int fd = input_descriptor(path, &r.size, error);
-    if (fd < 0)
+    g_autofree char *header = checked_open(&r.file, &kind, path, error);
+    if (!header)
         return false;
-    r.from = fdopen(fd, "rb");
-    if (!r.from) {
-        close(fd);
-        error_set(error, ERROR_FAILED, "cannot read %s", path);
-        return false;
-    }
     r.planes = g_ptr_array_new_with_free_func(g_free);
-    bool ok = read_all(&r, c, f, error);
+    bool ok = read_lines(&r, c, header, error) && (!f || read_film(&r, f, error));
     g_ptr_array_unref(r.planes);
-    fclose(r.from);
+    checked_close(&r.file);
     if (ok && f)
         f->n_passes = c->statistics.passes;
     if (!ok)

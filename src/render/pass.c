@@ -229,7 +229,7 @@ bool render_run_pass(render *r, uint32_t index, int wanted, GError **error)
     int done = 0;
     r->pass_start = clock_seconds();
     r->film.index = index;
-    void *pass = r->transport->begin_pass(plan, index, &r->cancel, &counts, error);
+    void *pass = render_begin_pass(r, plan, index, &counts, error);
     if (!pass)
         return false;
     double photons_done = clock_seconds() - r->pass_start;
@@ -238,7 +238,7 @@ bool render_run_pass(render *r, uint32_t index, int wanted, GError **error)
     bool ok = look_through(r, &task, wanted, &done, error);
     if (ok)
         add_splats(r, pass);
-    r->transport->end_pass(pass);
+    render_end_pass(r, pass);
     if (ok)
         end_pass(r, done, wanted, photons_done);
     return ok;

@@ -29,6 +29,7 @@ void render_free(render *r)
     if (!r)
         return;
     film_clear(&r->film);
+    render_forget_photons(r);
     transport_plan_clear(&r->plan);
     g_strfreev(r->paths);
     g_free(r->expected);
@@ -73,13 +74,12 @@ static void note_photons(render *r)
 /* What goes on from a checkpoint must be planned as that was. */
 static bool plan_is_expected(const render *r, GError **error)
 {
-    const render_plan plan = render_plan_of(&r->plan);
-    g_autofree char *found = render_plan_digest(&plan);
+    g_autofree char *found = render_digest(r);
     if (!r->expected || strcmp(r->expected, found) == 0)
         return true;
     error_set(error, ERROR_FAILED,
               "the plan of this render is not that of its checkpoint: another kind of "
-              "processor made it");
+              "processor made it, or its photons were others");
     return false;
 }
 
@@ -88,8 +88,9 @@ bool render_prepare(render *r, GError **error)
     double start = clock_seconds();
     if (r->prepared)
         return true;
-    r->prepared = set_pace(r, error) &&
-                  transport_plan_prepare(&r->plan, &r->cancel, error) &&
+    r->prepared = (r->photons ? render_plan_by_file(r, error)
+                              : set_pace(r, error) && transport_plan_prepare(
+                                                          &r->plan, &r->cancel, error)) &&
                   plan_is_expected(r, error);
     if (r->prepared && cancelled(&r->cancel)) { /* what was measured is worth nothing */
         error_set(error, ERROR_CANCELLED, "cancelled");

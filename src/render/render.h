@@ -87,6 +87,12 @@ bool render_save_checkpoint(const render *r, const render_identity *who, const c
  * render is as new. */
 bool render_resume(render *r, const render_identity *who, const char *path,
                    GError **error);
+/** @brief Before the first run, and before render_resume: passes have the photons of a
+ * file (photon_file.h), and the plan that these were sent by. ERROR_INPUT with the reason
+ * if it is damaged or of something else. What is damaged within is found when the pass
+ * whose photons they are begins. */
+bool render_use_photons(render *r, const render_identity *who, const char *path,
+                        GError **error);
 /** @brief Renders one pass by its number, which comes once, as part of a render whose
  * passes are dealt out to many; `time` and `noise` mean nothing then. After it progress
  * is told no more. Not to be mixed with render_run. */

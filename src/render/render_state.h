@@ -5,6 +5,7 @@
 #pragma once
 
 #include "render/look.h"
+#include "render/photon_file.h"
 #include "render/render.h"
 #include "render/stop.h"
 
@@ -15,11 +16,14 @@ struct render {
     const transport_kind *transport;
     film film;
     bool paced, prepared;
-    bool is_dealt;  /* passes are told from outside, which knows of the time */
-    bool given_up;  /* the pass under way, since the time is over */
-    double before;  /* see render_set_time_around */
-    double earlier; /* s that another process spent: render_resume */
-    char *expected; /* render_plan_digest of that; NULL: any plan will do */
+    bool is_dealt;        /* passes are told from outside, which knows of the time */
+    bool given_up;        /* the pass under way, since the time is over */
+    double before;        /* see render_set_time_around */
+    double earlier;       /* s that another process spent: render_resume */
+    char *expected;       /* render_digest of that; NULL: any plan will do */
+    photon_file *photons; /* that passes use; NULL: they send their own */
+    photon_supply supply; /* from there */
+    void *kept_pass;      /* of a file of one pass: that of all; NULL: not made yet */
     char **paths;
     double after;    /* s that writing to these takes */
     double timed_at; /* s: when it was asked last */
@@ -57,6 +61,20 @@ void render_tell(render *r, double pass_fraction);
 void render_on_progress(void *data);
 /** @brief Finds out how long writing takes, if that is due. */
 void render_time_writing(render *r);
+/* ---- render_photons.c ---- */
+
+/** @brief Begins a pass: with its own photons, or those of the file. */
+void *render_begin_pass(render *r, const transport_plan *plan, uint32_t index,
+                        transport_counts *counts, GError **error);
+void render_end_pass(const render *r, void *pass);
+/** @brief Plans by the file of photons. */
+bool render_plan_by_file(render *r, GError **error);
+/** @brief What passes depend on beside settings: the plan, and whose photons they have.
+ * Owned by the caller. */
+char *render_digest(const render *r);
+/** @brief Lets go of the file. */
+void render_forget_photons(render *r);
+
 /* ---- render.c ---- */
 
 /** @brief Decides all that is decided before the first pass, if it is not. */

@@ -6,6 +6,7 @@
 #include "render/checkpoint.h"
 #include "render/film_planes.h"
 #include "render/render_state.h"
+#include "render/same_settings.h"
 
 #include <string.h>
 
@@ -23,7 +24,7 @@ static const char built[] =
     ", compiler " __VERSION__;
 
 /* Settings that decide when it ends and how fast it is, not what a pass is. */
-static const char *const free_rows[] = {"passes", "time", "noise", "threads"};
+static const char *const free_rows[] = {"passes", "time", "noise", "threads", NULL};
 
 static char *program_of(const render_identity *who)
 {
@@ -37,8 +38,7 @@ bool render_save_checkpoint(const render *r, const render_identity *who, const c
         error_set(error, ERROR_USAGE, "cannot write %s: no pass is done", path);
         return false;
     }
-    const render_plan plan = render_plan_of(&r->plan);
-    g_autofree char *program = program_of(who), *digest = render_plan_digest(&plan);
+    g_autofree char *program = program_of(who), *digest = render_digest(r);
     const checkpoint c = {.program = program,
                           .scene = who->scene,
                           .plan = digest,
@@ -48,32 +48,6 @@ bool render_save_checkpoint(const render *r, const render_identity *who, const c
                           .asked = r->asked,
                           .statistics = r->statistics};
     return checkpoint_write(&c, &r->film, path, error);
-}
-
-static bool is_free(const setting_row *row)
-{
-    for (size_t i = 0; i < G_N_ELEMENTS(free_rows); i++)
-        if (strcmp(row->name, free_rows[i]) == 0)
-            return true;
-    return false;
-}
-
-static bool same_settings(const settings *now, const settings *then, const char *path,
-                          GError **error)
-{
-    size_t n;
-    const setting_row *rows = settings_table(&n);
-    for (size_t i = 0; i < n; i++) {
-        g_autofree char *a = settings_get(now, &rows[i]);
-        g_autofree char *b = settings_get(then, &rows[i]);
-        if (is_free(&rows[i]) || strcmp(a, b) == 0)
-            continue;
-        error_set(error, ERROR_INPUT,
-                  "%s: the checkpoint is of a render with %s = %s, not %s", path,
-                  rows[i].name, b, a);
-        return false;
-    }
-    return true;
 }
 
 /* Whether it is of this program, scene, picture and settings. */
@@ -93,8 +67,10 @@ static bool is_ours(const render *r, const checkpoint *c, const render_identity 
         error_set(error, ERROR_INPUT,
                   "%s: the checkpoint is of another scene, or of files that have changed",
                   path);
-    else
-        return same_settings(&r->asked, &c->asked, path, error);
+    else {
+        const settings_question question = {&r->asked, &c->asked, free_rows, path};
+        return same_settings(&question, "the checkpoint is of a render", error);
+    }
     return false;
 }
 

@@ -2,11 +2,15 @@
 
 #include "base/parallel.h"
 
+#include <string.h>
+
 enum { CHUNK = 256 }; /* size: of a thread's work */
 
 struct radius_cache {
+    size_t n;
     point_set *index;
-    float *radii; /* by the numbers of the index */
+    vec3 *places; /* by the numbers of the index */
+    float *radii; /* likewise */
 };
 
 float radius_of_nearest(const point_hits *nearest)
@@ -38,14 +42,33 @@ static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
     point_hits_clear(&hits);
 }
 
+/* Without its radii. */
+static radius_cache *cache_at(const vec3 *places, size_t n, GError **error)
+{
+    g_autoptr(radius_cache) cache = g_new0(radius_cache, 1);
+    cache->n = n;
+    cache->radii = g_new0(float, MAX(n, 1));
+    cache->places = g_aligned_alloc0(MAX(n, 1), sizeof *cache->places, 16);
+    memcpy(cache->places, places, n * sizeof *places);
+    cache->index = point_set_build(places, n, 1, error);
+    return cache->index ? g_steal_pointer(&cache) : NULL;
+}
+
+radius_cache *radius_cache_of(const vec3 *places, const float *radii, size_t n,
+                              GError **error)
+{
+    radius_cache *cache = cache_at(places, n, error);
+    if (cache)
+        memcpy(cache->radii, radii, n * sizeof *radii);
+    return cache;
+}
+
 radius_cache *radius_cache_build(const vec3 *places, size_t n,
                                  const radius_source *source, unsigned threads,
                                  GError **error)
 {
-    g_autoptr(radius_cache) cache = g_new0(radius_cache, 1);
-    cache->radii = g_new0(float, MAX(n, 1));
-    cache->index = point_set_build(places, n, 1, error);
-    if (!cache->index)
+    g_autoptr(radius_cache) cache = cache_at(places, n, error);
+    if (!cache)
         return NULL;
     radius_loop loop = {places, source, cache->radii};
     parallel_for(n, CHUNK, threads, NULL, find_radii, &loop);
@@ -58,7 +81,18 @@ void radius_cache_free(radius_cache *cache)
         return;
     point_set_free(cache->index);
     g_free(cache->radii);
+    g_aligned_free(cache->places);
     g_free(cache);
+}
+
+size_t radius_cache_count(const radius_cache *cache)
+{
+    return cache->n;
+}
+
+vec3 radius_cache_place(const radius_cache *cache, size_t i)
+{
+    return cache->places[i];
 }
 
 float radius_cache_nth(const radius_cache *cache, size_t i)

@@ -42,6 +42,14 @@ radius_cache *radius_cache_build(const vec3 *places, size_t n,
 void radius_cache_free(radius_cache *cache);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(radius_cache, radius_cache_free)
 
+/** @brief From radii that are known, at n places. NULL: out of memory. */
+radius_cache *radius_cache_of(const vec3 *places, const float *radii, size_t n,
+                              GError **error);
+
+/** @brief How many places there are. */
+size_t radius_cache_count(const radius_cache *cache);
+/** @brief Place i, in the order in which they were given. */
+vec3 radius_cache_place(const radius_cache *cache, size_t i);
 /** @brief That of place i, in the order in which they were given. */
 float radius_cache_nth(const radius_cache *cache, size_t i);
 

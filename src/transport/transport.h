@@ -130,6 +130,14 @@ typedef struct plan_trial {
 
 enum { MOST_PLAN_TRIALS = 4 }; /* size: caustic photons, guide, bright spots, one spare */
 
+/** @brief Photons that were traced before, in place of those that a pass would trace. */
+typedef struct photon_supply {
+    /** Those of a class in a slice of the shutter's time, in order of emission. */
+    bool (*take)(const void *data, uint32_t pass, photon_class c, int slice,
+                 trace_result *result, GError **error);
+    const void *data;
+} photon_supply;
+
 /** @brief Decisions taken once, before the first pass: of scene and settings alone, the
  * same on any machine with any number of threads. */
 typedef struct transport_plan {
@@ -162,14 +170,15 @@ typedef struct transport_plan {
     bool uses_mis;         /**< photons share caustics with paths from the eye */
     caustic_mis mis;       /**< what they share before radii are known, for trials */
     float *boost;          /**< share.boost; owned */
-    photon_store lit;      /**< places that light sampling found lit (path_effort_measure)
-                            */
-    float p_spots;         /**< path_pass.p_spots */
-    bool gathers;          /**< auto: photons carry indirect light too (plan/gather.h) */
-    double sample_rays;    /**< that a sample costs, photons apart ... */
-    double photon_rays;    /**< and its part of the photons of a pass */
-    float p_blurred;       /**< probability of a gather that is seen by way of a diffuse
-                              bounce, where photons share */
+    const photon_supply *supply; /**< borrowed; NULL: photons are traced */
+    photon_store lit;   /**< places that light sampling found lit (path_effort_measure)
+                         */
+    float p_spots;      /**< path_pass.p_spots */
+    bool gathers;       /**< auto: photons carry indirect light too (plan/gather.h) */
+    double sample_rays; /**< that a sample costs, photons apart ... */
+    double photon_rays; /**< and its part of the photons of a pass */
+    float p_blurred;    /**< probability of a gather that is seen by way of a diffuse
+                           bounce, where photons share */
     float p_blurred_in_media; /**< the same of one along a way through a medium: about
                                  one such a path */
 } transport_plan;
@@ -198,6 +207,13 @@ typedef struct transport_scratch {
 bool transport_scratch_init(transport_scratch *scratch, size_t n_groups, GError **error);
 void transport_scratch_clear(transport_scratch *scratch);
 
+/** @brief Some of the photons of a pass: [begin, end) of a class in a slice of time. */
+typedef struct photon_part {
+    photon_class c;
+    int slice;
+    uint64_t begin, end;
+} photon_part;
+
 /** @brief The photons of a pass without its picture: sent by what begin_pass sends them
  * with. */
 typedef struct photon_sender {
@@ -208,6 +224,11 @@ typedef struct photon_sender {
     /** Those of one class, in order of emission; counts are added to. */
     bool (*trace)(const void *pass, photon_class c, const cancel_flag *cancel,
                   transport_counts *counts, trace_result *result, GError **error);
+    /** Some of those alone, whose flux is their share of all. NULL: no pass can be made
+     * of photons that were traced before. */
+    bool (*trace_part)(const void *pass, const photon_part *part,
+                       const cancel_flag *cancel, transport_counts *counts,
+                       trace_result *result, GError **error);
     /** Tells each event of photon i of a class. Thread-safe. */
     void (*tell)(const void *pass, photon_class c, uint64_t i, photon_listener tell,
                  void *data);

@@ -33,7 +33,7 @@ found=$(strangers "$library")
 [ -z "$found" ]
 report only-ours $?
 
-tr '\n' ' ' <"$header" | grep -o 'NEPH_API [^;(]*(' |
+cat "$(dirname "$header")"/*.h | tr '\n' ' ' | grep -o 'NEPH_API [^;(]*(' |
     sed -n -E 's/.*[ *](neph_[a-z0-9_]*)\($/\1/p' | sort >"$work/declared"
 names "$library" >"$work/defined"
 missing=$(comm -23 "$work/declared" "$work/defined")

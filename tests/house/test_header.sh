@@ -4,8 +4,10 @@
 header=$1
 work=$(mktemp -d) || exit 99
 trap 'rm -rf "$work"' EXIT
-flags=$(pkg-config --cflags glib-2.0)
-printf '#include "%s"\n#include "%s"\n' "$header" "$header" >"$work/twice.c"
+flags="$(pkg-config --cflags glib-2.0) -I$(dirname "$(dirname "$header")")"
+for part in "$(dirname "$header")"/p*.h "$header" "$header"; do # a part first, too
+    printf '#include "%s"\n' "$part" >>"$work/twice.c"
+done
 cp "$work/twice.c" "$work/twice.cpp"
 printf 'Gibberish *neph_gibberish(void);\n' >"$work/fault.c"
 number=0

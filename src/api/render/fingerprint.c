@@ -1,5 +1,8 @@
 #include "api/render/fingerprint.h"
 
+#include "base/input.h"
+#include "format/pbrt/pbrt_sum.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -49,14 +52,48 @@ static void add_camera(GChecksum *sum, const NephScene *of)
     add_numbers(sum, rest, G_N_ELEMENTS(rest));
 }
 
+static void add_reading(GChecksum *sum, const NephScene *of)
+{
+    const double how[] = {of->lenient ? 1.0 : 0.0, of->thin_glass ? 1.0 : 0.0};
+    add_numbers(sum, how, G_N_ELEMENTS(how));
+}
+
 char *scene_fingerprint(const NephScene *of)
 {
     g_autoptr(GChecksum) sum = g_checksum_new(G_CHECKSUM_SHA256);
     const char *const *files = neph_scene_files(of);
-    const double how[] = {of->lenient ? 1.0 : 0.0, of->thin_glass ? 1.0 : 0.0};
-    add_numbers(sum, how, G_N_ELEMENTS(how));
+    add_reading(sum, of);
     for (; *files; files++)
         add_file(sum, *files);
     add_camera(sum, of);
+    return g_strdup(g_checksum_get_string(sum));
+}
+
+/* Of pbrt's text no more than what photons meet. */
+static void add_world(GChecksum *sum, const char *path)
+{
+    input in;
+    bool is_pbrt = g_str_has_suffix(path, ".pbrt") || g_str_has_suffix(path, ".pbrt.gz");
+    if (!is_pbrt || !input_open(&in, path, NULL)) {
+        add_file(sum, path);
+        return;
+    }
+    pbrt_sum_world(sum, in.data, in.size);
+    input_close(&in);
+}
+
+/* The shutter matters only to what moves while it is open. */
+char *world_fingerprint(const NephScene *of)
+{
+    g_autoptr(GChecksum) sum = g_checksum_new(G_CHECKSUM_SHA256);
+    const char *const *files = neph_scene_files(of);
+    const scene *s = of->scene;
+    const double time[] = {(double)s->shutter[0], (double)s->shutter[1]};
+    add_reading(sum, of);
+    if (s->moves)
+        add_numbers(sum, time, G_N_ELEMENTS(time));
+    add_world(sum, files[0]);
+    for (files++; *files; files++)
+        add_file(sum, *files);
     return g_strdup(g_checksum_get_string(sum));
 }

@@ -8,3 +8,5 @@
 
 /** @brief SHA-256 in hex digits; owned by the caller. Reads the scene's files. */
 char *scene_fingerprint(const NephScene *of);
+/** @brief The same of what photons meet, wherever it is seen from and however large. */
+char *world_fingerprint(const NephScene *of);

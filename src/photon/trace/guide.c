@@ -311,3 +311,36 @@ void emission_guide_learn(emission_guide *guide, const emission_record *records,
     if (tally_at(tallies, 0)->importance > 0.0)
         set_masses(guide, tallies);
 }
+
+/* ---- As bytes ---- */
+
+void emission_guide_put(const emission_guide *guide, GByteArray *to)
+{
+    size_t n = guide ? guide->nodes->len : 0;
+    bytes_put_count(to, n);
+    for (size_t i = 0; i < n; i++)
+        bytes_put(to, node_at(guide, (int)i), 1, sizeof(guide_node));
+}
+
+/* Children stand behind their parents: a way down ends. */
+static bool node_is_sound(const guide_node *node, int i, size_t n)
+{
+    bool leads_down =
+        node->child == 0 || (node->child > i && (size_t)node->child + 1 < n);
+    return leads_down && node->axis >= 0 && node->axis < EMISSION_DIMENSIONS &&
+           node->mass > 0.0 && volume(node) > 0.0;
+}
+
+emission_guide *emission_guide_get(bytes_reader *from)
+{
+    size_t n = bytes_get_count(from, sizeof(guide_node));
+    if (n == 0)
+        return NULL;
+    g_autoptr(emission_guide) guide = emission_guide_new();
+    g_array_set_size(guide->nodes, (guint)n);
+    for (size_t i = 0; i < n; i++) {
+        bytes_get(from, node_at(guide, (int)i), 1, sizeof(guide_node));
+        from->failed |= !node_is_sound(node_at(guide, (int)i), (int)i, n);
+    }
+    return from->failed ? NULL : g_steal_pointer(&guide);
+}

@@ -18,6 +18,7 @@
  */
 #pragma once
 
+#include "base/bytes.h"
 #include "base/parallel.h"
 #include "math/sampler.h"
 
@@ -54,3 +55,9 @@ float emission_guide_draw(const emission_guide *guide, sampler *random,
 /** @brief Density at a point of the cube. */
 float emission_guide_density(const emission_guide *guide,
                              const float u[EMISSION_DIMENSIONS]);
+
+/** @brief Appends the guide, which may be NULL. */
+void emission_guide_put(const emission_guide *guide, GByteArray *to);
+/** @brief Reads what emission_guide_put wrote. @return owned; NULL: there was none, or
+ * the reader has failed */
+emission_guide *emission_guide_get(bytes_reader *from);

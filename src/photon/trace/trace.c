@@ -65,6 +65,7 @@ void photon_tell(const trace_task *task, uint64_t index, photon_listener tell_ev
 
 typedef struct trace_loop {
     const trace_task *task;
+    uint64_t first;     /* index of the first to emit */
     trace_result empty; /* what each chunk starts from */
     trace_chunk *chunks;
 } trace_loop;
@@ -77,8 +78,7 @@ static void trace_some(size_t begin, size_t end, unsigned thread, void *data)
     out->of = loop->empty;
     const cancel_flag *cancel = loop->task->cancel;
     for (size_t i = begin; i < end && !out->error && !cancelled(cancel); i++) {
-        photon_path path = {
-            .task = loop->task, .index = loop->task->first + i, .out = out};
+        photon_path path = {.task = loop->task, .index = loop->first + i, .out = out};
         trace_one(&path);
     }
 }
@@ -97,13 +97,13 @@ bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
 {
     unsigned threads = (unsigned)task->how->threads;
     *result = empty_result(task->scene, oriented);
-    size_t n_chunks = ((size_t)task->n_photons + CHUNK - 1) / CHUNK;
+    size_t n = (size_t)(task->end > 0 ? task->end - task->begin : task->n_photons);
+    size_t n_chunks = (n + CHUNK - 1) / CHUNK;
     trace_chunk *chunks = big_alloc(n_chunks, sizeof *chunks, "photon chunks", error);
     if (!chunks)
         return false;
-    trace_loop loop = {task, *result, chunks};
-    bool done = parallel_for((size_t)task->n_photons, CHUNK, threads, task->cancel,
-                             trace_some, &loop);
+    trace_loop loop = {task, task->first + task->begin, *result, chunks};
+    bool done = parallel_for(n, CHUNK, threads, task->cancel, trace_some, &loop);
     if (!done)
         error_set(error, ERROR_CANCELLED, "cancelled");
     bool joined = done && trace_chunks_join(chunks, n_chunks, threads, result, error);

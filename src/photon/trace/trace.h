@@ -79,8 +79,9 @@ typedef struct trace_task {
                                    NULL: nothing. With it, photons that landed go on and
                                    land again where specular or glossy bounces take them
                                    next */
-    uint64_t n_photons;     /**< to emit */
+    uint64_t n_photons;     /**< that the light is shared among */
     uint64_t first;         /**< index of the first of them */
+    uint64_t begin, end;    /**< those of them to emit: [begin, end); 0, 0: all */
     int slice, n_slices; /**< of the shutter's time, that they are emitted in; 0 of 0: all
                             of it */
     const cancel_flag *cancel; /**< may be NULL */

@@ -66,6 +66,7 @@ typedef struct slice_task {
     const photonmap_pass *pass;
     int slice;
     photon_class c;
+    uint64_t begin, end; /* of its photons; 0, 0: all */
 } slice_task;
 
 static double radius_of(const transport_plan *plan, photon_class c, uint32_t index)
@@ -96,6 +97,8 @@ static trace_task trace_task_for(const slice_task *s, const cancel_flag *cancel)
         .mis = pass->plan->uses_mis ? &pass->mis : NULL,
         .n_photons = each,
         .first = each * (uint64_t)s->slice,
+        .begin = s->begin,
+        .end = s->end,
         .slice = s->slice,
         .n_slices = pass->n_slices,
         .cancel = cancel,
@@ -113,14 +116,16 @@ static bool trace_class(const slice_task *s, const cancel_flag *cancel,
 {
     double start = clock_seconds();
     trace_task task = trace_task_for(s, cancel);
+    const photon_supply *supply = s->pass->plan->supply;
     counts->radius[s->c] = radius_of(s->pass->plan, s->c, s->pass->index);
     bool oriented = s->pass->how->edges || keeps_irradiance(s->pass);
-    if (!photon_trace(&task, oriented, result, error))
+    if (supply ? !supply->take(supply->data, task.pass, s->c, s->slice, result, error)
+               : !photon_trace(&task, oriented, result, error))
         return false;
     counts->time_trace += clock_seconds() - start;
     counts->photon_rays += result->n_rays;
     counts->n_not_finite += result->n_not_finite;
-    counts->emitted[s->c] += task.n_photons;
+    counts->emitted[s->c] += s->end > 0 ? s->end - s->begin : task.n_photons;
     counts->stored[s->c] += result->photons.n + result->in_media.n;
     return true;
 }
@@ -193,7 +198,7 @@ static bool make_slice(photonmap_pass *pass, int slice, const cancel_flag *cance
     trace_result points[N_PHOTON_CLASSES] = {0};
     bool ok = true;
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++) {
-        const slice_task s = {pass, slice, (photon_class)c};
+        const slice_task s = {.pass = pass, .slice = slice, .c = (photon_class)c};
         if (pass->plan->n_photons[c] > 0)
             ok = make_map(pass, &s, cancel, &points[c], counts, error);
     }
@@ -285,7 +290,7 @@ static bool trace_photons(const void *pass, photon_class c, const cancel_flag *c
 {
     bool ok = true;
     for (int slice = 0; slice < n_slices(pass) && ok; slice++) {
-        const slice_task s = {pass, slice, c};
+        const slice_task s = {.pass = pass, .slice = slice, .c = c};
         trace_result more = {0};
         ok = trace_class(&s, cancel, slice == 0 ? result : &more, counts, error) &&
              trace_result_append(result, &more, error);
@@ -294,10 +299,18 @@ static bool trace_photons(const void *pass, photon_class c, const cancel_flag *c
     return ok;
 }
 
+static bool trace_part(const void *pass, const photon_part *part,
+                       const cancel_flag *cancel, transport_counts *counts,
+                       trace_result *result, GError **error)
+{
+    const slice_task s = {pass, part->slice, part->c, part->begin, part->end};
+    return trace_class(&s, cancel, result, counts, error);
+}
+
 static void tell_photon(const void *pass, photon_class c, uint64_t i,
                         photon_listener tell, void *data)
 {
-    const slice_task s = {pass, (int)(i / n_in_slice(pass, c)), c};
+    const slice_task s = {.pass = pass, .slice = (int)(i / n_in_slice(pass, c)), .c = c};
     const trace_task task = trace_task_for(&s, NULL);
     photon_tell(&task, i, tell, data);
 }
@@ -306,6 +319,7 @@ const photon_sender photonmap_photons = {
     .open = open_pass,
     .count = count_photons,
     .trace = trace_photons,
+    .trace_part = trace_part,
     .tell = tell_photon,
     .n_wholes = n_slices,
     .close = end_pass,
