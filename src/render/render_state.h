@@ -1,11 +1,11 @@
 /*
  * What a render is made of, for the files that are its parts: render.c, which runs it,
- * and resume.c, which lets another process go on with it.
+ * and kept/resume.c, which lets another process go on with it.
  */
 #pragma once
 
+#include "render/kept/photon_file.h"
 #include "render/look.h"
-#include "render/photon_file.h"
 #include "render/render.h"
 #include "render/stop.h"
 
@@ -61,7 +61,7 @@ void render_tell(render *r, double pass_fraction);
 void render_on_progress(void *data);
 /** @brief Finds out how long writing takes, if that is due. */
 void render_time_writing(render *r);
-/* ---- render_photons.c ---- */
+/* ---- kept/render_photons.c ---- */
 
 /** @brief Begins a pass: with its own photons, or those of the file. */
 void *render_begin_pass(render *r, const transport_plan *plan, uint32_t index,

@@ -3,8 +3,8 @@
  * file that is not what it was, or of something else, is refused with the reason.
  */
 #include "base/memory.h"
-#include "render/checkpoint.h"
 #include "render/film_planes.h"
+#include "render/kept/checkpoint.h"
 #include "rooms.h"
 
 #include <glib/gstdio.h>

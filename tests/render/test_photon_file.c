@@ -3,7 +3,7 @@
  * itself; the camera may be another; and a file that is not what it was, or of something
  * else, is refused with the reason.
  */
-#include "render/photon_file.h"
+#include "render/kept/photon_file.h"
 #include "rooms.h"
 
 #include <glib/gstdio.h>

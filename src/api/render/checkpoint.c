@@ -1,4 +1,4 @@
-#include "render/checkpoint.h"
+#include "render/kept/checkpoint.h"
 
 #include "api/render/fingerprint.h"
 #include "api/render/render.h"

@@ -1,4 +1,4 @@
-#include "render/photon_file.h"
+#include "render/kept/photon_file.h"
 
 #include "api/asking.h"
 #include "api/render/fingerprint.h"

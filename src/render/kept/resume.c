@@ -3,10 +3,10 @@
  * checkpoint and comes back from one. Passes are functions of the plan and their number,
  * and the plan is one of scene and settings, so that nothing else need be kept.
  */
-#include "render/checkpoint.h"
 #include "render/film_planes.h"
+#include "render/kept/checkpoint.h"
+#include "render/kept/same_settings.h"
 #include "render/render_state.h"
-#include "render/same_settings.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "render/checked_file.h"
+#include "render/kept/checked_file.h"
 
 #include "base/input.h"
 

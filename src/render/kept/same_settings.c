@@ -1,4 +1,4 @@
-#include "render/same_settings.h"
+#include "render/kept/same_settings.h"
 
 #include <glib.h>
 #include <string.h>

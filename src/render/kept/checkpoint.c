@@ -1,8 +1,8 @@
-#include "render/checkpoint.h"
+#include "render/kept/checkpoint.h"
 
 #include "base/output.h"
-#include "render/checked_file.h"
 #include "render/film_planes.h"
+#include "render/kept/checked_file.h"
 
 #include <string.h>
 

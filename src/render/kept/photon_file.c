@@ -1,9 +1,9 @@
-#include "render/photon_file.h"
+#include "render/kept/photon_file.h"
 
 #include "base/memory.h"
 #include "base/output.h"
-#include "render/checked_file.h"
-#include "render/same_settings.h"
+#include "render/kept/checked_file.h"
+#include "render/kept/same_settings.h"
 #include "transport/plan/plan_bytes.h"
 
 #include <string.h>
