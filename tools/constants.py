@@ -17,7 +17,7 @@ import pathlib
 import re
 import sys
 
-MOST = 48
+MOST = 30
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ["src/photon", "src/transport"]

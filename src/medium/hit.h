@@ -124,6 +124,12 @@ static inline ray hit_ray(const surface_hit *hit, vec3 direction)
                  hit_media(hit, direction)};
 }
 
+/** @brief The part of a way to something beyond which rounding may meet it already. */
+static inline float distance_short_of(float distance)
+{
+    return distance * (1.0f - 1e-4f);
+}
+
 /** @brief The ray from a hit to a point at distance in direction. It ends short of the
  * point by so much that rounding, which grows with coordinates, does not let it meet the
  * surface there.
@@ -132,6 +138,6 @@ static inline ray hit_ray_to(const surface_hit *hit, vec3 direction, float dista
 {
     ray r = hit_ray(hit, direction);
     float margin = 2.0f * length3(r.origin - hit->p);
-    r.t_max = maxf(distance * (1.0f - 1e-4f) - margin, 0.0f);
+    r.t_max = maxf(distance_short_of(distance) - margin, 0.0f);
     return r;
 }

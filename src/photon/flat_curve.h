@@ -4,6 +4,9 @@
  * A flat curve turns to face every ray, so that light and the eye see two surfaces there,
  * which share the axis. Photons are kept on the axis, and those of one curve within reach
  * along it are a density over as much area as pieces of it show across the axis.
+ *
+ * Without photons on curves no path brings the sun to them through glass
+ * (test: flat-curves/under-glass).
  */
 #pragma once
 

@@ -26,6 +26,8 @@
 #include "photon/kernel.h"
 #include "scene/scene.h"
 
+/** math: of a circle, two an octant, told apart by signs and tangents
+ * (neighbourhood_sector). */
 enum { NEIGHBOURHOOD_SECTORS = 16 };
 
 /** @brief A side of the horizon: points with x nx + y ny > c lie within. */

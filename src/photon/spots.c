@@ -8,10 +8,10 @@
 
 #include <string.h>
 
-enum {
-    MOST_SPOTS = 512,
-    NEIGHBOURS = 6, /* that a spot reaches */
-};
+enum { MOST_SPOTS = 512 };
+
+/* math: that a spot reaches, itself among them: so many equal discs touch one. */
+enum { NEIGHBOURS = 7 };
 
 /* The widest spot, over the median of them: what lies alone covers no more. */
 #define WIDEST 4.0f

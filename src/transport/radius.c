@@ -79,7 +79,7 @@ static bool nearest_photons(const void *data, vec3 p, point_hits *hits)
 static radius_cache *cache_radii(const radius_rule *rule, GError **error)
 {
     const photon_store *store = photon_map_store(rule->map);
-    size_t n = MIN(store->n, RADIUS_PLACES);
+    size_t n = MIN(store->n, MOST_PLACES);
     vec3 *places = g_aligned_alloc0(MAX(n, 1), sizeof *places, 16);
     for (size_t i = 0; i < n; i++)
         places[i] = photon_store_get(store, radius_place(i, store->n)).p;
@@ -97,7 +97,7 @@ static double typical_radius(const radius_rule *rule, const radius_cache *cache,
 {
     const transport_plan *plan = rule->pilot->plan;
     const photon_store *store = photon_map_store(rule->map);
-    size_t n = at_photons ? MIN(store->n, RADIUS_PLACES) : plan->n_sight;
+    size_t n = at_photons ? MIN(store->n, MOST_PLACES) : plan->n_sight;
     float narrow = 0.2f * (float)rule->largest;
     float *radii = g_new0(float, n + 1);
     point_hits hits = {0};

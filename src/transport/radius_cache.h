@@ -24,17 +24,17 @@ typedef struct radius_source {
     const void *data;
 } radius_source;
 
-/** @brief At most so many places are of use: one for each patch as wide as a hundredth of
- * what holds the scene. */
-enum { RADIUS_PLACES = 8192 };
+/** @brief At most so many places of a scene are asked about: one for a patch of 14 x 14
+ * pixels in a picture of 1024 x 768, or as wide as a sixtieth of what holds the scene. */
+enum { MOST_PLACES = 4096 };
 
-/** @brief Of n points, evenly chosen, which is place i of RADIUS_PLACES or fewer. */
+/** @brief Of n points, evenly chosen, which is place i of MOST_PLACES or fewer. */
 static inline size_t radius_place(size_t i, size_t n)
 {
-    return n > RADIUS_PLACES ? i * n / RADIUS_PLACES : i;
+    return n > MOST_PLACES ? i * n / MOST_PLACES : i;
 }
 
-/** @brief Finds radii at n places, RADIUS_PLACES at most, which do not depend on the
+/** @brief Finds radii at n places, MOST_PLACES at most, which do not depend on the
  * number of threads. NULL: out of memory. */
 radius_cache *radius_cache_build(const vec3 *places, size_t n,
                                  const radius_source *source, unsigned threads,

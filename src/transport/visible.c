@@ -3,16 +3,6 @@
 #include "scene/advance.h"
 #include "transport/plan/work.h"
 
-#include <stdlib.h>
-#include <string.h>
-
-/* One for a patch of 14 x 14 pixels in a picture of 1024 x 768. */
-enum { MOST_POINTS = 4096 };
-
-/* One of so many points is near: what is beyond a window, however much of the picture it
-   is, makes no pixels wide. */
-enum { NEAR = 10 };
-
 /* What all camera rays share. */
 typedef struct lookout {
     const scene *scene;
@@ -81,7 +71,7 @@ void plan_look(transport_plan *plan)
 {
     if (plan->sight)
         return;
-    uint32_t n = plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_POINTS);
+    uint32_t n = plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_PLACES);
     plan->sight = g_aligned_alloc0(n, sizeof *plan->sight, 16);
     plan->n_sight = find_visible_points(plan, n, plan->sight);
     plan->planning += n * PHOTON_RAYS;
@@ -97,22 +87,11 @@ point_set *visible_index(const transport_plan *plan, GError **error)
     return index;
 }
 
-static int by_pixel(const void *a, const void *b)
-{
-    float x = ((const visible_point *)a)->pixel, y = ((const visible_point *)b)->pixel;
-    return (x > y) - (x < y);
-}
-
 float visible_pixel(transport_plan *plan)
 {
     plan_look(plan);
-    size_t n = plan->n_sight;
-    if (n == 0)
-        return 0.0f;
-    visible_point *points = g_aligned_alloc0(n, sizeof *points, 16);
-    memcpy(points, plan->sight, n * sizeof *points);
-    qsort(points, n, sizeof *points, by_pixel);
-    float pixel = points[n / NEAR].pixel;
-    g_aligned_free(points);
-    return pixel;
+    double sum = 0.0;
+    for (size_t i = 0; i < plan->n_sight; i++)
+        sum += 1.0 / (double)plan->sight[i].pixel;
+    return sum > 0.0 ? (float)((double)plan->n_sight / sum) : 0.0f;
 }

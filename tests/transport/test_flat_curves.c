@@ -123,6 +123,49 @@ static void test_instances(gconstpointer place)
                strand, &how);
 }
 
+/* ---- Under glass ---- */
+
+static const way glass_ways[] = {
+    {"auto", "integrator=auto passes=8 spp=8 photons=40000", 0.05},
+    {"photonmap", "integrator=photonmap passes=8 spp=8 photons=40000 radius=0.1", 0.05},
+    {"vcm", "integrator=vcm passes=8 spp=8 photons=40000 radius=0.1", 0.05},
+};
+
+#define PANE                                                                             \
+    "AttributeBegin Material \"dielectric\" "                                            \
+    "Shape \"trianglemesh\" \"point3 P\" [-6 -6 4 6 -6 4 6 6 4 -6 6 4] "                 \
+    "\"integer indices\" [0 2 1 0 3 2] "                                                 \
+    "Shape \"trianglemesh\" \"point3 P\" [-6 -6 5 6 -6 5 6 6 5 -6 6 5] "                 \
+    "\"integer indices\" [0 1 2 0 2 3] AttributeEnd "
+
+static view *under_sun(const char *pane)
+{
+    g_autofree char *text = g_strconcat(
+        "LookAt 0 -2 1  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 10\n", SIZE(8),
+        "WorldBegin LightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [0 0 1] "
+        "\"point3 to\" [0 0 0]\n",
+        pane,
+        "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] Shape \"curve\" \"string "
+        "type\" \"flat\" \"float width\" 1 \"point3 P\" [-3 0 0 -1 0 0 1 0 0 3 0 0]\n",
+        NULL);
+    return view_of(text);
+}
+
+/* A pane lets (1 - R) / (1 + R) of the sun through, R = (0.5 / 2.5)², on a curve that no
+   path from the eye finds it by: photons must land on curves. */
+static void test_under_glass(gconstpointer data)
+{
+    const way *how = data;
+    g_autoptr(view) bare = under_sun(""), under = under_sun(PANE);
+    g_autoptr(image) path = render_with(bare, "integrator=path passes=4 spp=16");
+    g_autoptr(image) lit = render_with(under, how->words);
+    double found = mean_of(lit, ""), expected = mean_of(path, "") * (1 - 0.04) / 1.04;
+    g_test_message("%s: %g, expected %g (%+.2f %%)", how->words, found, expected,
+                   100 * (found / expected - 1));
+    g_assert_cmpfloat(expected, >, 0);
+    g_assert_cmpfloat(fabs(found / expected - 1), <, how->tolerance);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -134,6 +177,11 @@ int main(int argc, char **argv)
         g_autofree char *name =
             g_strconcat("/flat-curves/room/", room_ways[i].name, NULL);
         g_test_add_data_func(name, &room_ways[i], test_room);
+    }
+    for (size_t i = 0; i < G_N_ELEMENTS(glass_ways); i++) {
+        g_autofree char *name =
+            g_strconcat("/flat-curves/under-glass/", glass_ways[i].name, NULL);
+        g_test_add_data_func(name, &glass_ways[i], test_under_glass);
     }
     g_test_add_data_func("/flat-curves/instances/at-rest", "Scale 0.5 0.5 0.5",
                          test_instances);

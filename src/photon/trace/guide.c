@@ -3,17 +3,10 @@
 #include <string.h>
 
 enum {
-    BINS = 4, /* an axis' unevenness is judged in quarters */
-    MAX_CELLS = 4096,
-    MIN_ARRIVALS = 24, /* a cell with fewer is not split */
-    MAX_DEPTH = 40,    /* math: cells finer than floats tell apart are none */
+    BINS = 4,       /* an axis' unevenness is judged in quarters */
+    MAX_DEPTH = 40, /* math: cells finer than floats tell apart are none */
     N_PAIRS = EMISSION_DIMENSIONS * (EMISSION_DIMENSIONS - 1) / 2,
 };
-
-/* Share of photons, and of each cell's, drawn without regard to what was learned inside
-   it: next to where much arrives it thins out step by step, and what arrives from there
-   unforeseen is not much heavier than its neighbours. */
-#define DEFENSIVE_SHARE 0.05
 
 /* A cell is split where the fullest and emptiest quarters along some axis differ by this
    share of what it holds, */
@@ -171,9 +164,9 @@ static double unevenness(const guide_tally *tally, int axis)
  */
 static int uneven_axis(const guide_tally *tally)
 {
-    double chance = 2.0 / sqrt((double)MAX(tally->arrivals, 1)), least = UNEVEN;
+    double chance = 2.0 / sqrt((double)MAX(tally->arrivals, 1));
+    double least = MAX(UNEVEN, chance);
     int axis = -1;
-    least = MAX(least, chance);
     for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
         double u = unevenness(tally, a);
         if (u > least) {
@@ -214,11 +207,11 @@ static int correlated_axis(const guide_tally *tally)
 }
 
 /* The axis to split a leaf along, or -1. */
-static int axis_to_split(const emission_guide *guide, const guide_node *leaf,
-                         const guide_tally *tally)
+static int axis_to_split(const guide_node *leaf, const guide_tally *tally)
 {
-    if (leaf->child || leaf->depth >= MAX_DEPTH || tally->arrivals < MIN_ARRIVALS ||
-        guide->nodes->len + 2 > 2 * MAX_CELLS)
+    const bool tells =
+        tally->arrivals >= BINS * BINS; /* one in each square of two axes */
+    if (leaf->child || leaf->depth >= MAX_DEPTH || !tells)
         return -1;
     int axis = uneven_axis(tally);
     return axis >= 0 ? axis : correlated_axis(tally);
@@ -251,7 +244,7 @@ static bool refine(emission_guide *guide, GArray *tallies, const emission_record
     }
     bool any = false;
     for (int i = 0; i < (int)tallies->len; i++) {
-        int axis = axis_to_split(guide, node_at(guide, i), tally_at(tallies, i));
+        int axis = axis_to_split(node_at(guide, i), tally_at(tallies, i));
         if (axis >= 0) {
             split(guide, i, axis);
             any = true;
@@ -284,17 +277,18 @@ static double smoothed_share(const guide_tally *parent, const guide_tally *half)
     double n = (double)parent->arrivals;
     double seen = n > 0.0 ? half->importance / parent->importance : 0.5;
     double learned = (seen * n + 1.0) / (n + 2.0);
-    return (1.0 - DEFENSIVE_SHARE) * learned + 0.5 * DEFENSIVE_SHARE;
+    const double share = (double)DEFENSIVE_SHARE;
+    return (1.0 - share) * learned + 0.5 * share;
 }
 
 static void set_masses(emission_guide *guide, GArray *tallies)
 {
+    const double share = (double)DEFENSIVE_SHARE;
     tally_at(tallies, 0)->share = 1.0;
     for (int i = 0; i < (int)tallies->len; i++) {
         guide_node *node = node_at(guide, i);
         const guide_tally *tally = tally_at(tallies, i);
-        node->mass =
-            DEFENSIVE_SHARE * volume(node) + (1.0 - DEFENSIVE_SHARE) * tally->share;
+        node->mass = share * volume(node) + (1.0 - share) * tally->share;
         for (int k = 0; k < 2 && node->child; k++) {
             guide_tally *half = tally_at(tallies, node->child + k);
             half->share = tally->share * smoothed_share(tally, half);

@@ -27,6 +27,13 @@
 /** math: of a start: light, primitive, position (2), direction (2) */
 enum { EMISSION_DIMENSIONS = 6 };
 
+/** The share that what is not known gets. Of photons, and of each cell's, so many are
+ * drawn without regard to what was learned inside it: next to where much arrives it thins
+ * out step by step, and what arrives from there unforeseen is not much heavier than its
+ * neighbours. A photon that lands out of the camera's sight is worth this share of one in
+ * sight: it may still be seen by way of other surfaces. */
+#define DEFENSIVE_SHARE 0.05f
+
 typedef struct emission_guide emission_guide;
 
 /** @brief A photon that arrived usefully: where it started, and what it was worth. */

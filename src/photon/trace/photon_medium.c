@@ -1,13 +1,10 @@
 #include "medium/medium_sample.h"
 #include "photon/trace/photon_path.h"
 
-/* Ways through media that each leave a photon, before fewer do. */
-enum { WAYS_KEPT = 8 };
-
 /* Of a photon that wanders on and on, fewer and fewer ways leave one. */
 static float chance_to_land(const photon_path *path)
 {
-    return minf(1.0f, (float)WAYS_KEPT / (float)(1 + path->n_in_media));
+    return 1.0f / sqrtf((float)(1 + path->n_in_media));
 }
 
 /* Each way through a medium leaves one photon on it, if its class is the one traced: for

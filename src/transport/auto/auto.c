@@ -7,15 +7,12 @@
 #include "transport/plan/work.h"
 #include "transport/visible.h"
 
-/* Before radii are known: so many pixels, for the share that trial photons take. */
-#define TRIAL_PIXELS 4.0
-
 /* The share of trial photons, as of a pass with a radius of a few pixels. */
 static caustic_mis trial_mis(transport_plan *plan)
 {
     double radius = plan->how.radius;
     if (!(radius > 0.0))
-        radius = TRIAL_PIXELS * (double)visible_pixel(plan);
+        radius = SHARP_PIXELS * (double)visible_pixel(plan);
     if (!(radius > 0.0))
         radius = 0.01 * (double)plan->scene->radius;
     return (caustic_mis){.casters = plan->casters, .discs = caustic_discs(plan, radius)};

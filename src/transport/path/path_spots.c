@@ -143,7 +143,7 @@ static void look_aside(path_walk *walk, const camera_path *path, const surface_h
 static void note_cost(const path_walk *walk, const camera_path *path, uint64_t before)
 {
     double queries = walk->pass->caustics ? 2.0 : 1.0;
-    double rays = (double)(walk->scratch->shadow_rays - before) + queries * GATHER_RAYS;
+    double rays = (double)(walk->scratch->shadow_rays - before) + queries * PHOTON_RAYS;
     walk->pass->trial->rays += rays * (double)importance(path);
 }
 

@@ -18,10 +18,6 @@
 
 /* ---- Irradiance kept at photon positions ---- */
 
-/* Normals must agree this well (cosine) for a kept irradiance to be used. */
-#define NORMAL_AGREEMENT 0.9f
-enum { NEAREST_KEPT = 4 };
-
 /* How far off a kept irradiance may be, over the radius it was estimated with. */
 #define KEPT_REACH 0.5f
 
@@ -229,7 +225,7 @@ static unsigned faces_lanes(const void *data, size_t first, unsigned bits)
 
 static const point_rules facing_rules = {.accepts = faces, .accepted = faces_lanes};
 
-/* The nearest kept irradiance of a surface that lies alike, among the few nearest of all.
+/* The nearest kept irradiance of a surface that faces the same way.
    @return false: there is none within reach */
 static bool kept_irradiance(const map_place *at, estimate_scratch *scratch,
                             spectrum *irradiance, const spectrum **groups)
@@ -237,22 +233,18 @@ static bool kept_irradiance(const map_place *at, estimate_scratch *scratch,
     const photonmap_pass *pass = at->pass;
     point_hits *hits = &scratch->hits;
     const irradiance_cache *kept = pass->irradiance[at->slice];
-    float best = INFINITY, reach = kept_reach(at, hits);
+    float reach = kept_reach(at, hits);
     const facing by = {kept->normal, at->n};
     const point_query query = {.p = at->p, .rules = &facing_rules, .data = &by};
-    if (!point_index_nearest(kept->index, &query, NEAREST_KEPT, reach, hits))
+    if (!point_index_nearest(kept->index, &query, 1, reach, hits))
         scratch->failed = true;
-    for (size_t i = 0; i < hits->n; i++) {
-        size_t k = hits->index[i];
-        bool alike = dot3(direction_unpack(kept->normal[k]), at->n) >= NORMAL_AGREEMENT;
-        if (!alike || hits->distance2[i] >= best)
-            continue;
-        best = hits->distance2[i];
-        *irradiance = kept->irradiance[k];
-        if (kept->groups)
-            *groups = kept->groups + (size_t)pass->scene->n_light_groups * k;
-    }
-    return isfinite(best);
+    if (hits->n == 0)
+        return false;
+    size_t k = hits->index[0];
+    *irradiance = kept->irradiance[k];
+    if (kept->groups)
+        *groups = kept->groups + (size_t)pass->scene->n_light_groups * k;
+    return true;
 }
 
 /* ---- Gather rays ---- */

@@ -27,10 +27,8 @@ estimate_options photonmap_estimate_options(const settings *how, photon_class c,
     };
 }
 
-#define LARGEST_OVER_TYPICAL 6.0f
-
 /* A place further from its radius' own place than that radius reaches is emptier still.
-   No radius is so much larger than the typical one that a look-up gets slow. */
+ */
 static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
                           point_hits *hits)
 {
@@ -42,8 +40,7 @@ static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
     if (r < 0.0f)
         return typical;
     float shrunk = typical / (float)pass->plan->radius[c];
-    return minf(maxf(r, sqrtf(hits->distance2[0])) * shrunk,
-                LARGEST_OVER_TYPICAL * typical);
+    return maxf(r, sqrtf(hits->distance2[0])) * shrunk;
 }
 
 estimate_options photonmap_options_at(const photonmap_pass *pass, photon_class c, vec3 p,

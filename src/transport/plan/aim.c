@@ -14,10 +14,6 @@ enum { CHUNK = 256 }; /* size: of a thread's work */
 /* id: trial photons are those of passes that no render reaches. */
 #define TRIAL_PASS 0xfffffff0u
 
-/* A photon that lands out of the camera's sight is worth this share of one in sight: it
-   may still be seen by way of other surfaces. */
-#define UNSEEN_VALUE 0.05f
-
 /* What a trial photon adds to the noise that paths would have, and to what is left of it
    with shares of all photons. */
 typedef struct trial_noise {
@@ -98,8 +94,8 @@ static float sight_in_medium(const trials *all, const surface_hit *hit)
         return 0.0f;
     float transmittance = spectrum_mean(scene_transmittance(task->scene, &r, &task->w));
     float pixels = (float)all->pixels_each;
-    return transmittance < UNSEEN_VALUE ? 0.0f
-                                        : pixels * camera_pixel_area(c, eye.distance);
+    return transmittance < DEFENSIVE_SHARE ? 0.0f
+                                           : pixels * camera_pixel_area(c, eye.distance);
 }
 
 /* ---- Trials ---- */
@@ -136,7 +132,7 @@ static void note_arrival(const photon_event *event, void *data)
         return;
     float sight = event->hit->shape == NO_INDEX ? sight_in_medium(t->all, event->hit)
                                                 : sight_at(t->all, event->p, t->hits);
-    t->value += flux * (sight > 0.0f ? 1.0f : UNSEEN_VALUE);
+    t->value += flux * (sight > 0.0f ? 1.0f : DEFENSIVE_SHARE);
     if (sight > 0.0f)
         add_noise(&t->noise, event, sight);
     *(sight > 0.0f ? &t->noise.seen : &t->noise.unseen) += (double)flux;

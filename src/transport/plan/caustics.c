@@ -3,8 +3,8 @@
 #include "transport/plan/work.h"
 
 /* Photons of a pass that it is tried with at most: so many for each of the camera's
-   samples, and in the smallest picture so many that there is something to gather. */
-enum { PHOTONS_PER_SAMPLE = 8, PHOTONS_AT_ONCE = 4096 };
+   samples, and in the smallest picture one for each place that is asked about. */
+enum { PHOTONS_PER_SAMPLE = 8 };
 
 /* No fewer photons than this share of all, if there must be any; and no fewer blurred
    gathers than this share: what is weighed by more stands out in the picture. */
@@ -19,7 +19,7 @@ uint64_t caustics_most(const transport_plan *plan)
     const film_settings *film = &plan->view->film;
     int64_t own = how->class_photons[PHOTON_CAUSTIC];
     int64_t samples = (int64_t)film->width * film->height * how->spp;
-    int64_t most = MAX(PHOTONS_PER_SAMPLE * samples, PHOTONS_AT_ONCE);
+    int64_t most = MAX(PHOTONS_PER_SAMPLE * samples, MOST_PLACES);
     if (!caustic_casters_are_lit(plan->casters))
         return 0;
     return (uint64_t)(own > 0 ? own : MIN(settings_photons(how), most));
@@ -30,7 +30,7 @@ uint64_t caustics_most(const transport_plan *plan)
 static double gather_rays(const path_effort *paths)
 {
     double later = fmax(paths->surfaces - 1.0, 0.0);
-    return GATHER_RAYS * (2.0 * fmin(paths->surfaces, 1.0) + later);
+    return PHOTON_RAYS * (2.0 * fmin(paths->surfaces, 1.0) + later);
 }
 
 static double samples_a_pass(const transport_plan *plan)

@@ -195,14 +195,14 @@ static double rays_of(const transport_plan *plan, const transport_scratch *scrat
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         n_maps += plan->n_photons[c] > 0;
     double queries = 2.0 * n_maps * (double)scratch->camera_rays;
-    return (double)(scratch->camera_rays + scratch->shadow_rays) + GATHER_RAYS * queries;
+    return (double)(scratch->camera_rays + scratch->shadow_rays) + PHOTON_RAYS * queries;
 }
 
 static void run_places(gather_trial *t, transport_plan *plan, const path_pass *paths)
 {
     transport_scratch by_maps = {0}, by_paths = {0};
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x706c61636573u);
-    double each = 2.0 * plan->sample_rays + 5.0 * 4.0 * GATHER_RAYS;
+    double each = 2.0 * plan->sample_rays + 5.0 * 4.0 * PHOTON_RAYS;
     t->n = plan_trials_for(plan, 1.0, each, MOST_PAIRS);
     t->places = g_new0(gather_place, t->n);
     ask_maps(t, plan, key, false, &by_maps);

@@ -21,28 +21,27 @@
  * room. */
 #define SAMPLE_RAYS 4.0
 
-/** What a photon costs, in rays: counted were 0.9 to 1.1 where they start uniformly in
- * scenes/ring and scenes/glass-ball, 1.4 and 2.9 where they start guided. */
+/** What a photon costs, in rays, and what a query of a map does. Counted were 0.9 to 1.1
+ * where photons start uniformly in scenes/ring and scenes/glass-ball, 1.4 and 2.9 where
+ * they start guided; by the clock gathers took 1.7 rays for each surface met in the first
+ * and 1.0 in the other, where half of them gather. */
 #define PHOTON_RAYS 2.0
-
-/** A query of a map, in rays: by the clock gathers took 1.7 rays for each surface met in
- * scenes/ring and 1.0 in scenes/glass-ball, where half of them gather. */
-#define GATHER_RAYS 2.0
 
 /** What is tried must be better than what is there by so much: variances are known within
  * a factor of two, and noise that is even disturbs least. */
 #define CLEARLY_BETTER 0.65
 
-/** Fewer trials of anything tell nothing: then the decision is the cheap one. */
-enum { LEAST_TRIALS = 16 };
+/** Fewer trials of anything tell nothing, as fewer photons do of how close they lie: then
+ * the decision is the cheap one. */
+enum { LEAST_TRIALS = RADIUS_NEAREST };
 
-/** Photons, or light subpaths, that tell how dense they lie: of 16 that a distance is
- * measured by, some for each of a thousand places. */
-enum { MOST_PILOTS = 20000 };
+/** Photons, or light subpaths, that tell how dense they lie: those that a distance is
+ * measured by, for every fourth of the places. */
+enum { MOST_PILOTS = RADIUS_NEAREST * MOST_PLACES / 4 };
 
-/** Pairs of samples of a trial: a variance is then known within a tenth where no sample
- * stands out. */
-enum { MOST_PAIRS = 1024 };
+/** Pairs of samples of a trial, at every fourth of the places: a variance is then known
+ * within a tenth where no sample stands out. */
+enum { MOST_PAIRS = MOST_PLACES / 4 };
 
 /** @brief Camera samples of all passes that are planned. */
 double plan_samples(const transport_plan *plan);

@@ -28,7 +28,7 @@ static radius_cache *radii_among(const vec3 *points, size_t n, unsigned threads,
     g_autoptr(point_set) index = point_set_build(points, n, threads, error);
     if (!index)
         return NULL;
-    size_t n_places = MIN(n, RADIUS_PLACES);
+    size_t n_places = MIN(n, MOST_PLACES);
     vec3 *places = g_aligned_alloc0(MAX(n_places, 1), sizeof *places, 16);
     for (size_t i = 0; i < n_places; i++)
         places[i] = points[point_set_number(index, radius_place(i, n))];

@@ -11,9 +11,6 @@
 /* size: light subpaths per parallel piece of work */
 enum { CHUNK = 1024 };
 
-/* What the eye sees this close to its target, as a share of the way, is the target. */
-#define SHORTENING 1e-4f
-
 /* What one chunk found, until the chunks are joined. */
 typedef struct light_chunk {
     light_vertex *vertices;
@@ -125,7 +122,7 @@ static bool seen(const vcm_pass *pass, const surface_hit *hit,
     path_segment way = {.ray = {.origin = hit_offset(hit, eye->direction) +
                                           eye->direction * eye->distance,
                                 .direction = -eye->direction,
-                                .t_max = eye->distance * (1.0f - SHORTENING),
+                                .t_max = distance_short_of(eye->distance),
                                 .time = hit->time},
                         .eye = pass->plan->view};
     surface_hit between;
