@@ -4,7 +4,7 @@
  */
 #pragma once
 
-/** @brief A copy in valid UTF-8 with \n, \t, \x1b, \u2028 ... for what is no character to be
+/** @brief A copy in valid UTF-8 with escapes as of C for what is no character to be
  * seen; all others stay. What has been through it once comes out the same again. Owned by
  * the caller. */
 char *printable(const char *text);

@@ -37,7 +37,7 @@ typedef struct picture {
 
 /** @brief Reads the image that string parameter `name` names, which must be there; once
  * for all that read it alike.
- *  @param s for images within the scene's file, and to share; may be NULL
+ *  @param context for images within the scene's file, and to share; may be NULL
  *  @return NULL with ERROR_INPUT at the parameter (or the list, if it is missing) */
 picture *picture_read(const build_context *context, const params *p, const char *name,
                       const image_read_options *options, GError **error);
