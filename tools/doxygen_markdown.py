@@ -3,9 +3,9 @@
 
 usage: tools/doxygen_markdown.py FILE.md    (docs/Doxyfile's filter)
 
-Formulas between dollars get Doxygen's marks; headings get the names that links use for them,
-with the file's own before them, since Doxygen knows them all in one. What is code stays, and
-so does the number of lines, so that warnings name the right one.
+Formulas between dollars get Doxygen's marks; headings within a page get the names that links
+use for them, with the file's own before them, since Doxygen knows them all in one. What is code
+stays, and so does the number of lines, so that warnings name the right one.
 """
 import pathlib
 import re
@@ -14,7 +14,7 @@ import sys
 CODE = re.compile(r"(^```.*?^```|`[^`\n]*`)", re.S | re.M)
 DISPLAYED = re.compile(r"\$\$(.+?)\$\$", re.S)
 INLINE = re.compile(r"(?<![\\$\w])\$(?!\s)((?:[^$`\n]|\n(?!\n))+?)(?<!\s)\$(?![\w$])")
-HEADING = re.compile(r"^(#+ +)(.*)$")
+HEADING = re.compile(r"^(##+ +)(.*)$")
 LINK = re.compile(r"\]\(([\w./-]*\.md)?#([\w-]+)\)")
 
 
