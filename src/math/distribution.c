@@ -7,11 +7,11 @@
 static size_t find_step(const distribution *d, double target, size_t low, size_t high)
 {
     while (high - low > 1) {
+        /* Chosen, not branched on: a branch would be guessed wrong every other time. */
         size_t middle = low + (high - low) / 2;
-        if (d->cumulative[middle] <= target)
-            low = middle;
-        else
-            high = middle;
+        bool above = d->cumulative[middle] <= target;
+        low = above ? middle : low;
+        high = above ? high : middle;
     }
     return low;
 }
@@ -69,6 +69,8 @@ float distribution_pdf(const distribution *d, size_t i)
 
 size_t distribution_sample(const distribution *d, float *u)
 {
+    if (d->n == 1 && distribution_total(d) > 0.0)
+        return 0; /* *u over all of it is *u */
     double target = (double)*u * distribution_total(d);
     /* Exact, since n_cuts is a power of two. */
     size_t cut = MIN((size_t)(*u * (float)d->n_cuts), d->n_cuts - 1);

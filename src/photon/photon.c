@@ -68,7 +68,11 @@ bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
 
 void photon_store_put(photon_store *store, const photon *p)
 {
-    size_t i = store->n++;
+    photon_store_set(store, store->n++, p);
+}
+
+void photon_store_set(photon_store *store, size_t i, const photon *p)
+{
     store->x[i] = p->p[0];
     store->y[i] = p->p[1];
     store->z[i] = p->p[2];

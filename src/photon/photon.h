@@ -79,6 +79,8 @@ typedef struct photon_store {
 bool photon_store_reserve(photon_store *store, size_t capacity, GError **error);
 /** @brief Appends; room must have been reserved. */
 void photon_store_put(photon_store *store, const photon *p);
+/** @brief Writes photon i < capacity; n stays as it is. */
+void photon_store_set(photon_store *store, size_t i, const photon *p);
 photon photon_store_get(const photon_store *store, size_t i);
 void photon_store_clear(photon_store *store);
 /** @brief Copies all photons of a store of the same sort to place `at` of another one,

@@ -46,8 +46,8 @@ seen_triangle triangle_seen_from(const triangle *t, vec3 ref)
 static dvec3 turn_toward(dvec3 axis, dvec3 v, double c)
 {
     dvec3 across = v - dvec3_dot(axis, v) * axis;
-    double s = sqrt(MAX(1.0 - c * c, 0.0));
-    return c * axis + s / dvec3_length(across) * across;
+    double s2 = MAX(1.0 - c * c, 0.0);
+    return c * axis + sqrt(s2 / dvec3_dot(across, across)) * across;
 }
 
 static dvec3 sample_direction(const seen_triangle *seen, vec2 u)

@@ -285,6 +285,15 @@ static vec3 tangents_of(const corners *c, const vec2 uv[3], vec3 *dpdv)
     return (vec3){0};
 }
 
+static void fill_uv(const mesh_shape *s, const corners *c, const float b[3],
+                    surface_hit *hit)
+{
+    vec2 uv[3];
+    corner_uvs(&s->m, c, uv);
+    hit->uv = interpolate_uv(uv, b);
+    hit->dpdu = tangents_of(c, uv, &hit->dpdv);
+}
+
 /* With v the vertices relative to p, D their largest coordinates and N = e1 x e2, the
  * plane's equation v·N / |N| is computed with an error of a few ε (|n|·D + 6 Dx Dy Dz /
  * |N|). Slivers could make it absurd: 16 ε |D| is the most that is believed. */
@@ -298,6 +307,15 @@ static float rounding_error(const corners *c, vec3 p, vec3 plane)
     return epsilon * minf(bound, 16.0f * max_component3(d));
 }
 
+/* What fill_uv gives for the usual uvs. */
+static void fill_usual_uv(const corners *c, const float b[3], surface_hit *hit)
+{
+    vec3 e1 = c->p[1] - c->p[0], e2 = c->p[2] - c->p[0];
+    hit->uv = (vec2){b[1] + b[2], b[2]};
+    hit->dpdu = e1;
+    hit->dpdv = e2 - e1;
+}
+
 static void fill_hit(const void *self, const ray *r, float u, float v, surface_hit *hit)
 {
     (void)r;
@@ -305,12 +323,12 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     const corners c = corners_of(&s->m, hit->primitive);
     const vec3 plane = s->planes[hit->primitive];
     const float b[3] = {1.0f - u - v, u, v};
-    vec2 uv[3];
-    corner_uvs(&s->m, &c, uv);
     hit->p = point_of(&c, b);
     hit->n_geom = normal_of(s, &c, plane, b, &hit->n);
-    hit->uv = interpolate_uv(uv, b);
-    hit->dpdu = tangents_of(&c, uv, &hit->dpdv);
+    if (s->m.uvs)
+        fill_uv(s, &c, b, hit);
+    else
+        fill_usual_uv(&c, b, hit);
     if (s->m.tangents)
         hit->dpdu = interpolate3(s->m.tangents, &c, b);
     if (!(length3_2(hit->dpdu) > 0.0f))

@@ -105,16 +105,22 @@ static void note_lit(const path_walk *walk, const camera_path *path,
         photon_store_put(lit, &place);
 }
 
+/* Adds what a lobe sends on of one light. */
+static void add_scattered(path_walk *walk, const camera_path *path, spectrum radiance,
+                          int source, unsigned lobe)
+{
+    camera_path by = *path;
+    camera_path_count(&by, lobe);
+    path_add_from(walk, &by, radiance, source);
+}
+
 void path_sample_lights(path_walk *walk, const camera_path *path, const surface_hit *hit,
                         const bsdf *b)
 {
     if (!walk->how->direct_illumination || !(b->lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)))
         return;
     bsdf room;
-    camera_path by_diffuse = *path, by_glossy = *path;
-    camera_path_count(&by_diffuse, LOBE_DIFFUSE);
-    camera_path_count(&by_glossy, LOBE_GLOSSY);
-    bool share = (b->lobes & LOBE_GLOSSY) && path_photons_share(walk, &by_glossy);
+    bool share = (b->lobes & LOBE_GLOSSY) && walk->pass->caustics && path->n_diffuse > 0;
     const direct_query query = {
         .scene = walk->scene,
         .w = &walk->pass->w,
@@ -130,8 +136,10 @@ void path_sample_lights(path_walk *walk, const camera_path *path, const surface_
     direct_radiance found[FEW_LIGHTS];
     int n = direct_light(&query, walk->random, found, &walk->scratch->shadow_rays);
     for (int i = 0; i < n; i++) {
-        path_add_from(walk, &by_diffuse, found[i].diffuse, found[i].light);
-        path_add_from(walk, &by_glossy, found[i].glossy, found[i].light);
+        if (b->lobes & LOBE_DIFFUSE)
+            add_scattered(walk, path, found[i].diffuse, found[i].light, LOBE_DIFFUSE);
+        if (b->lobes & LOBE_GLOSSY)
+            add_scattered(walk, path, found[i].glossy, found[i].light, LOBE_GLOSSY);
         if (walk->pass->lit)
             note_lit(walk, path, hit, b, found[i].diffuse + found[i].glossy);
     }

@@ -1,7 +1,8 @@
 #include "transport/vcm/vcm.h"
-#include "base/clock.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "transport/photonmap/photonmap.h"
 #include "transport/plan/work.h"
 #include "transport/visible.h"
@@ -101,26 +102,73 @@ photon vcm_photon(const vcm_pass *pass, const light_vertex *v)
     return p;
 }
 
+/* size: vertices per parallel piece of work */
+enum { VERTEX_CHUNK = 4096 };
+
+typedef struct vertex_loop {
+    vcm_pass *pass;
+    photon_store *store;
+} vertex_loop;
+
+static void store_vertices(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const vertex_loop *loop = data;
+    for (size_t i = begin; i < end; i++) {
+        photon p = vcm_photon(loop->pass, &loop->pass->light.vertices[i]);
+        p.number = i;
+        photon_store_set(loop->store, i, &p);
+    }
+}
+
+static void merge_some(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    vcm_pass *pass = data;
+    const photon_store *store = photon_map_store(pass->map);
+    for (size_t i = begin; i < end; i++) {
+        const light_vertex *v = &pass->light.vertices[store->number[i]];
+        const vec3 wi = kept_hit_wo(&v->hit);
+        pass->merged[i] = (merge_vertex){.flux = v->flux,
+                                         .wi = {wi[0], wi[1], wi[2]},
+                                         .weights = v->weights,
+                                         .before = v->before,
+                                         .light = v->light};
+    }
+}
+
+/* Of all light vertices, in index order. */
+static bool fill_store(vcm_pass *pass, photon_store *store, GError **error)
+{
+    size_t n = pass->light.n_vertices;
+    if (!photon_store_reserve(store, n, error))
+        return false;
+    vertex_loop loop = {pass, store};
+    store->n = n;
+    parallel_for(n, VERTEX_CHUNK, (unsigned)pass->plan->how.threads, NULL, store_vertices,
+                 &loop);
+    return true;
+}
+
 static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
 {
     const settings *how = &pass->plan->how;
-    const light_paths *paths = &pass->light;
+    const size_t n = pass->light.n_vertices;
     photon_store store = {
         .oriented = how->edges, .homed = pass->scene->camera_facing, .numbered = true};
     double start = clock_seconds();
-    if (!photon_store_reserve(&store, paths->n_vertices, error))
+    if (!fill_store(pass, &store, error))
         return false;
-    for (size_t i = 0; i < paths->n_vertices; i++) {
-        photon p = vcm_photon(pass, &paths->vertices[i]);
-        p.number = i;
-        photon_store_put(&store, &p);
-    }
     pass->map = photon_map_build(photon_map_chosen((map_choice)how->photon_map, false),
                                  &store, pass->radius, (unsigned)how->threads, error);
-    counts->time_build += clock_seconds() - start;
     if (pass->map)
-        counts->memory_photons += photon_map_bytes(pass->map);
-    return pass->map != NULL;
+        pass->merged = big_alloc(n, sizeof *pass->merged, "light vertices", error);
+    if (!pass->merged)
+        return false;
+    parallel_for(n, VERTEX_CHUNK, (unsigned)how->threads, NULL, merge_some, pass);
+    counts->time_build += clock_seconds() - start;
+    counts->memory_photons += photon_map_bytes(pass->map) + n * sizeof *pass->merged;
+    return true;
 }
 
 static bool trace_light(vcm_pass *pass, const cancel_flag *cancel,
@@ -150,6 +198,7 @@ static void end_pass(void *data)
 {
     vcm_pass *pass = data;
     photon_map_free(pass->map);
+    big_free(pass->merged);
     light_paths_clear(&pass->light);
     g_aligned_free(pass);
 }

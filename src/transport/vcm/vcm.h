@@ -74,6 +74,18 @@ typedef struct light_vertex {
 
 _Static_assert(sizeof(light_vertex) <= 128, "a light vertex is at most two cache lines");
 
+/** @brief What merging asks of a light vertex, in one cache line: kept in the order of
+ * the map, so that what is near in space is near in memory. */
+typedef struct merge_vertex {
+    spectrum flux;
+    float wi[3]; /**< to where light came from */
+    partial_weights weights;
+    scattering_counts before;
+    int light;
+} merge_vertex;
+
+_Static_assert(sizeof(merge_vertex) == 64, "a merge reads one cache line");
+
 /** @brief The light subpaths of a pass. */
 typedef struct light_paths {
     size_t n;               /**< N */
@@ -99,7 +111,8 @@ typedef struct vcm_pass {
     bool camera_facing_ends; /**< light subpaths end at what turns to face rays */
     float camera_per_light; /**< camera samples of a pixel over light subpaths, spp / N */
     light_paths light;
-    photon_map *map; /**< of light vertices by number; NULL: no merging */
+    photon_map *map;      /**< of light vertices by number; NULL: no merging */
+    merge_vertex *merged; /**< of each photon of the map; owned */
 } vcm_pass;
 
 /** @brief Where a vertex on what moves lies in the map; others where they are. */

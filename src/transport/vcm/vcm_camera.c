@@ -216,7 +216,7 @@ static void connect(camera_walk *c, const vcm_vertex *v)
 /* ---- Merging ---- */
 
 static float merge_weight(const camera_walk *c, const vcm_vertex *v,
-                          const light_vertex *l, vec3 wi)
+                          const merge_vertex *l, vec3 wi)
 {
     if (c->pass->strategies.end_here)
         return 1.0f;
@@ -239,28 +239,41 @@ static vec3 direction_at(const scene *s, const kept_hit *kept, float time)
     return normalize3(transform_vector(&by, wi));
 }
 
+/* The direction to where the light of the map's k-th vertex came from, at v's time.
+   @return false: it is of another slice of time */
+static bool direction_of(const vcm_pass *pass, const vcm_vertex *v, size_t k, vec3 *wi)
+{
+    const float *d = pass->merged[k].wi;
+    *wi = vec3_make(d[0], d[1], d[2]);
+    if (!pass->scene->moves)
+        return true;
+    size_t vertex = photon_map_store(pass->map)->number[k];
+    const kept_hit *kept = &pass->light.vertices[vertex].hit;
+    *wi = direction_at(pass->scene, kept, v->hit->time);
+    return time_slice(kept->time, pass->n_slices) ==
+           time_slice(v->hit->time, pass->n_slices);
+}
+
 /* Light vertices are a density over the true surface; light sees the shading normal by
-   the cosine that is in f. */
-static void merge_with(camera_walk *c, const vcm_vertex *v, const light_vertex *l,
+   the cosine that is in f. @param k of the map */
+static void merge_with(camera_walk *c, const vcm_vertex *v, size_t k,
                        float kernel_over_area)
 {
-    int n_slices = c->pass->n_slices;
-    vec3 wi = kept_hit_wo(&l->hit);
-    if (vcm_ends_light(c->pass, v->hit) && c->pass->strategies.connect &&
-        l->weights.vcm > 0.0f)
+    const vcm_pass *pass = c->pass;
+    const merge_vertex *l = &pass->merged[k];
+    vec3 wi;
+    if (vcm_ends_light(pass, v->hit) && pass->strategies.connect && l->weights.vcm > 0.0f)
         return;
-    if (c->pass->scene->moves)
-        wi = direction_at(c->pass->scene, &l->hit, v->hit->time);
+    if (!direction_of(pass, v, k, &wi))
+        return;
     float cosine = hit_cosine(v->hit, wi);
-    if (!(cosine > 0.0f) ||
-        time_slice(l->hit.time, n_slices) != time_slice(v->hit->time, n_slices) ||
-        !vcm_length_allowed(c->pass, c->walk.counts.n + l->before.n + 1))
+    if (!(cosine > 0.0f) || !vcm_length_allowed(pass, c->walk.counts.n + l->before.n + 1))
         return;
     lobe_pair f = vcm_scatter(v, wi, TRANSPORT_RADIANCE);
     if (lobe_pair_is_black(&f))
         return;
     float density =
-        kernel_over_area * (float)n_slices / ((float)c->pass->light.n * cosine);
+        kernel_over_area * (float)pass->n_slices / ((float)pass->light.n * cosine);
     add_scattered(c, &f, (arrival){l->before, l->light},
                   l->flux * (merge_weight(c, v, l, wi) * density));
 }
@@ -275,12 +288,9 @@ static void merge(camera_walk *c, const vcm_vertex *v)
     float r2 = square(pass->radius);
     float area = vcm_find_vertices(pass, v, &kappa, c->walk.counts.n_diffuse == 0,
                                    &c->scratch->estimate);
-    const photon_store *store = photon_map_store(pass->map);
-    for (size_t i = 0; i < hits->n && area > 0.0f; i++) {
-        size_t vertex = store->number[hits->index[i]];
-        merge_with(c, v, &pass->light.vertices[vertex],
+    for (size_t i = 0; i < hits->n && area > 0.0f; i++)
+        merge_with(c, v, hits->index[i],
                    kernel_eval(&kappa, hits->distance2[i], r2) / area);
-    }
 }
 
 /* ---- The path ---- */

@@ -16,6 +16,7 @@ typedef struct light_chunk {
     light_vertex *vertices;
     splat *splats;
     size_t n_vertices, vertex_capacity, n_splats, splat_capacity;
+    size_t first_vertex, first_splat; /* of the whole, once that is known */
     uint64_t n_rays, n_shadow_rays, n_not_finite;
     point_hits hits; /* scratch */
     GError *error;
@@ -348,21 +349,6 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
     point_hits_clear(&out->hits);
 }
 
-/* Puts chunk c's vertices and splats behind those before it. */
-static void append(light_paths *to, light_chunk *from, size_t c)
-{
-    if (from->n_vertices > 0)
-        memcpy(to->vertices + to->n_vertices, from->vertices,
-               from->n_vertices * sizeof *from->vertices);
-    if (from->n_splats > 0)
-        memcpy(to->splats + to->n_splats, from->splats,
-               from->n_splats * sizeof *from->splats);
-    for (size_t i = c * CHUNK; i < MIN((c + 1) * CHUNK, to->n); i++)
-        to->end[i] += to->n_vertices;
-    to->n_vertices += from->n_vertices;
-    to->n_splats += from->n_splats;
-}
-
 static void chunk_clear(light_chunk *chunk)
 {
     big_free(chunk->vertices);
@@ -371,15 +357,36 @@ static void chunk_clear(light_chunk *chunk)
     *chunk = (light_chunk){0};
 }
 
-static bool join(light_paths *to, light_chunk *chunks, size_t n, transport_counts *counts,
-                 GError **error)
+/* Copies chunk c's vertices and splats to their place and frees them. */
+static void join_chunk(size_t c, size_t end, unsigned thread, void *data)
+{
+    (void)end, (void)thread;
+    const light_loop *loop = data;
+    const light_paths *to = &loop->pass->light;
+    light_chunk *from = &loop->chunks[c];
+    if (from->n_vertices > 0)
+        memcpy(to->vertices + from->first_vertex, from->vertices,
+               from->n_vertices * sizeof *from->vertices);
+    if (from->n_splats > 0)
+        memcpy(to->splats + from->first_splat, from->splats,
+               from->n_splats * sizeof *from->splats);
+    for (size_t i = c * CHUNK; i < MIN((c + 1) * CHUNK, to->n); i++)
+        to->end[i] += from->first_vertex;
+    chunk_clear(from);
+}
+
+static bool join(light_loop *loop, size_t n, transport_counts *counts, GError **error)
 {
     size_t n_vertices = 0, n_splats = 0;
+    light_paths *to = &loop->pass->light;
+    light_chunk *chunks = loop->chunks;
     for (size_t c = 0; c < n; c++) {
         if (chunks[c].error) {
             g_propagate_error(error, g_steal_pointer(&chunks[c].error));
             return false;
         }
+        chunks[c].first_vertex = n_vertices;
+        chunks[c].first_splat = n_splats;
         n_vertices += chunks[c].n_vertices;
         n_splats += chunks[c].n_splats;
         counts->photon_rays += chunks[c].n_rays;
@@ -389,10 +396,9 @@ static bool join(light_paths *to, light_chunk *chunks, size_t n, transport_count
     to->splats = big_alloc(n_splats, sizeof *to->splats, "splats", error);
     if (!to->vertices || !to->splats)
         return false;
-    for (size_t c = 0; c < n; c++) {
-        append(to, &chunks[c], c);
-        chunk_clear(&chunks[c]);
-    }
+    to->n_vertices = n_vertices;
+    to->n_splats = n_splats;
+    parallel_for(n, 1, (unsigned)loop->pass->plan->how.threads, NULL, join_chunk, loop);
     return true;
 }
 
@@ -427,7 +433,7 @@ bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts
                              trace_chunk, &loop);
     if (!done)
         error_set(error, ERROR_CANCELLED, "cancelled");
-    bool joined = done && join(paths, chunks, n_chunks, counts, error);
+    bool joined = done && join(&loop, n_chunks, counts, error);
     for (size_t c = 0; c < n_chunks; c++)
         chunk_clear(&chunks[c]);
     big_free(chunks);
