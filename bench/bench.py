@@ -130,8 +130,8 @@ def iteration_rows(bench):
     for scene in (0, 1):
         for ours, theirs in (("all", "vcm"), ("ppm", "ppm")):
             commands = [bench.render(
-                OURS / f"smallvcm-{scene}.pbrt", "-j1", "--integrator", "vcm", "--spp",
-                1, "--size", "512x512", "--passes", passes, "-s", "maxdepth=10", "-s",
+                OURS / f"smallvcm-{scene}.pbrt", "-j1", "--integrator", "vcm", "--denoise",
+                "off", "--spp", 1, "--size", "512x512", "--passes", passes, "-s", "maxdepth=10", "-s",
                 f"vcm_strategies={ours}", "-s", "photons=262144") for passes in (few, many)]
             if program:
                 commands += [peers.smallvcm(program, scene, theirs, n, bench.folder)
@@ -151,7 +151,8 @@ def sppm_rows(bench):
               "point light, glass": SCENES / "point-light/point-light.pbrt",
               "Cornell": CORNELL}
     for name, scene in scenes.items():
-        commands = [bench.render(scene, "-j1", "--integrator", "sppm", "--size",
+        commands = [bench.render(scene, "-j1", "--integrator", "sppm", "--denoise", "off",
+                                 "--size",
                                  f"{side}x{side}", "--passes", passes, "-s",
                                  "maxdepth=16", "-s", f"photons={photons}")
                     for passes in (few, many)]
@@ -173,6 +174,14 @@ def thread_rows(bench):
                                  for n in (1, 2)), clock=True)
         yield Row(f"{integrator}, 2 threads", "1 thread, by the clock", "s", two, one,
                   one / two, "≥ 1.9")
+        times = [list(map(float, bench.tool("bench_serial", integrator, GLASS,
+                                            bench.folder / "ours.exr").split()))
+                 for _ in range(bench.rounds)]
+        whole, serial = (statistics.median(column) for column in zip(*times))
+        yield Row(f"{integrator}, 2 threads, by what is serial", "1 thread", "s",
+                  serial + (whole - serial) / 2, whole,
+                  whole / (serial + (whole - serial) / 2), "≥ 1.9",
+                  f"{100 * serial / whole:.1f} % serial")
 
 
 def photon_rows(bench):
@@ -199,10 +208,11 @@ def photon_rows(bench):
 
 def first_rows(bench):
     """The first picture, from the start of the process to the file."""
-    took, = bench.turns(bench.render(CORNELL, "--passes", 1, "--spp", 1, "--size",
-                                     "256x256"), clock=True)
+    command = bench.render(CORNELL, "--passes", 1, "-s", "first_spp=1", "--size", "256x256")
+    took, = bench.turns(command, clock=True)
+    worked, = bench.turns(command)
     yield Row("first picture of the Cornell box, 256 × 256", "the clock", "s", took, 0.3,
-              took / 0.3, "< 1")
+              took / 0.3, "< 1", f"{worked:.2f} s of processor, {os.cpu_count()} threads")
 
 
 def load_rows(bench):
