@@ -6,6 +6,7 @@
 #include "checkpoints.h"
 #include "command.h"
 #include "exposure.h"
+#include "frames.h"
 #include "layers.h"
 #include "loading.h"
 #include "message.h"
@@ -14,12 +15,15 @@
 #include "snapshots.h"
 #include "stop.h"
 
+#include <math.h>
 #include <string.h>
+
+enum { USUAL_PASSES = 16 };
 
 static struct {
     char **outputs, **layers;
     char *size, *exposure, *stats, *every, *checkpoint, *checkpoint_every, *resume,
-        *photons;
+        *photons, *frame, *fps, *camera, *grain;
     gboolean quiet, explain;
     overrides settings;
 } given;
@@ -56,6 +60,15 @@ static const GOptionEntry entries[] = {
      "Go on from such a file, with its settings and size", "FILE"},
     {"photons", 0, 0, G_OPTION_ARG_FILENAME, &given.photons,
      "Use the photons that 'photons --save' has kept there, with their settings", "FILE"},
+    {"frame", 0, 0, G_OPTION_ARG_STRING, &given.frame,
+     "Render frames A to B of an animation, each to its own file", "A-B"},
+    {"fps", 0, 0, G_OPTION_ARG_STRING, &given.fps, "Frames a second (24)", "N"},
+    {"camera", 0, 0, G_OPTION_ARG_FILENAME, &given.camera,
+     "Move the camera: line N of the file, LookAt and nine numbers, is of frame N",
+     "FILE"},
+    {"grain", 0, 0, G_OPTION_ARG_STRING, &given.grain,
+     "Whether frames have the same pattern of grain; fixed if not given",
+     "fixed|varying"},
     {"integrator", 0, 0, G_OPTION_ARG_STRING, &given.settings.integrator,
      "How light is followed; settings has them all", "NAME"},
     {"threads", 'j', 0, G_OPTION_ARG_STRING, &given.settings.threads,
@@ -97,7 +110,11 @@ static const usage how = {
         "start.\n\n"
         "--photons takes the settings that the photons were sent by in place of the "
         "scene's; only\npasses, time, noise, threads, denoise and kernels may be "
-        "changed, and the camera and the size.\n",
+        "changed, and the camera and the size.\n\n"
+        "With --frame or --camera a run of # in the name of -o becomes the frame's "
+        "number, "
+        "as in\na.####.png; frames whose files are there are skipped. Frame N is at N / "
+        "fps seconds.\n",
     .entries = entries,
     .loads_scene = true};
 
@@ -108,6 +125,10 @@ typedef struct job {
     int width, height; /* 0: the scene's */
     exposure_wish exposure;
     unsigned threads;
+    frames frames;
+    int frame;         /* under way */
+    NephCamera camera; /* as the scene was read with it */
+    int64_t start;     /* monotonic µs of this picture's */
     snapshots snapshots;
     checkpoints checkpoints;
 } job;
@@ -120,10 +141,36 @@ static bool check_outputs(char **outputs, GError **error)
     return true;
 }
 
+/* Of many pictures each has its own files, which are there when it is done. */
+static bool check_frames(const job *j, GError **error)
+{
+    const struct {
+        const char *option;
+        bool is_given;
+    } rest[] = {{"--every", given.every},
+                {"--checkpoint", given.checkpoint},
+                {"--resume", given.resume},
+                {"--layer", given.layers},
+                {"--stats", given.stats}};
+    if (!j->frames.are_asked)
+        return true;
+    if (!j->outputs)
+        g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_USAGE,
+                    "--frame and --camera: expected -o FILE too");
+    for (size_t i = 0; i < G_N_ELEMENTS(rest) && !*error; i++)
+        if (rest[i].is_given)
+            g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_USAGE,
+                        "%s is of one picture: it does not go with --frame or --camera",
+                        rest[i].option);
+    return !*error;
+}
+
 static bool job_init(job *j, const char *scene_file, GError **error)
 {
     double exposure = 0.0;
-    *j = (job){.scene_file = scene_file, .outputs = g_strdupv(given.outputs)};
+    *j = (job){.scene_file = scene_file,
+               .outputs = g_strdupv(given.outputs),
+               .start = program_start};
     bool good = (!given.size ||
                  argument_size("--size", given.size, &j->width, &j->height, error)) &&
                 (!given.exposure ||
@@ -132,7 +179,10 @@ static bool job_init(job *j, const char *scene_file, GError **error)
                 checkpoints_init(&j->checkpoints, given.checkpoint,
                                  given.checkpoint_every, error) &&
                 overrides_check(&given.settings, &j->threads, error) &&
-                check_outputs(j->outputs, error) && layers_check(given.layers, error) &&
+                frames_init(&j->frames, given.frame, given.fps, given.camera, given.grain,
+                            error) &&
+                check_frames(j, error) && check_outputs(j->outputs, error) &&
+                layers_check(given.layers, error) &&
                 (!given.stats || neph_file_can_write(given.stats, error));
     j->exposure = (exposure_wish){.stops = (float)exposure, .no_notes = given.quiet};
     return good;
@@ -193,13 +243,41 @@ static bool choose_outputs(job *j, const NephScene *scene, GError **error)
     return false;
 }
 
+/* The photons of a still scene are made once for all its frames. */
+static bool makes_photons(const job *j)
+{
+    return given.photons && j->frames.are_asked &&
+           !g_file_test(given.photons, G_FILE_TEST_EXISTS);
+}
+
+static bool make_photons(const job *j, const NephScene *scene,
+                         const NephSettings *settings, GError **error)
+{
+    if (given.photons && j->frames.are_asked && neph_scene_is_animated(scene)) {
+        g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_USAGE,
+                    "--photons: expected a still scene for many frames, this one moves");
+        return false;
+    }
+    if (!makes_photons(j))
+        return true;
+    g_autofree char *passes = neph_settings_get(settings, "passes");
+    const int64_t n = (int64_t)ceil(g_ascii_strtod(passes, NULL));
+    const NephSaveOptions options = {.passes = n > 0 ? n : USUAL_PASSES};
+    if (!neph_photons_save(scene, settings, given.photons, &options, error))
+        return false;
+    if (!given.quiet)
+        print_result("wrote %s\n", given.photons);
+    return true;
+}
+
 /* The scene's, or those of the render that goes on, with the size of its picture. */
 static NephSettings *settings_before(job *j, const NephScene *scene, GError **error)
 {
     int width, height;
     if (!given.resume)
-        return given.photons ? neph_photons_settings(given.photons, NULL, error)
-                             : neph_scene_settings(scene);
+        return given.photons && !makes_photons(j)
+                   ? neph_photons_settings(given.photons, NULL, error)
+                   : neph_scene_settings(scene);
     NephSettings *settings =
         neph_checkpoint_settings(given.resume, &width, &height, error);
     if (settings && !j->width) {
@@ -223,13 +301,20 @@ static bool resume(job *j, NephRender *render, GError **error)
     return true;
 }
 
+static bool set_grain(const job *j, NephSettings *settings, GError **error)
+{
+    g_autofree char *number = g_strdup_printf("%d", j->frame);
+    return !j->frames.varies || neph_settings_set(settings, "camera_seed", number, error);
+}
+
 static NephRender *prepare(job *j, NephScene *scene, GError **error)
 {
     g_autoptr(NephSettings) settings = settings_before(j, scene, error);
     NephRender *render = NULL;
     if (settings && overrides_apply(&given.settings, settings, error) &&
+        set_grain(j, settings, error) &&
         (!j->width || neph_scene_resize(scene, j->width, j->height, error)) &&
-        choose_outputs(j, scene, error))
+        make_photons(j, scene, settings, error) && choose_outputs(j, scene, error))
         render = neph_render_new(scene, settings, error);
     if (render &&
         ((given.photons && !neph_render_use_photons(render, given.photons, error)) ||
@@ -390,13 +475,24 @@ static int explain(NephRender *render)
     return print_result("%s", text);
 }
 
+/* Of frames there are whole ones only: those that are there need not be rendered again.
+ */
+static int report_unfinished(const job *j, const GError *error)
+{
+    if (!g_error_matches(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED))
+        return report_error(error);
+    tell("note", "stopped by %s; frame %d is not written",
+         stop_reason() ? stop_reason() : "request", j->frame);
+    return EXIT_FAILED;
+}
+
 static int run(job *j, NephRender *render)
 {
     g_autoptr(GError) error = NULL;
     int ended = EXIT_DONE;
     watch w = {j, render, progress_begin(given.quiet)};
-    /* All counts that is done from the program's start to its end. */
-    double before = (double)(g_get_monotonic_time() - program_start) / G_USEC_PER_SEC;
+    /* All counts that is done from the program's start, or the frame's, to its end. */
+    double before = (double)(g_get_monotonic_time() - j->start) / G_USEC_PER_SEC;
     neph_render_set_time_around(render, before, (const char *const *)j->outputs);
     if (!check_layers(render, &error))
         return report_error(error);
@@ -404,6 +500,8 @@ static int run(job *j, NephRender *render)
         return ended;
     bool done = neph_render_run(render, look_on, &w, &error);
     progress_end(&w.shown);
+    if (!done && j->frames.are_asked)
+        return report_unfinished(j, error);
     if (!done && !report_end(render, error, &ended))
         return ended;
     report_time(render);
@@ -415,20 +513,80 @@ static int run(job *j, NephRender *render)
     return ended ? ended : images ? images : statistics ? statistics : checkpoint;
 }
 
-static int render_scene(job *j)
+static NephScene *load(job *j, GError **error)
+{
+    NephLoadOptions options = loading_options(j->threads, given.quiet);
+    options.at_time = j->frames.are_asked;
+    options.time = j->frames.are_asked ? frame_time(&j->frames, j->frame) : 0.0;
+    NephScene *scene = neph_scene_load_with(j->scene_file, &options, error);
+    if (scene)
+        j->exposure.is_free = !given.exposure && !neph_scene_says_exposure(scene);
+    return scene;
+}
+
+static int render_scene(job *j, NephScene *scene)
 {
     g_autoptr(GError) error = NULL;
-    const NephLoadOptions options = loading_options(j->threads, given.quiet);
-    g_autoptr(NephScene) scene = neph_scene_load_with(j->scene_file, &options, &error);
-    if (!scene)
-        return report_error(error);
-    j->exposure.is_free = !given.exposure && !neph_scene_says_exposure(scene);
     g_autoptr(NephRender) render = prepare(j, scene, &error);
     if (!render)
         return report_error(error);
     stop_watch(render);
     int result = run(j, render);
     stop_unwatch();
+    return result;
+}
+
+static int render_one(job *j)
+{
+    g_autoptr(GError) error = NULL;
+    g_autoptr(NephScene) scene = load(j, &error);
+    return scene ? render_scene(j, scene) : report_error(error);
+}
+
+/* ---- Many pictures ---- */
+
+static void name_outputs(job *j)
+{
+    g_strfreev(j->outputs);
+    j->outputs = g_new0(char *, g_strv_length(given.outputs) + 1);
+    for (int i = 0; given.outputs[i]; i++)
+        j->outputs[i] = frame_name(given.outputs[i], j->frame);
+}
+
+static bool is_finished(const job *j)
+{
+    bool are_there = true;
+    for (char **path = j->outputs; *path; path++)
+        are_there &= g_file_test(*path, G_FILE_TEST_EXISTS);
+    return are_there;
+}
+
+/* A scene in which nothing moves is read once. */
+static int render_frame(job *j, NephScene **scene)
+{
+    g_autoptr(GError) error = NULL;
+    j->start = g_get_monotonic_time();
+    if (*scene && neph_scene_is_animated(*scene))
+        g_clear_pointer(scene, neph_scene_free);
+    if (!*scene && (*scene = load(j, &error)))
+        neph_scene_camera(*scene, &j->camera);
+    if (!*scene || !frame_place(&j->frames, j->frame, &j->camera, *scene, &error))
+        return report_error(error);
+    return render_scene(j, *scene);
+}
+
+static int render_frames(job *j)
+{
+    NephScene *scene = NULL;
+    int result = EXIT_DONE;
+    for (j->frame = j->frames.first; j->frame <= j->frames.last && !result; j->frame++) {
+        name_outputs(j);
+        if (!is_finished(j))
+            result = render_frame(j, &scene);
+        else if (!given.quiet)
+            tell("note", "frame %d is skipped: %s is there", j->frame, j->outputs[0]);
+    }
+    neph_scene_free(scene);
     return result;
 }
 
@@ -439,7 +597,10 @@ int command_render(int argc, char **argv)
         return exit_code;
     g_autoptr(GError) error = NULL;
     job j;
-    int result = job_init(&j, argv[1], &error) ? render_scene(&j) : report_error(error);
+    int result = !job_init(&j, argv[1], &error) ? report_error(error)
+                 : j.frames.are_asked           ? render_frames(&j)
+                                                : render_one(&j);
+    frames_clear(&j.frames);
     g_strfreev(j.outputs);
     return result;
 }

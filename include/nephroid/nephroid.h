@@ -181,6 +181,10 @@ typedef struct NephLoadOptions {
                            by the program that does that; stopped, loading ends with
                            NEPH_ERROR_CANCELLED; may be NULL */
     void *go_on_data;
+    bool at_time; /**< the scene as it is at a time: that many seconds later the shutter
+                     opens, and animations of glTF are where they are then; else these
+                     are left out */
+    double time;  /**< s; means something with at_time */
 } NephLoadOptions;
 
 /** @brief The same by options. */
@@ -194,6 +198,9 @@ NEPH_API NephScene *neph_scene_share(const NephScene *scene);
 /** @brief The settings that the file asks for (defaults where it does not); owned by
  * caller. */
 NEPH_API NephSettings *neph_scene_settings(const NephScene *scene);
+/** @brief Whether it may look otherwise at another time: something, or the camera, moves,
+ * be it outside of the time that the shutter is open. */
+NEPH_API bool neph_scene_is_animated(const NephScene *scene);
 /** @brief Size of the picture, pixels. */
 NEPH_API void neph_scene_size(const NephScene *scene, int *width, int *height);
 /** @brief Another size, 1 to 65536 pixels a side, else NEPH_ERROR_USAGE; while nothing

@@ -64,7 +64,8 @@ NEPH_API bool neph_photons_save(const NephScene *scene, const NephSettings *sett
  * a file in place of their own, pass i those of its pass i modulo their number, with
  * their wavelengths and radii. Size, camera and film may be others than those of the
  * render that it was made for, and so may the settings that photons do not depend on:
- * `passes`, `time`, `noise`, `threads`, `denoise`, `first_spp`, `gather_rays`,
+ * `passes`, `time`, `noise`, `threads`, `denoise`, `first_spp`, `camera_seed`,
+ * `gather_rays`,
  * `photon_map`, and kernels. NEPH_ERROR_INPUT with the reason if the file is damaged, cut
  * off, or of another program, scene or settings. */
 NEPH_API bool neph_render_use_photons(NephRender *render, const char *path,

@@ -14,11 +14,12 @@ struct NephSettings {
 };
 
 struct NephScene {
-    view *view;               /**< the first, or of another's scene ... */
-    const scene *scene;       /**< ... which it sees */
-    bool shares;              /**< the files' list, too, is another's */
-    scene_sources *sources;   /**< the files that it was read from */
-    bool lenient, thin_glass; /**< as it was loaded */
+    view *view;                        /**< the first, or of another's scene ... */
+    const scene *scene;                /**< ... which it sees */
+    bool shares;                       /**< the files' list, too, is another's */
+    scene_sources *sources;            /**< the files that it was read from */
+    bool lenient, thin_glass, at_time; /**< as it was loaded */
+    double time;
     NephLogFunc log; /**< the caller's, may be NULL; used while a scene is read */
     void *log_data;
 };

@@ -28,6 +28,8 @@ NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options
     NephScene *s = g_new(NephScene, 1);
     *s = (NephScene){.lenient = options->lenient,
                      .thin_glass = options->thin_glass,
+                     .at_time = options->at_time,
+                     .time = options->at_time ? options->time : 0.0,
                      .log = options->log,
                      .log_data = options->log_data};
     const log_sink sink = {forward_log, s};
@@ -36,6 +38,8 @@ NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options
     const load_options how = {.threads = options->threads,
                               .lenient = options->lenient,
                               .thin_glass = options->thin_glass,
+                              .at_time = s->at_time,
+                              .time = s->time,
                               .log = &sink,
                               .sources = s->sources,
                               .cancel =
@@ -100,6 +104,8 @@ NephScene *neph_scene_share(const NephScene *s)
                          .shares = true,
                          .lenient = s->lenient,
                          .thin_glass = s->thin_glass,
+                         .at_time = s->at_time,
+                         .time = s->time,
                          .log = s->log,
                          .log_data = s->log_data};
     return other;
@@ -110,6 +116,11 @@ NephSettings *neph_scene_settings(const NephScene *s)
     NephSettings *copy = g_new(NephSettings, 1);
     copy->values = s->scene->settings;
     return copy;
+}
+
+bool neph_scene_is_animated(const NephScene *s)
+{
+    return s->scene->is_animated;
 }
 
 void neph_scene_size(const NephScene *s, int *width, int *height)

@@ -329,7 +329,8 @@ transform camera_at(const camera *c, float time)
 {
     if (!c->path.moves)
         return c->to_world;
-    return motion_at(&c->path, (double)lerpf(c->shutter_open, c->shutter_close, time));
+    double from_begin = (double)lerpf(c->shutter_open, c->shutter_close, time);
+    return motion_at(&c->path, c->begin + from_begin);
 }
 
 static vec3 on_lens(const camera *c, vec2 u_lens)

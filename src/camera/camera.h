@@ -21,8 +21,9 @@ typedef struct camera {
                              camera in metres */
     float lens_radius;    /**< m; 0 = pinhole */
     float focal_distance; /**< m */
-    float shutter_open, shutter_close; /**< s */
-    int width, height;                 /**< of the film, pixels */
+    float shutter_open, shutter_close; /**< s, from the beginning of ... */
+    double begin;      /**< ... the picture: 0, or that of a frame of an animation, s */
+    int width, height; /**< of the film, pixels */
 
     float half_screen;     /**< tan(fov / 2): half the shorter side of the screen */
     float aspect;          /**< frameaspectratio; 0 = the film's */

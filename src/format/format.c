@@ -117,6 +117,8 @@ scene_builder *format_builder(const load_options *options)
     b->build.sources = options->sources;
     b->build.cancel = options->cancel;
     b->thin_glass = options->thin_glass;
+    b->at_time = options->at_time;
+    b->time = options->time;
     return b;
 }
 

@@ -18,6 +18,8 @@ typedef struct load_options {
     unsigned threads;          /**< for the acceleration structure; 0 = all */
     bool lenient;              /**< see format/lenient.h */
     bool thin_glass;           /**< see scene/builder.h */
+    bool at_time;              /**< see scene/builder.h ... */
+    double time;               /**< ... s; 0 else */
     const log_sink *log;       /**< may be NULL */
     scene_sources *sources;    /**< told the files that are read; borrowed, may be NULL */
     const cancel_flag *cancel; /**< heard while a model is imported; may be NULL */

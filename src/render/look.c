@@ -122,7 +122,8 @@ static void render_pixel(look *l, int x, int y, unsigned thread)
 {
     const settings *how = &l->task.plan->how;
     uint64_t pixel = (uint64_t)y * (uint64_t)l->task.plan->view->film.width + (uint64_t)x;
-    uint64_t key = hash_mix((uint64_t)how->seed, hash_mix(pixel, 0x7069786cu));
+    uint64_t eye = hash_mix(pixel, 0x7069786cu + (uint64_t)how->camera_seed);
+    uint64_t key = hash_mix((uint64_t)how->seed, eye);
     pixel_sums sums = {0};
     group_sums groups = groups_of(l, thread);
     for (int64_t i = 0; i < how->spp; i++) {

@@ -275,8 +275,9 @@ bool builder_set_camera(scene_builder *b, const char *kind, const params *p,
         camera_init(&b->camera, kind, p, to_world, b->film.width, b->film.height, error);
     if (!b->has_camera)
         return false;
-    b->scene->shutter[0] = b->camera.shutter_open;
-    b->scene->shutter[1] = b->camera.shutter_close;
+    b->camera.begin = b->time;
+    b->scene->shutter[0] = (float)((double)b->camera.shutter_open + b->time);
+    b->scene->shutter[1] = (float)((double)b->camera.shutter_close + b->time);
     b->camera.media = (medium_stack){.participating = b->around.outside};
     b->camera.medium_there = b->around.outside;
     b->camera.medium_at = stands;
@@ -287,8 +288,9 @@ bool builder_set_camera(scene_builder *b, const char *kind, const params *p,
 void builder_move_camera(scene_builder *b, const motion *to_world)
 {
     LISTENER_TELL(b, camera_motion, to_world);
+    b->scene->is_animated |= to_world->moves;
     b->camera.path = *to_world;
-    b->camera.to_world = motion_at(to_world, (double)b->camera.shutter_open);
+    b->camera.to_world = motion_at(to_world, (double)b->scene->shutter[0]);
 }
 
 /* ---- Media ---- */

@@ -31,6 +31,9 @@ typedef struct scene_builder {
     pixel_filter filter;
     bool thin_glass; /**< closed meshes of glass without a volume are no solid glass: for
                         readers, set before anything is added */
+    bool at_time;    /**< what is animated stands as it does at ... */
+    double time;     /**< ... s: then the shutter opens, if it does at 0; 0 else. Both for
+                        readers, set before anything is added */
     const scene_listener *listener; /**< borrowed; NULL: nobody */
 } scene_builder;
 

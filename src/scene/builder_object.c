@@ -73,6 +73,7 @@ bool builder_add_instance(scene_builder *b, int object, const motion *to_world,
     if (b->scene->instances->len == b->scene->instance_room &&
         !builder_expect_instances(b, 1, place, error))
         return false;
+    b->scene->is_animated |= to_world->moves;
     instance made = {object, *to_world, place};
     LISTENER_TELL(b, instance, object, to_world);
     g_array_append_val(b->scene->instances, made);

@@ -59,6 +59,7 @@ typedef struct scene {
     uint32_t outer_medium; /**< around the scene: of no bounds; as in a medium_stack
                             */
     float media_radius;    /**< m, around center: where such a medium ends */
+    bool is_animated; /**< it may look otherwise at another time */
     bool moves;            /**< some instance does while the shutter is open */
     bool camera_facing;    /**< some shape may (surface_hit.camera_facing) */
 } scene;

@@ -61,7 +61,7 @@ void view_place_camera(view *v, const motion *to_world)
 {
     camera *c = &v->camera;
     c->path = *to_world;
-    c->to_world = motion_at(to_world, (double)c->shutter_open);
+    c->to_world = motion_at(to_world, c->begin + (double)c->shutter_open);
     find_pixel_width(v);
     c->media = scene_solids_at(v->scene, transform_point(&c->to_world, (vec3){0}));
     c->media.participating = medium_at_eye(v);

@@ -89,8 +89,9 @@ typedef struct settings {
     double alpha;       /**< Knaus & Zwicker 2011 */
     bool denoise;       /**< with a picture without noise beside */
     int64_t seed;
-    int64_t threads; /**< 0: one per processor */
-    uint64_t given;  /**< bit i: row i of the table was set, by whatever name */
+    int64_t camera_seed; /**< beside seed, of camera samples alone */
+    int64_t threads;     /**< 0: one per processor */
+    uint64_t given;      /**< bit i: row i of the table was set, by whatever name */
 } settings;
 
 typedef enum setting_type {

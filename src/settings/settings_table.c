@@ -206,11 +206,16 @@ static const setting_row table[] = {
      "How slowly the radius shrinks from pass to pass; 1: not at all (Knaus & Zwicker "
      "2011)."},
     {"denoise", SETTING_BOOL, AT(denoise), "", 0, 1, 1, NULL, "", "all",
-     "Takes the noise out of what files of eight bits and the window show, from two passes "
+     "Takes the noise out of what files of eight bits and the window show, from two "
+     "passes "
      "on; EXR files keep the picture as it is, and have this beside it as denoised.R, G "
      "and B."},
     {"seed", SETTING_COUNT, AT(seed), "", 0, 9007199254740992.0, 0, NULL, "", "all",
      "Chooses the random numbers; the same seed gives the same image, bit for bit."},
+    {"camera_seed", SETTING_COUNT, AT(camera_seed), "", 0, 9007199254740992.0, 0, NULL,
+     "", "all",
+     "Chooses those of paths from the eye once more, so that two pictures with the same "
+     "photons need not have the same grain."},
     {"threads", SETTING_COUNT, AT(threads), "", 0, 4096, 0, NULL, "nthreads", "all",
      "Threads to work with; 0: one per processor."},
 };

@@ -228,6 +228,26 @@ static void test_multiple_samples(void)
 
 /* ---- Whole renders ---- */
 
+/* Photons stay: what is but their light, on a wall, hardly changes from one seed of the
+   camera to another, where other photons change it. */
+static void test_camera_seed(void)
+{
+    g_autoptr(view) v = view_of(ROOM);
+    static const char how[] = "direct_illumination=off passes=1 spp=64 photons=300";
+    g_autofree char *eye = g_strconcat(how, " camera_seed=8", NULL);
+    g_autofree char *all = g_strconcat(how, " seed=8", NULL);
+    g_autoptr(image) a = render_with(v, how), b = render_with(v, eye);
+    g_autoptr(image) c = render_with(v, all);
+    double of_eye = 0.0, of_all = 0.0;
+    for (size_t i = 0; i < pixels_of(a); i++) {
+        of_eye += pow(luminance_at(a, i) - luminance_at(b, i), 2.0);
+        of_all += pow(luminance_at(a, i) - luminance_at(c, i), 2.0);
+    }
+    g_test_message("%g, %g", of_eye, of_all);
+    g_assert_cmpfloat(of_eye, >, 0.0);
+    g_assert_cmpfloat(of_eye, <, 0.1 * of_all);
+}
+
 static void test_seed(void)
 {
     g_autoptr(view) v = view_of(ROOM);
@@ -318,6 +338,7 @@ static const struct {
     {"alpha", "/knob-meanings/alpha"},
     {"denoise", "/film-denoise/raw-stays /film-denoise/less-noise"},
     {"seed", "/knob-meanings/seed"},
+    {"camera_seed", "/knob-meanings/camera-seed"},
     {"threads", "/base/parallel/once /transport/threads"},
 };
 
@@ -336,6 +357,7 @@ static const struct {
     {"/knob-meanings/caustic-emission", test_caustic_emission},
     {"/knob-meanings/multiple-samples", test_multiple_samples},
     {"/knob-meanings/seed", test_seed},
+    {"/knob-meanings/camera-seed", test_camera_seed},
     {"/knob-meanings/integrator", test_integrator},
 };
 

@@ -61,6 +61,7 @@ static const struct {
     {"vcm_strategies", "bpt", ""},
     {"alpha", "0.9", ""},
     {"seed", "3", ""},
+    {"camera_seed", "3", ""},
     {"first_spp", "1", "spp=2 "},
 };
 

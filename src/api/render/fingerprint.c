@@ -54,7 +54,9 @@ static void add_camera(GChecksum *sum, const NephScene *of)
 
 static void add_reading(GChecksum *sum, const NephScene *of)
 {
-    const double how[] = {of->lenient ? 1.0 : 0.0, of->thin_glass ? 1.0 : 0.0};
+    bool is_frame = of->at_time && of->scene->is_animated;
+    const double how[] = {of->lenient ? 1.0 : 0.0, of->thin_glass ? 1.0 : 0.0,
+                          is_frame ? 1.0 : 0.0, is_frame ? of->time : 0.0};
     add_numbers(sum, how, G_N_ELEMENTS(how));
 }
 

@@ -3,7 +3,7 @@
  *
  *   .glb: "glTF" version length, then chunks: length type bytes (JSON, then BIN)
  */
-#include "format/gltf/gltf.h"
+#include "format/gltf/gltf_animation.h"
 
 #include "base/input.h"
 #include "base/intern.h"
@@ -61,7 +61,7 @@ static void add_node(gltf *g, const json_value *nodes, guint index,
     g->visited[index] = true;
     if (is_hidden(&node))
         return;
-    if (!gltf_node_transform(&node, &own)) {
+    if (!gltf_node_transform(g, &node, &own)) {
         if (!gltf_failed(g))
             gltf_note(g, LOG_WARNING, "a node scaled to nothing is left out");
         return;
@@ -151,13 +151,6 @@ static void note_extensions(gltf *g, const char *list)
     }
 }
 
-static void note_animations(gltf *g)
-{
-    json_value animations = json_member(&g->root, "animations");
-    if (json_length(&animations) > 0)
-        gltf_note(g, LOG_NOTE, "animations are left out: the scene stands as it begins");
-}
-
 static void make_room(gltf *g)
 {
     json_value materials = json_member(&g->root, "materials");
@@ -182,10 +175,10 @@ static void read_document(gltf *g)
         return;
     make_room(g);
     gltf_find_parents(g);
+    gltf_read_animations(g);
     gltf_survey(g);
     note_extensions(g, "extensionsUsed");
     note_extensions(g, "extensionsRequired");
-    note_animations(g);
     if (!gltf_failed(g))
         add_scene(g);
     if (g->n_solid > 0)
@@ -256,6 +249,7 @@ static void clear(gltf *g)
     g_free(g->materials);
     g_free(g->meshes);
     g_free(g->visited);
+    gltf_forget_animations(g);
     g_free(g->parents);
     g_clear_pointer(&g->binary, g_bytes_unref);
     g_hash_table_unref(g->notes);

@@ -4,6 +4,7 @@
  *   gltf.c          .gltf and .glb, extensions, the scene graph
  *   gltf_buffer.c   buffers, views and accessors as arrays of numbers
  *   gltf_node.c     where nodes stand
+ *   gltf_animation.c  where they do at a time
  *   gltf_mesh.c     primitives as meshes
  *   gltf_pose.c     morph targets and skins
  *   gltf_instance.c meshes where nodes put them, once or many times
@@ -44,6 +45,8 @@ typedef struct gltf_mesh_info {
     int object;   /**< in the scene: of all its primitives but shining ones; NO_INDEX */
 } gltf_mesh_info;
 
+typedef struct gltf_moved gltf_moved;
+
 typedef struct gltf {
     scene_builder *builder;
     const char *path; /**< of the file */
@@ -55,8 +58,9 @@ typedef struct gltf {
     guint n_buffers;
     gltf_material_info *materials; /**< one per material, and the default one */
     guint n_materials;
-    bool *visited; /**< per node */
-    int *parents;  /**< per node; NO_INDEX: a root */
+    bool *visited;     /**< per node */
+    int *parents;      /**< per node; NO_INDEX: a root */
+    gltf_moved *moved; /**< per node, by animations; NULL: as they stand */
     guint n_nodes;
     gltf_mesh_info *meshes;
     guint n_meshes;
@@ -110,9 +114,9 @@ uint32_t *gltf_read_indices(gltf *g, gint64 accessor, size_t *count);
  * flattens space. */
 bool gltf_transform(const double t[3], const double q[4], const double s[3],
                     transform *out);
-/** @brief The same of a node, relative to its parent, by "matrix" or "translation",
- * "rotation" and "scale". */
-bool gltf_node_transform(const json_value *node, transform *out);
+/** @brief The same of a node (an element of "nodes"), relative to its parent, by "matrix"
+ * or "translation", "rotation" and "scale". */
+bool gltf_node_transform(const gltf *g, const json_value *node, transform *out);
 /** @brief Fills g->parents. */
 void gltf_find_parents(gltf *g);
 /** @brief Node to world, row by row. @return false with an error noted */

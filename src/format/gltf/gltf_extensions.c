@@ -71,7 +71,9 @@ static const gltf_extension_row core[] = {
      "in the pose of the joints at rest; copies of one by "
      "EXT_mesh_gpu_instancing are left out"},
     {"morph targets", GLTF_RENDERED, "by the weights of the node, else of the mesh"},
-    {"animations", GLTF_LEFT_OUT, "the scene stands as it begins"},
+    {"animations", GLTF_RENDERED,
+     "the first, of nodes and morph targets, at the times of --frame; else the scene "
+     "stands as it begins"},
     {"points and lines", GLTF_LEFT_OUT, ""},
 };
 

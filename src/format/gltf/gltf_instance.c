@@ -19,7 +19,7 @@ static void count_node(gltf *g, const json_value *node, bool *shown)
     json_value copies = gltf_extension(node, "EXT_mesh_gpu_instancing", &extensions);
     if (!json_exists(&of))
         return;
-    if (gltf_pose_is_own(node))
+    if (gltf_pose_is_own(g, node))
         return;
     g->meshes[index].repeats |= shown[index] || json_exists(&copies);
     shown[index] = true;

@@ -3,7 +3,7 @@
  * parent's. Joints may be flattened, which hides what hangs on them, so that matrices are
  * kept apart from transforms, which have inverses.
  */
-#include "format/gltf/gltf.h"
+#include "format/gltf/gltf_animation.h"
 
 #include <math.h>
 #include <string.h>
@@ -56,9 +56,10 @@ bool gltf_transform(const double t[3], const double q[4], const double s[3],
 }
 
 /* Columns come first in the file. */
-static void own_matrix(const json_value *node, matrix out)
+static void own_matrix(const gltf *g, const json_value *node, matrix out)
 {
     double columns[16], t[3] = {0}, s[3] = {1.0, 1.0, 1.0}, q[4] = {0, 0, 0, 1.0};
+    const gltf_moved *moved = g->moved ? &g->moved[node->index] : NULL;
     if (json_numbers(node, "matrix", columns, 16)) {
         for (int i = 0; i < 4; i++)
             for (int j = 0; j < 4; j++)
@@ -68,13 +69,19 @@ static void own_matrix(const json_value *node, matrix out)
     json_numbers(node, "translation", t, 3);
     json_numbers(node, "rotation", q, 4);
     json_numbers(node, "scale", s, 3);
+    if (moved && moved->has_translation)
+        memcpy(t, moved->translation, sizeof t);
+    if (moved && moved->has_rotation)
+        memcpy(q, moved->rotation, sizeof q);
+    if (moved && moved->has_scale)
+        memcpy(s, moved->scale, sizeof s);
     compose(t, q, s, out);
 }
 
-bool gltf_node_transform(const json_value *node, transform *out)
+bool gltf_node_transform(const gltf *g, const json_value *node, transform *out)
 {
     matrix m;
-    own_matrix(node, m);
+    own_matrix(g, node, m);
     return transform_from_matrix((const double(*)[4])m, out);
 }
 
@@ -103,7 +110,7 @@ bool gltf_node_matrix(gltf *g, guint index, double out[4][4])
     json_value node = json_element(&nodes, index);
     if (gltf_failed(g))
         return false;
-    own_matrix(&node, out);
+    own_matrix(g, &node, out);
     int at = g->parents[index];
     for (unsigned depth = 0; at != NO_INDEX && !gltf_failed(g); depth++) {
         matrix above;
@@ -113,7 +120,7 @@ bool gltf_node_matrix(gltf *g, guint index, double out[4][4])
             return false;
         }
         json_value parent = json_element(&nodes, (guint)at);
-        own_matrix(&parent, above);
+        own_matrix(g, &parent, above);
         multiply((const double(*)[4])above, (const double(*)[4])out, out);
         at = g->parents[at];
     }

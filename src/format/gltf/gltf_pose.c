@@ -15,6 +15,7 @@
 #include "format/gltf/gltf_pose.h"
 
 #include "base/memory.h"
+#include "format/gltf/gltf_animation.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,6 +25,12 @@
 static void read_weights(gltf *g, const json_value *node, const json_value *of,
                          gltf_pose *pose)
 {
+    const gltf_moved *moved = g->moved ? &g->moved[node->index] : NULL;
+    if (moved && moved->weights) {
+        pose->n_weights = moved->n_weights;
+        pose->weights = g_memdup2(moved->weights, moved->n_weights * sizeof(double));
+        return;
+    }
     json_value own = json_member(node, "weights"), shared = json_member(of, "weights");
     const json_value *list = json_exists(&own) ? &own : &shared;
     pose->n_weights = json_length(list);
@@ -77,8 +84,10 @@ static void read_skin(gltf *g, const json_value *skin, gltf_pose *pose)
     big_free(binds);
 }
 
-bool gltf_pose_is_own(const json_value *node)
+bool gltf_pose_is_own(const gltf *g, const json_value *node)
 {
+    if (g->moved && g->moved[node->index].weights)
+        return true;
     json_value weights = json_member(node, "weights"), skin = json_member(node, "skin");
     return json_exists(&weights) || json_exists(&skin);
 }
@@ -89,7 +98,7 @@ bool gltf_pose_read(gltf *g, const json_value *node, const json_value *of,
     json_value array;
     gint64 index;
     json_value skin = gltf_refer(g, node, "skin", "skins", &array, &index);
-    *pose = (gltf_pose){.is_own = gltf_pose_is_own(node)};
+    *pose = (gltf_pose){.is_own = gltf_pose_is_own(g, node)};
     if (!gltf_failed(g))
         read_weights(g, node, of, pose);
     if (!gltf_failed(g) && json_exists(&skin))

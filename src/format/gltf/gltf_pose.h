@@ -19,7 +19,7 @@ struct gltf_pose {
 };
 
 /** @brief Whether a node says of itself how its mesh is bent. */
-bool gltf_pose_is_own(const json_value *node);
+bool gltf_pose_is_own(const gltf *g, const json_value *node);
 /** @brief The pose that a node gives its mesh `of`. @return false with an error noted;
  * to be cleared in any case */
 bool gltf_pose_read(gltf *g, const json_value *node, const json_value *of,

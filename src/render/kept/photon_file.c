@@ -18,11 +18,10 @@ static const checked_kind kind = {"photons", "photon map", "1"};
 
 /* What photons do not depend on, nor the plan that they were sent by. */
 static const char *const free_rows[] = {
-    "passes",          "time",           "noise",
-    "threads",         "denoise",        "first_spp",
-    "gather_rays",     "photon_map",     "direct_kernel",
-    "indirect_kernel", "direct_cone_k",  "indirect_cone_k",
-    "caustic_kernel",  "caustic_cone_k", NULL};
+    "passes",          "time",           "noise",           "threads",
+    "denoise",         "first_spp",      "camera_seed",     "gather_rays",
+    "photon_map",      "direct_kernel",  "indirect_kernel", "direct_cone_k",
+    "indirect_cone_k", "caustic_kernel", "caustic_cone_k",  NULL};
 
 /* ---- Sections ---- */
 
