@@ -47,19 +47,19 @@ struct gather {
 /* Σ κ Φ, in four sums: one alone would wait for itself. */
 static spectrum weigh_plain(const gather *g, size_t begin, size_t end)
 {
-    const spectrum *flux = g->query.store->flux;
+    const packed_flux *flux = g->query.store->packed;
     const uint32_t *index = g->index;
     const float *weight = g->weight;
     spectrum a = {0}, b = {0}, c = {0}, d = {0};
     size_t i = begin;
     for (; i + 4 <= end; i += 4) {
-        a += weight[i] * flux[index[i]];
-        b += weight[i + 1] * flux[index[i + 1]];
-        c += weight[i + 2] * flux[index[i + 2]];
-        d += weight[i + 3] * flux[index[i + 3]];
+        a += weight[i] * flux_unpack(flux + index[i]);
+        b += weight[i + 1] * flux_unpack(flux + index[i + 1]);
+        c += weight[i + 2] * flux_unpack(flux + index[i + 2]);
+        d += weight[i + 3] * flux_unpack(flux + index[i + 3]);
     }
     for (; i < end; i++)
-        a += weight[i] * flux[index[i]];
+        a += weight[i] * flux_unpack(flux + index[i]);
     return (a + b) + (c + d);
 }
 
@@ -82,7 +82,7 @@ static spectrum weigh_bent(const gather *g, size_t begin, size_t end)
         vec3 wi = direction_octahedron(s->wi[g->index[i]]);
         float weight = g->weight[i] * cosine_ratio(g, wi);
         if (dot3(wi, g->b->shading.n) * dot3(wi, g->b->n_geom) > 0.0f)
-            sum += weight * s->flux[g->index[i]];
+            sum += weight * flux_unpack(s->packed + g->index[i]);
     }
     return sum;
 }
@@ -100,7 +100,8 @@ static spectrum weigh_bsdf(const gather *g, size_t begin, size_t end)
         unsigned lobes = options->lobes | (delta ? options->delta_lobes : 0);
         spectrum f = bsdf_eval(g->b, g->wo, wi, lobes, TRANSPORT_RADIANCE);
         if (!spectrum_is_black(f))
-            sum += g->weight[i] * cosine_ratio(g, wi) * f * store->flux[g->index[i]];
+            sum += g->weight[i] * cosine_ratio(g, wi) * f *
+                   flux_unpack(store->packed + g->index[i]);
     }
     return sum;
 }
@@ -154,7 +155,7 @@ static inline __attribute__((always_inline)) void weigh_block(gather *g,
     const bool selects = photon_query_selects(query);
     size_t n = g->n_block, kept = 0;
     for (size_t i = 0; i < n; i++)
-        __builtin_prefetch(query->store->flux + g->index[i]);
+        __builtin_prefetch(query->store->packed + g->index[i]);
     memset(g->index + n, 0, LANES * sizeof *g->index);
     for (size_t i = 0; i < n; i += LANES) {
         unsigned bits = bits_first(n - i);

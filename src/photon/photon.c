@@ -11,6 +11,8 @@
 #include "photon/photon.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
+#include "math/sampler.h"
 #include "photon/direction.h"
 
 static bool grow(void *array, size_t n, size_t capacity, size_t size, GError **error)
@@ -29,6 +31,7 @@ static void free_arrays(photon_store *store)
     big_free(store->z);
     big_free(store->wi);
     big_free(store->flux);
+    big_free(store->packed);
     big_free(store->normal);
     big_free(store->tag);
     big_free(store->home);
@@ -94,7 +97,7 @@ photon photon_store_get(const photon_store *store, size_t i)
     return (photon){
         .p = vec3_make(store->x[i], store->y[i], store->z[i]),
         .wi = direction_unpack(store->wi[i]),
-        .flux = store->numbered ? (spectrum){0} : store->flux[i],
+        .flux = store->numbered ? (spectrum){0} : photon_store_flux(store, i),
         .flags = direction_flags(store->wi[i]),
         .n = store->oriented ? direction_unpack(store->normal[i]) : (vec3){0},
         .tag = store->tagged ? store->tag[i] : 0,
@@ -133,11 +136,48 @@ void photon_store_copy(const photon_store *to, size_t at, const photon_store *fr
 size_t photon_store_bytes(const photon_store *store)
 {
     size_t each = 3 * sizeof(float) + sizeof(uint32_t);
-    each += store->numbered ? sizeof(size_t) : sizeof(spectrum);
+    each += store->numbered ? sizeof(size_t)
+            : store->packed ? sizeof *store->packed
+                            : sizeof *store->flux;
     each += store->oriented ? sizeof(uint32_t) : 0;
     each += store->tagged ? sizeof(uint32_t) : 0;
     each += store->homed ? sizeof(uint32_t) : 0;
     return store->x ? (store->capacity + points_padded(0)) * each : 0;
+}
+
+/* Flux being packed: to[i] is what was from[order[i]]. */
+typedef struct packing {
+    const spectrum *from;
+    packed_flux *to;
+    const size_t *order; /* NULL: as it stands */
+} packing;
+
+static void pack_piece(size_t begin, size_t end, unsigned thread, void *data)
+{
+    enum { AHEAD = 16 }; /* size: photons on their way from memory */
+    (void)thread;
+    const packing *job = data;
+    const size_t *order = job->order;
+    for (size_t i = begin; i < end; i++) {
+        size_t k = order ? order[i] : i; /* alike in every order */
+        if (order && i + AHEAD < end)
+            __builtin_prefetch(job->from + order[i + AHEAD]);
+        flux_pack(job->from[k], hash_mix(k, N_WAVELENGTHS), &job->to[i]);
+    }
+}
+
+bool photon_store_pack(photon_store *store, const size_t *order, unsigned threads,
+                       GError **error)
+{
+    packing job = {store->flux, NULL, order};
+    job.to = big_alloc(points_padded(store->n), sizeof *job.to, "photons", error);
+    if (!job.to)
+        return false;
+    parallel_for(store->n, 1 << 14, threads, NULL, pack_piece, &job);
+    big_free(store->flux);
+    store->flux = NULL;
+    store->packed = job.to;
+    return true;
 }
 
 bool photon_store_follow(photon_store *store, const size_t *order, unsigned threads,
@@ -149,7 +189,7 @@ bool photon_store_follow(photon_store *store, const size_t *order, unsigned thre
         bool kept;
     } all[] = {
         {&store->wi, sizeof *store->wi, true},
-        {&store->flux, sizeof *store->flux, !store->numbered},
+        {&store->flux, sizeof *store->flux, store->flux != NULL},
         {&store->number, sizeof *store->number, store->numbered},
         {&store->normal, sizeof *store->normal, store->oriented},
         {&store->tag, sizeof *store->tag, store->tagged},

@@ -7,11 +7,12 @@
  *
  *   x[] y[] z[]   4 bytes each   read for every candidate
  *   wi[]          4 bytes        octahedral and flags, read for blocks with some in reach
- *   flux[]        32 bytes       eight wavelengths, read for those in reach; or
+ *   flux[]        32 bytes       eight wavelengths, read for those in reach;
+ *                                24 in a map (packed_flux.h); or
  *   number[]      8 bytes        where the owner keeps what lies there
  *
- * 48 bytes a photon, and four more each for normals, tags and homes where they are asked
- * for.
+ * 48 bytes a photon, 40 in a map, and four more each for normals, tags and homes where
+ * they are asked for.
  * Stores count in size_t; a map names its photons in 32 bits.
  */
 #pragma once
@@ -20,6 +21,7 @@
 #include "color/spectrum.h"
 #include "math/vec.h"
 #include "photon/map/points.h"
+#include "photon/packed_flux.h"
 
 #include <stdint.h>
 
@@ -57,21 +59,23 @@ typedef struct photon {
 } photon;
 
 /** @brief Photons as arrays of n, big_alloc'ed; capacity >= n. The arrays go on behind
- * capacity for at least one SIMD block, so that eight photons may be loaded from any. */
+ * capacity for at least one SIMD block, so that as many photons may be loaded from any.
+ */
 typedef struct photon_store {
     size_t n, capacity;
     float *x, *y, *z;
     uint32_t *wi;
-    spectrum *flux;
-    bool oriented;    /**< set before room is made: photons keep the normals of their
-                         surfaces */
-    uint32_t *normal; /**< packed (direction_pack); NULL unless oriented */
-    bool tagged;      /**< set before room is made: photons keep their tags */
-    uint32_t *tag;    /**< NULL unless tagged */
-    bool homed;       /**< set before room is made: photons keep their curves or media */
-    uint32_t *home;   /**< NULL unless homed */
-    bool numbered;    /**< set before room is made: photons keep numbers and no flux */
-    size_t *number;   /**< NULL unless numbered; flux is NULL if so */
+    spectrum *flux;      /**< NULL once it is packed */
+    packed_flux *packed; /**< NULL until then */
+    bool oriented;       /**< set before room is made: photons keep the normals of their
+                            surfaces */
+    uint32_t *normal;    /**< packed (direction_pack); NULL unless oriented */
+    bool tagged;         /**< set before room is made: photons keep their tags */
+    uint32_t *tag;       /**< NULL unless tagged */
+    bool homed;     /**< set before room is made: photons keep their curves or media */
+    uint32_t *home; /**< NULL unless homed */
+    bool numbered;  /**< set before room is made: photons keep numbers and no flux */
+    size_t *number; /**< NULL unless numbered; flux is NULL if so */
 } photon_store;
 
 /** @brief Makes room for capacity photons in all; on failure the store holds what it did:
@@ -93,6 +97,17 @@ static inline point_arrays photon_points(const photon_store *store)
 {
     return (point_arrays){store->n, store->x, store->y, store->z};
 }
+
+/** @brief Flux of photon i of a store that is not numbered. */
+static inline spectrum photon_store_flux(const photon_store *store, size_t i)
+{
+    return store->packed ? flux_unpack(store->packed + i) : store->flux[i];
+}
+
+/** @brief Puts flux in this order (as photon_store_follow, which then leaves it alone),
+ * and keeps of it what packed_flux does. Nothing can be put into the store any more. */
+bool photon_store_pack(photon_store *store, const size_t *order, unsigned threads,
+                       GError **error);
 
 /** @brief After positions were put in an order (point_index_build), what lies at them
  * follows: photon i is the one that was order[i]. NULL: they stayed as they were. One

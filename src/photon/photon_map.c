@@ -18,7 +18,9 @@ static bool index_store(photon_map *map, map_choice choice, float radius,
     store->x = points.x;
     store->y = points.y;
     store->z = points.z;
-    bool ok = map->index && photon_store_follow(store, order, threads, error);
+    bool ok = map->index &&
+              (!store->flux || photon_store_pack(store, order, threads, error)) &&
+              photon_store_follow(store, order, threads, error);
     big_free(order);
     return ok;
 }
@@ -82,8 +84,9 @@ static int compare_photons(const void *data, size_t a, size_t b)
     if (s->numbered)
         return order ? order
                      : (s->number[a] > s->number[b]) - (s->number[a] < s->number[b]);
+    spectrum x = photon_store_flux(s, a), y = photon_store_flux(s, b);
     for (int lane = 0; lane < N_WAVELENGTHS && !order; lane++)
-        order = compare_floats(s->flux[a][lane], s->flux[b][lane]);
+        order = compare_floats(x[lane], y[lane]);
     return order;
 }
 

@@ -34,7 +34,7 @@ struct photon_spots {
 
 static double worth(const photon_store *photons, size_t i)
 {
-    double flux = (double)spectrum_mean(photons->flux[i]);
+    double flux = (double)spectrum_mean(photon_store_flux(photons, i));
     return isfinite(flux) && flux > 0.0 ? flux : 0.0;
 }
 

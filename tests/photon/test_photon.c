@@ -161,6 +161,60 @@ static void test_store_numbers(void)
     photon_store_clear(&twice);
 }
 
+static uint64_t chance_of(uint32_t i)
+{
+    return hash_mix(i, 1);
+}
+
+/* Flux in 24 bytes is off by less than its last bit, on average by nothing, and unpacked
+   alike by both twins. */
+static void test_packed_flux(void)
+{
+    enum { N = 1 << 16 };
+    packed_flux packed[2] = {0};
+    double off = 0.0;
+    for (uint32_t i = 0; i < N; i++) {
+        spectrum flux = random_photon(i % 64).flux * exp2f((float)(i % 200) - 100.0f);
+        flux[i % 8] = i % 3 ? flux[i % 8] : 0.0f;
+        flux_pack(flux, chance_of(i), packed);
+        const spectrum found = flux_unpack(packed), twin = flux_unpack_scalar(packed);
+        g_assert_cmpmem(&found, sizeof found, &twin, sizeof twin);
+        for (int k = 0; k < N_WAVELENGTHS; k++) {
+            g_assert_cmpfloat(fabsf(found[k] - flux[k]), <=, 0x1p-15f * flux[k]);
+            off += flux[k] > 0.0f ? (double)(found[k] / flux[k] - 1.0f) : 0.0;
+        }
+    }
+    /* Each is off by 1.3e-5 at most in standard deviation, half a million of them by
+       1.8e-8 in the mean: six times that. */
+    g_assert_cmpfloat(fabs(off / (8.0 * N)), <, 1.1e-7);
+}
+
+static void test_store_packed(void)
+{
+    enum { N = 1000 };
+    photon_store store = {0};
+    size_t order[N];
+    g_assert_true(photon_store_reserve(&store, N, NULL));
+    for (uint32_t i = 0; i < N; i++) {
+        photon p = random_photon(i);
+        photon_store_put(&store, &p);
+        order[i] = i * 7 % N;
+    }
+    g_assert_true(photon_store_pack(&store, order, 2, NULL));
+    put_in_order(&store, order);
+    g_assert_null(store.flux);
+    g_assert_cmpuint(photon_store_bytes(&store), <=, N * 40 + 32 * 40);
+    for (uint32_t i = 0; i < N; i++) {
+        photon expected = random_photon((uint32_t)order[i]);
+        photon found = photon_store_get(&store, i);
+        g_assert_cmpfloat(expected.p[1], ==, found.p[1]);
+        for (int k = 0; k < N_WAVELENGTHS; k++)
+            g_assert_cmpfloat(fabsf(found.flux[k] - expected.flux[k]), <=,
+                              0x1p-15f * expected.flux[k]);
+    }
+    photon_store_clear(&store);
+}
+
 static void test_store_memory(void)
 {
     photon_store store = {0};
@@ -197,6 +251,8 @@ int main(int argc, char **argv)
     g_test_add_func("/photon/direction/lanes", test_direction_lanes);
     g_test_add_func("/photon/store/put-get-permute", test_store);
     g_test_add_func("/photon/store/numbers", test_store_numbers);
+    g_test_add_func("/photon/packed-flux", test_packed_flux);
+    g_test_add_func("/store/packed", test_store_packed);
     g_test_add_func("/photon/store/memory", test_store_memory);
     g_test_add_func("/photon/store/refused", test_store_refused);
     return g_test_run();

@@ -1,6 +1,7 @@
 /*
  * photons: those that are traced without a picture are those that pass 0 of a render
- * stores, bit for bit, whatever the integrator; what it does not send is not there.
+ * stores, bit for bit, whatever the integrator, but for the last byte of flux, of which
+ * maps keep none (packed_flux.h); what it does not send is not there.
  */
 #include "rooms.h"
 
@@ -33,7 +34,8 @@ static void add_store(GArray *list, const photon_store *store)
 {
     for (size_t i = 0; i < store->n; i++) {
         known one = {{store->x[i], store->y[i], store->z[i]}, store->wi[i], {0}};
-        memcpy(one.flux, &store->flux[i], sizeof one.flux);
+        const spectrum flux = photon_store_flux(store, i);
+        memcpy(one.flux, &flux, sizeof one.flux);
         g_array_append_val(list, one);
     }
 }
@@ -153,8 +155,12 @@ static void compare_class(const GArray *a, const GArray *b, const sent_case *of,
     g_test_message("class %d: %u photons", c, a->len);
     g_assert_cmpuint(a->len, ==, b->len);
     g_assert_true((a->len > 0) == of->sends[c]);
-    if (a->len > 0)
-        g_assert_cmpint(memcmp(a->data, b->data, a->len * sizeof(known)), ==, 0);
+    for (guint i = 0; i < a->len; i++) {
+        const known *x = &g_array_index(a, known, i), *y = &g_array_index(b, known, i);
+        g_assert_cmpmem(x, offsetof(known, flux), y, offsetof(known, flux));
+        for (int k = 0; k < N_WAVELENGTHS; k++)
+            g_assert_cmpfloat(fabsf(x->flux[k] - y->flux[k]), <=, 0x1p-15f * x->flux[k]);
+    }
 }
 
 static void test_as_stored(gconstpointer data)
