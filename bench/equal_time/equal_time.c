@@ -5,6 +5,9 @@
  *   scene ─► two long renders of algorithms that share no weakness ─► reference, its
  * floor ─► each algorithm, 1, 4, 16 ... passes, some seeds ─► seconds, relMSE, FLIP
  *
+ * Each picture is measured as it was rendered, and under its algorithm's name with a "+"
+ * without its noise, with the seconds that taking it out took.
+ *
  * Of the scene's own words on how to render none counts: all settings are the default's
  * but the algorithm and the passes: a sample a pixel and three photons for two, as a
  * render with `time` chooses them where time is short, and each point a whole render with
@@ -25,6 +28,7 @@
 #define CUT 2.0f
 
 static const char *const beauty[3] = {"R", "G", "B"};
+static const char *const shown[3] = {"denoised.R", "denoised.G", "denoised.B"};
 static const char *const caustic[3] = {"caustic.R", "caustic.G", "caustic.B"};
 
 enum { MOST_KINDS = 8, FIRST_SEED = 1, STEP = 4 };
@@ -99,9 +103,14 @@ static int64_t n_pixels(const NephScene *scene)
     return (int64_t)width * height;
 }
 
+/* What a render takes: its picture as rendered, and with the one without noise. */
+typedef struct seconds {
+    double raw, shown;
+} seconds;
+
 /* One whole render. @return NULL: the algorithm refuses the scene */
 static NephImage *shot(const NephScene *scene, const kind *k, int64_t passes, int seed,
-                       double *seconds)
+                       seconds *took)
 {
     GError *error = NULL;
     NephSettings *how = neph_settings_new();
@@ -114,8 +123,9 @@ static NephImage *shot(const NephScene *scene, const kind *k, int64_t passes, in
     double start = processor_seconds();
     NephRender *render = neph_render_new(scene, how, &error);
     bool done = render && neph_render_run(render, NULL, NULL, &error);
-    *seconds = processor_seconds() - start;
+    took->raw = processor_seconds() - start;
     NephImage *image = done ? neph_render_image(render, &error) : NULL;
+    took->shown = processor_seconds() - start;
     if (!image)
         fprintf(stderr, "equal_time: %s: %s\n", k->name, error->message);
     g_clear_error(&error);
@@ -152,12 +162,12 @@ static float *colours(const NephImage *from, const char *const names[3])
     return rgb;
 }
 
-static NephImage *cut(const NephImage *from)
+static NephImage *cut(const NephImage *from, const char *const names[3])
 {
     GError *error = NULL;
     int width, height, n_channels;
     neph_image_size(from, &width, &height, &n_channels);
-    float *rgb = colours(from, beauty);
+    float *rgb = colours(from, names);
     NephImage *out = neph_image_new(width, height, rgb, &error);
     if (!out)
         fail("no memory", error);
@@ -165,11 +175,12 @@ static NephImage *cut(const NephImage *from)
     return out;
 }
 
-static NephImageDifference compare(const NephImage *image, const NephImage *reference)
+static NephImageDifference compare(const NephImage *image, const char *const names[3],
+                                   const NephImage *reference)
 {
     GError *error = NULL;
     NephImageDifference out;
-    NephImage *a = cut(image), *b = cut(reference);
+    NephImage *a = cut(image, names), *b = cut(reference, beauty);
     if (!neph_image_compare(a, b, &out, &error))
         fail("comparing", error);
     neph_image_free(a);
@@ -179,11 +190,12 @@ static NephImageDifference compare(const NephImage *image, const NephImage *refe
 
 /* relMSE over what caustics light: a fifth of it and more, by the reference's layers.
    NAN: nothing is. */
-static double caustic_error(const NephImage *image, const NephImage *reference)
+static double caustic_error(const NephImage *image, const char *const names[3],
+                            const NephImage *reference)
 {
     int width, height, n_channels;
     neph_image_size(image, &width, &height, &n_channels);
-    float *is = colours(image, beauty), *should = colours(reference, beauty);
+    float *is = colours(image, names), *should = colours(reference, beauty);
     float *lit = colours(reference, caustic);
     double sum = 0.0;
     int n = 0;
@@ -202,11 +214,11 @@ static double caustic_error(const NephImage *image, const NephImage *reference)
 }
 
 /* Passes of about so many seconds, from what a few take. */
-static int64_t passes_for(const NephScene *scene, const kind *k, double seconds)
+static int64_t passes_for(const NephScene *scene, const kind *k, double wanted)
 {
-    double few;
+    seconds few;
     neph_image_free(shot(scene, k, STEP, 99, &few));
-    return (int64_t)fmax(STEP * seconds / few, 1.0);
+    return (int64_t)fmax(STEP * wanted / few.raw, 1.0);
 }
 
 static bool is_file(const char *path)
@@ -222,38 +234,49 @@ static NephImage *long_shot(const NephScene *scene, const char *name, const kind
                             const options *o)
 {
     char path[1024];
-    double seconds = o->longest * o->seconds;
+    double wanted = o->longest * o->seconds;
     GError *error = NULL;
     snprintf(path, sizeof path, "%s/%s-%s-%dx%d-%.0fs.exr", o->cache, name, k->name,
-             o->width, o->height, seconds);
+             o->width, o->height, wanted);
     if (is_file(path)) {
         NephImage *kept = neph_image_read(path, &error);
         if (!kept)
             fail(path, error);
         return kept;
     }
-    fprintf(stderr, "equal_time: %s by %s for %.0f s\n", name, k->name, seconds);
-    double spent;
-    NephImage *made = shot(scene, k, passes_for(scene, k, seconds), 4711, &spent);
+    fprintf(stderr, "equal_time: %s by %s for %.0f s\n", name, k->name, wanted);
+    seconds spent;
+    NephImage *made = shot(scene, k, passes_for(scene, k, wanted), 4711, &spent);
     if (!made || !neph_image_write(made, path, 0.0f, &error))
         fail(path, error);
     return made;
+}
+
+/* @param names of the picture's channels */
+static void print_point(const NephImage *image, const char *const names[3],
+                        const NephImage *reference, double took)
+{
+    NephImageDifference d = compare(image, names, reference);
+    printf("\t%.4f\t%.6f\t%.5f\t%.6f\n", took, d.relmse, d.flip,
+           caustic_error(image, names, reference));
+    fflush(stdout);
 }
 
 static void measure_kind(const NephScene *scene, const char *name, const kind *k,
                          const NephImage *reference, const options *o)
 {
     for (int seed = FIRST_SEED; seed < FIRST_SEED + o->seeds; seed++) {
-        double seconds = 0.0;
-        for (int64_t passes = 1; seconds * STEP < 1.5 * o->seconds; passes *= STEP) {
-            NephImage *image = shot(scene, k, passes, seed, &seconds);
+        seconds took = {0.0, 0.0};
+        for (int64_t passes = 1; took.raw * STEP < 1.5 * o->seconds; passes *= STEP) {
+            NephImage *image = shot(scene, k, passes, seed, &took);
             if (!image)
                 return;
-            NephImageDifference d = compare(image, reference);
-            printf("%s\t%s\t%d\t%lld\t%.4f\t%.6f\t%.5f\t%.6f\n", name, k->name, seed,
-                   (long long)passes, seconds, d.relmse, d.flip,
-                   caustic_error(image, reference));
-            fflush(stdout);
+            printf("%s\t%s\t%d\t%lld", name, k->name, seed, (long long)passes);
+            print_point(image, beauty, reference, took.raw);
+            if (channel(image, shown[0])) {
+                printf("%s\t%s+\t%d\t%lld", name, k->name, seed, (long long)passes);
+                print_point(image, shown, reference, took.shown);
+            }
             neph_image_free(image);
         }
     }
@@ -298,7 +321,7 @@ static void measure_scene(const char *path, const options *o)
     NephScene *scene = neph_scene_load(path, 1, NULL, NULL, &error);
     if (!scene || !neph_scene_resize(scene, o->width, o->height, &error))
         fail(path, error);
-    double spent;
+    seconds spent;
     NephImage *tried = shot(scene, &all_kinds[VCM], 1, 1, &spent);
     bool media = !tried;
     neph_image_free(tried);
@@ -306,9 +329,9 @@ static void measure_scene(const char *path, const options *o)
     const kind *by[2] = {&all_kinds[media ? PATH : VCM], &all_kinds[SPPM]};
     NephImage *reference = long_shot(scene, name, by[0], o);
     NephImage *other = long_shot(scene, name, by[1], o);
-    NephImageDifference floor = compare(other, reference);
+    NephImageDifference floor = compare(other, beauty, reference);
     printf("%s\tfloor\t0\t0\t0\t%.6f\t%.5f\t%.6f\n", name, floor.relmse, floor.flip,
-           caustic_error(other, reference));
+           caustic_error(other, beauty, reference));
     for (int i = 0; i < o->n_kinds; i++)
         if (!media || strcmp(o->kinds[i].name, "vcm") != 0)
             measure_kind(scene, name, &o->kinds[i], reference, o);

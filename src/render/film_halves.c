@@ -50,11 +50,11 @@ void guide_add(guide_sum *sum, const film_pass *pass, const radiance_sample *sam
                float weight)
 {
     const light_guide *guide = &sample->guide;
+    add_xyz(sum->lamps, pass->w, guide->lamps, weight);
     if (!(guide->weight > 0.0f))
         return;
     float share = weight / guide->weight;
     add_xyz(sum->albedo, pass->w, guide->albedo * pass->white, share);
-    add_xyz(sum->photons, pass->w, guide->photons, share);
     for (int i = 0; i < 3; i++)
         sum->normal[i] += guide->normal[i] * share;
     sum->depth += guide->depth * share;
@@ -208,10 +208,11 @@ static void seen_depth(const film *f, size_t i, int half, float *out)
     less_first(out, &first, 1);
 }
 
-static void photon_guide(const film *f, size_t i, int half, float *out)
+/* Lamps in mirrors have edges that nothing else has. */
+static void lamps_in_mirrors(const film *f, size_t i, int half, float *out)
 {
     guide_sum sum = guides_of(f, i, half);
-    guide_color(f, sum.photons, sum.weight, out);
+    guide_color(f, sum.lamps, (float)half_of(f, i, half).weight, out);
 }
 
 typedef struct feature {
@@ -228,7 +229,7 @@ static const feature features[] = {
     {3, seen_albedo},
     {3, seen_normal},
     {1, seen_depth},
-    {3, photon_guide},
+    {3, lamps_in_mirrors},
 };
 
 /* ---- The picture ---- */

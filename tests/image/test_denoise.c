@@ -159,6 +159,47 @@ static void test_converged(void)
     }
 }
 
+/* Squared error of the means over squares of 7 x 7 pixels: what is seen from afar. */
+static double error_of_means(const picture *p, const float *out)
+{
+    double sum = 0.0;
+    for (int y = 3; y < H - 3; y++) {
+        for (int x = 3; x < W - 3; x++) {
+            double mean = 0.0;
+            for (int k = 0; k < 49; k++) {
+                int i = 3 * ((y + k / 7 - 3) * W + x + k % 7 - 3) + 1;
+                mean += (double)(out[i] - p->truth[i]) / 49.0;
+            }
+            sum += mean * mean;
+        }
+    }
+    return sum;
+}
+
+/* A soft spot that no feature knows of. */
+static float spot(int x, int y)
+{
+    float dx = (float)x - 37.0f, dy = (float)y - 30.0f;
+    return 0.2f + 2.0f * expf(-(dx * dx + dy * dy) / 60.0f);
+}
+
+/* What noise is in single pixels leaves their mean well known: the filter, which rather
+   loses a little everywhere, must not make that worse. */
+static void test_means_stay(void)
+{
+    for (double sigma = 0.2; sigma > 0.01; sigma *= 0.5) {
+        g_autofree picture *p = noisy(spot, sigma, 41);
+        float *raw = g_new(float, 3 * N);
+        double grain = gain(p, NULL, false);
+        for (int i = 0; i < 3 * N; i++)
+            raw[i] = 0.5f * (p->half[0][i] + p->half[1][i]);
+        double ratio = error_of_means(p, p->out) / error_of_means(p, raw);
+        g_test_message("noise %g: %g, of means %g", sigma, grain, ratio);
+        g_assert_cmpfloat(ratio, <, 1.2);
+        g_free(raw);
+    }
+}
+
 /* With half the noise in the picture there is less in what is shown. */
 static void test_error_falls(void)
 {
@@ -475,6 +516,7 @@ int main(int argc, char **argv)
     g_test_add_func("/denoise/constant", test_constant);
     g_test_add_func("/denoise/slope-known-to-feature", test_slope_known_to_feature);
     g_test_add_func("/denoise/converged", test_converged);
+    g_test_add_func("/denoise/means-stay", test_means_stay);
     g_test_add_func("/denoise/error-falls", test_error_falls);
     g_test_add_func("/denoise/edge-known-to-feature", test_edge_known_to_feature);
     g_test_add_func("/denoise/texture-known-to-albedo", test_texture_known_to_albedo);

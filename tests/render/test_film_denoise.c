@@ -7,6 +7,8 @@
 #include "base/memory.h"
 #include "image/compare.h"
 #include "image/layers.h"
+#include "render/film_halves.h"
+#include "render/render_state.h"
 
 #include <glib/gstdio.h>
 
@@ -59,6 +61,32 @@ static void test_less_noise(void)
         g_assert_cmpfloat(e.denoised, <, 0.4 * e.raw);
         g_assert_cmpfloat(e.denoised, <, 0.7 * before);
         before = e.denoised;
+    }
+}
+
+/* All that a mirror shows of a lamp guides the denoiser: that lamp has edges there which
+   no surface has. */
+static void test_lamp_in_mirror(void)
+{
+    static const char *const integrators[] = {"path", "vcm", "photonmap", "auto"};
+    static const char mirror[] = ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP(
+        "") "Material \"conductor\" Shape \"trianglemesh\" \"point3 P\" [-2 -4 0.8 2 -4 "
+            "0.8 "
+            "2 2 0.8 -2 2 0.8] \"integer indices\" [0 1 2 0 2 3]\n";
+    g_autoptr(view) v = view_of(mirror);
+    for (size_t k = 0; k < G_N_ELEMENTS(integrators); k++) {
+        g_autofree char *words = g_strdup_printf(
+            "denoise=on passes=3 spp=2 photons=500 integrator=%s", integrators[k]);
+        g_autoptr(render) r = render_of(v, words);
+        g_assert_true(render_run(r, NULL, NULL, NULL));
+        float most = 0.0f;
+        for (int i = 0; i < 16 * 16; i++) {
+            float shown = (float)r->film.pixels[i].sum.color[LAYER_SPECULAR][1];
+            g_assert_cmpfloat_with_epsilon(r->film.halves[i].guides.lamps[1], shown,
+                                           1e-4f * (1.0f + shown));
+            most = fmaxf(most, shown);
+        }
+        g_assert_cmpfloat(most, >, 1.0f);
     }
 }
 
@@ -159,6 +187,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/film-denoise/less-noise", test_less_noise);
+    g_test_add_func("/film-denoise/lamp-in-mirror", test_lamp_in_mirror);
     g_test_add_func("/film-denoise/algorithms", test_algorithms);
     g_test_add_func("/film-denoise/raw-stays", test_raw_stays);
     g_test_add_func("/film-denoise/one-pass", test_one_pass);

@@ -4,20 +4,40 @@
 #include "math/vec.h"
 
 #include <math.h>
+#include <string.h>
 
-/* What the filter lost is put back as far as it is surely more than noise: so many of its
-   standard errors are taken off its mean over a patch. */
+/* Single pixels of what the filter lost come back as far as it is surely more than noise:
+   so many of its standard errors are taken off its mean over a patch. */
 #define SURE 1.0f
 
-enum { N_PLANES = 3 };
+/* Of what the filter lost, means over squares of 2 r + 1 pixels come back first: they
+   have the least noise, and the eye, which sees little of single pixels, sees them. */
+static const int radii[] = {PATCH, 1, 0};
+
+enum {
+    N_OWN = 4,      /* planes; all others were sums of the regression */
+    N_MEANS = 3,    /* see residual_row */
+    N_PRODUCTS = 5, /* see product_row */
+};
+
+enum { LOST2, FOLLOWS, ERROR2, GIVEN, APART };
 
 typedef struct blend_loop {
     const blend *b;
     const grid *g;
-    float *errors[N_PLANES]; /* of the bandwidths; then see lost_row */
-    float *around[N_PLANES]; /* those summed over patches */
-    float *noise;            /* variance, summed over patches */
+    float *errors[N_BANDS], *around[N_BANDS]; /* own; later any */
+    float *filtered[N_HALVES][3];             /* the halves */
+    /* Of one scale; planes that are no longer needed are used again: */
+    int radius;
+    float *residual[N_MEANS], *mean[N_MEANS];
+    float *noise; /* variance as it is given, summed over squares */
+    float *product[N_PRODUCTS], *sum[N_PRODUCTS];
 } blend_loop;
+
+static float brightness(const float *const planes[3], size_t at)
+{
+    return luminance(planes[0][at], planes[1][at], planes[2][at]);
+}
 
 /* What a regression says of a pixel's half; as it was where none said anything. */
 static void said(const blend_loop *loop, int band, int half, size_t at, float out[3])
@@ -26,11 +46,6 @@ static void said(const blend_loop *loop, int band, int half, size_t at, float ou
     float weight = sum[3][at];
     for (int c = 0; c < 3; c++)
         out[c] = weight > 0.0f ? sum[c][at] / weight : loop->b->raw[half][c][at];
-}
-
-static float brightness(const float *const planes[3], size_t at)
-{
-    return luminance(planes[0][at], planes[1][at], planes[2][at]);
 }
 
 /* ---- Which bandwidth ---- */
@@ -69,118 +84,221 @@ static void narrow_row(int y, void *data)
     }
 }
 
-/* ---- How much of it ---- */
-
-/* A filtered half, of both bandwidths. */
-static void filtered(const blend_loop *loop, int half, size_t at, float out[3])
-{
-    float narrow = loop->around[0][at] / PATCH_PIXELS, wide[3];
-    said(loop, 0, half, at, wide);
-    said(loop, 1, half, at, out);
-    for (int c = 0; c < 3; c++)
-        out[c] = (1.0f - narrow) * wide[c] + narrow * out[c];
-}
-
-static void raw(const blend_loop *loop, size_t at, float out[3])
-{
-    float share = loop->b->share;
-    for (int c = 0; c < 3; c++)
-        out[c] = share * loop->b->raw[0][c][at] + (1.0f - share) * loop->b->raw[1][c][at];
-}
-
-/*
- * Of a pixel's truth u, picture u + n and filtered picture u + e, the best mean has
- *
- *   (E[e²] - E[n e]) / (E[e²] - 2 E[n e] + E[n²])
- *
- * of the picture. As the halves share no noise, E[e²] - 2 E[n e] is what they agree that
- * the filter lost, and E[n e] is how far it follows their difference. Into the planes:
- * the numerator, and the variance of what it is taken from.
- */
-static void lost_row(int y, void *data)
-{
-    const blend_loop *loop = data;
-    float share = loop->b->share;
-    for (int x = 0; x < loop->g->width; x++) {
-        size_t at = plane_at(loop->g, x, y);
-        float a[3], b[3], noise = loop->b->variance[at];
-        filtered(loop, 0, at, a);
-        filtered(loop, 1, at, b);
-        for (int c = 0; c < 3; c++)
-            loop->b->out[c][at] = share * a[c] + (1.0f - share) * b[c];
-        float is = brightness((const float *const *)loop->b->out, at);
-        float was_a = brightness(loop->b->raw[0], at);
-        float was_b = brightness(loop->b->raw[1], at);
-        float apart = luminance(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-        float lost2 = (was_a - is) * (was_b - is) +
-                      share * (1.0f - share) * (was_a - was_b) * apart;
-        float noise_a = noise / share, noise_b = noise / (1.0f - share);
-        loop->errors[0][at] = lost2;
-        loop->errors[1][at] = noise_a * noise_b + maxf(lost2, 0.0f) * (noise_a + noise_b);
-        loop->errors[2][at] = share * (1.0f - share) * (was_a - was_b) * apart;
-    }
-}
-
-/* Share of the picture as it was in the best mean of it and the filtered one. */
-static float share_of_raw(const blend_loop *loop, size_t at)
-{
-    float lost2 = loop->around[0][at] - SURE * sqrtf(loop->around[1][at]);
-    float whole = loop->noise[at] - loop->around[2][at];
-    return lost2 > 0.0f ? lost2 / (lost2 + maxf(whole, 0.0f)) : 0.0f;
-}
-
-static void shrink_row(int y, void *data)
+/* Halves of both bandwidths. */
+static void filter_row(int y, void *data)
 {
     const blend_loop *loop = data;
     for (int x = 0; x < loop->g->width; x++) {
         size_t at = plane_at(loop->g, x, y);
-        float was[3], back = share_of_raw(loop, at);
-        raw(loop, at, was);
-        for (int c = 0; c < 3; c++) {
-            float *out = &loop->b->out[c][at];
-            *out += back * (was[c] - *out);
+        float share = loop->around[0][at] / PATCH_PIXELS, wide[3], narrow[3];
+        for (int h = 0; h < N_HALVES; h++) {
+            said(loop, 0, h, at, wide);
+            said(loop, 1, h, at, narrow);
+            for (int c = 0; c < 3; c++)
+                loop->filtered[h][c][at] = (1.0f - share) * wide[c] + share * narrow[c];
         }
     }
 }
 
-static bool blend_rows(const blend_loop *loop)
+static void box_all(const grid *g, float *const *from, int n, int radius,
+                    float *const *to)
+{
+    for (int k = 0; k < n; k++) {
+        plane_mirror(g, from[k]);
+        plane_box(g, from[k], radius, to[k]);
+    }
+}
+
+static bool choose_bandwidth(const blend_loop *loop)
 {
     const grid *g = loop->g;
     if (!plane_rows(g, error_row, (void *)loop))
         return false;
-    for (int k = 0; k < N_BANDS; k++) {
-        plane_mirror(g, loop->errors[k]);
-        plane_box(g, loop->errors[k], PATCH, loop->around[k]);
-    }
+    box_all(g, loop->errors, N_BANDS, PATCH, loop->around);
     if (!plane_rows(g, narrow_row, (void *)loop))
         return false;
-    plane_mirror(g, loop->errors[0]);
-    plane_box(g, loop->errors[0], PATCH, loop->around[0]);
-    if (!plane_rows(g, lost_row, (void *)loop))
-        return false;
-    for (int k = 0; k < N_PLANES; k++) {
-        plane_mirror(g, loop->errors[k]);
-        plane_box(g, loop->errors[k], PATCH, loop->around[k]);
+    box_all(g, loop->errors, 1, PATCH, loop->around);
+    return plane_rows(g, filter_row, (void *)loop);
+}
+
+/* ---- How much of it ---- */
+
+/* Luminance: each half less the filtered picture, and how far its halves are apart. */
+static void residual_row(int y, void *data)
+{
+    const blend_loop *loop = data;
+    float share = loop->b->share;
+    for (int x = 0; x < loop->g->width; x++) {
+        size_t at = plane_at(loop->g, x, y);
+        float a = brightness((const float *const *)loop->filtered[0], at);
+        float b = brightness((const float *const *)loop->filtered[1], at);
+        float is = share * a + (1.0f - share) * b;
+        for (int h = 0; h < N_HALVES; h++)
+            loop->residual[h][at] = brightness(loop->b->raw[h], at) - is;
+        loop->residual[2][at] = a - b;
     }
-    plane_box(g, loop->b->variance, PATCH, loop->noise);
-    return plane_rows(g, shrink_row, (void *)loop);
+}
+
+static float square_pixels(int radius)
+{
+    return (float)((2 * radius + 1) * (2 * radius + 1));
+}
+
+/*
+ * Of a truth u, picture u + n and filtered picture u + e, the best mean has
+ *
+ *   (E[e²] - E[n e]) / (E[e²] - 2 E[n e] + E[n²])
+ *
+ * of the picture. As the halves share no noise, E[e²] - 2 E[n e] is what they agree that
+ * the filter lost, and E[n e] is how far it follows their difference. Into the products:
+ * the numerator, E[n e], the variance of what the numerator is taken from, and E[n²] as
+ * it is given and by how far the halves are apart.
+ */
+static void product_row(int y, void *data)
+{
+    const blend_loop *loop = data;
+    float share = loop->b->share, both = share * (1.0f - share);
+    float n = square_pixels(loop->radius);
+    for (int x = 0; x < loop->g->width; x++) {
+        size_t at = plane_at(loop->g, x, y);
+        float a = loop->mean[0][at] / n, b = loop->mean[1][at] / n;
+        float follows = both * (a - b) * loop->mean[2][at] / n;
+        float lost2 = a * b + follows, noise = loop->noise[at] / (n * n);
+        float noise_a = noise / share, noise_b = noise / (1.0f - share);
+        loop->product[LOST2][at] = lost2;
+        loop->product[ERROR2][at] =
+            noise_a * noise_b + maxf(lost2, 0.0f) * (noise_a + noise_b);
+        loop->product[FOLLOWS][at] = follows;
+        loop->product[GIVEN][at] = noise;
+        loop->product[APART][at] = both * (a - b) * (a - b);
+    }
+}
+
+/* Share of the picture as it was in the best mean of it and the filtered one. Noise is
+   more than given where pixels share it, as those do that see the same photons. */
+static float share_of_raw(const blend_loop *loop, size_t at)
+{
+    float noise = maxf(loop->sum[APART][at], loop->sum[GIVEN][at]);
+    float error = loop->radius == 0 ? sqrtf(loop->sum[ERROR2][at]) : 0.0f;
+    float lost2 = loop->sum[LOST2][at] - SURE * error;
+    float whole = noise - loop->sum[FOLLOWS][at];
+    return lost2 > 0.0f ? lost2 / (lost2 + maxf(whole, 0.0f)) : 0.0f;
+}
+
+static void share_row(int y, void *data)
+{
+    const blend_loop *loop = data;
+    for (int x = 0; x < loop->g->width; x++) {
+        size_t at = plane_at(loop->g, x, y);
+        loop->errors[0][at] = share_of_raw(loop, at);
+    }
+}
+
+/* What a half lost of a colour. */
+typedef struct return_loop {
+    const blend_loop *loop;
+    int half, color;
+} return_loop;
+
+static void lost_row(int y, void *data)
+{
+    const return_loop *all = data;
+    const blend_loop *loop = all->loop;
+    const float *raw = loop->b->raw[all->half][all->color];
+    const float *filtered = loop->filtered[all->half][all->color];
+    for (int x = 0; x < loop->g->width; x++) {
+        size_t at = plane_at(loop->g, x, y);
+        loop->errors[1][at] = raw[at] - filtered[at];
+    }
+}
+
+static void return_row(int y, void *data)
+{
+    const return_loop *all = data;
+    const blend_loop *loop = all->loop;
+    float *filtered = loop->filtered[all->half][all->color];
+    float n = square_pixels(loop->radius);
+    for (int x = 0; x < loop->g->width; x++) {
+        size_t at = plane_at(loop->g, x, y);
+        filtered[at] += loop->errors[0][at] * loop->around[1][at] / n;
+    }
+}
+
+static bool give_back(const blend_loop *loop)
+{
+    bool ok = true;
+    for (int k = 0; k < N_HALVES * 3 && ok; k++) {
+        return_loop all = {loop, k / 3, k % 3};
+        ok = plane_rows(loop->g, lost_row, &all);
+        box_all(loop->g, loop->errors + 1, 1, loop->radius, loop->around + 1);
+        ok = ok && plane_rows(loop->g, return_row, &all);
+    }
+    return ok;
+}
+
+static bool shrink(const blend_loop *loop)
+{
+    const grid *g = loop->g;
+    if (!plane_rows(g, residual_row, (void *)loop))
+        return false;
+    box_all(g, loop->residual, N_MEANS, loop->radius, loop->mean);
+    plane_box(g, loop->b->variance, loop->radius, loop->noise);
+    if (!plane_rows(g, product_row, (void *)loop))
+        return false;
+    box_all(g, loop->product, N_PRODUCTS, PATCH, loop->sum);
+    return plane_rows(g, share_row, (void *)loop) && give_back(loop);
+}
+
+static void join_row(int y, void *data)
+{
+    const blend_loop *loop = data;
+    float share = loop->b->share;
+    for (int x = 0; x < loop->g->width; x++) {
+        size_t at = plane_at(loop->g, x, y);
+        for (int c = 0; c < 3; c++)
+            loop->b->out[c][at] = share * loop->filtered[0][c][at] +
+                                  (1.0f - share) * loop->filtered[1][c][at];
+    }
+}
+
+/* Sums of the regression are planes for what comes after it. */
+static void reuse_sums(blend_loop *loop)
+{
+    float *const(*sum)[N_HALVES][N_SUMS] = loop->b->done->sum;
+    for (int h = 0; h < N_HALVES; h++)
+        memcpy(loop->filtered[h], sum[0][h], sizeof loop->filtered[h]);
+    for (int k = 0; k < N_MEANS; k++) {
+        loop->product[k] = loop->residual[k] = sum[1][0][k];
+        loop->sum[k] = loop->mean[k] = sum[1][1][k];
+    }
+    loop->product[GIVEN] = sum[1][0][N_MEANS];
+    loop->sum[GIVEN] = loop->noise = sum[1][1][N_MEANS];
+    loop->product[APART] = sum[0][0][N_MEANS];
+    loop->sum[APART] = sum[0][1][N_MEANS];
+}
+
+static bool blend_rows(blend_loop *loop)
+{
+    bool ok = choose_bandwidth(loop);
+    for (size_t k = 0; k < sizeof radii / sizeof *radii && ok; k++) {
+        loop->radius = radii[k];
+        ok = shrink(loop);
+    }
+    return ok && plane_rows(loop->g, join_row, loop);
 }
 
 bool blend_all(const blend *b, GError **error)
 {
-    blend_loop loop = {.b = b, .g = &b->done->g};
-    bool ok = (loop.noise = plane_new(loop.g, error)) != NULL;
-    for (int k = 0; k < N_PLANES && ok; k++) {
-        loop.errors[k] = plane_new(loop.g, error);
-        loop.around[k] = loop.errors[k] ? plane_new(loop.g, error) : NULL;
-        ok = loop.around[k] != NULL;
-    }
+    float *own[N_OWN] = {0};
+    bool ok = true;
+    for (int k = 0; k < N_OWN && ok; k++)
+        ok = (own[k] = plane_new(&b->done->g, error)) != NULL;
+    blend_loop loop = {
+        .b = b, .g = &b->done->g, .errors = {own[0], own[1]}, .around = {own[2], own[3]}};
+    reuse_sums(&loop);
     if (ok && !(ok = blend_rows(&loop)))
         error_set(error, ERROR_CANCELLED, "cancelled");
-    big_free(loop.noise);
-    for (int k = 0; k < N_PLANES; k++) {
-        big_free(loop.errors[k]);
-        big_free(loop.around[k]);
-    }
+    for (int k = 0; k < N_OWN; k++)
+        big_free(own[k]);
     return ok;
 }

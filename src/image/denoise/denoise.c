@@ -9,7 +9,7 @@
 
 enum {
     LIGHT_PLANES = 39, /* of one light: see light_planes */
-    BLEND_PLANES = 7,  /* while blend_all works */
+    BLEND_PLANES = 4,  /* while blend_all works */
     OUTLIER_REACH = 2, /* pixels around one that may be an outlier */
 };
 

@@ -5,12 +5,12 @@
  *   features ─► prefilter ─┐
  *   light, halves ─────────┴► regress (two bandwidths) ─► choose ─► shrink ─► light
  *
- * - prefilter.h: features (albedo, normal, a photon estimate ...) by non-local means.
+ * - prefilter.h: features (albedo, normal, depth ...) by non-local means.
  * - regress.h: colours as linear functions of features in windows.
  * - choose: between bandwidths, where the halves say which errs less.
  * - shrink: toward the picture as it was, as far as what was taken out of it is more than
- *   its noise; James & Stein, "Estimation with Quadratic Loss", 1961. So whatever the
- *   filter does, the error falls with that of the picture: a picture without noise stays
+ *   its noise; James & Stein, "Estimation with Quadratic Loss", 1961. First means over
+ *   squares, of which noise is small, then single pixels. So whatever the filter does, the error falls with that of the picture: a picture without noise stays
  *   what it is.
  *
  * The same bits on any number of threads. Numbers that are not finite are replaced by the
