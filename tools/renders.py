@@ -47,9 +47,9 @@ class Kept:
             part.rename(path)
         return path
 
-    def layer(self, path, name):
+    def layer(self, path, name, kind="exr"):
         """One layer of an EXR, as a picture of its own."""
-        out = path.with_name(f"{path.stem}-{name}.exr")
+        out = path.with_name(f"{path.stem}-{name}.{kind}")
         self.run("image", path, "--layer", name, "-o", out)
         return out
 
