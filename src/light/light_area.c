@@ -118,10 +118,8 @@ static bool read_picture(area_light *l, const build_context *context, const para
                  "an area light has either 'L' or 'filename'");
         return false;
     }
-    l->pic = picture_read(context, p, "filename", NULL, error);
-    return l->pic &&
-           picture_check_light(l->pic, params_find(p, "filename")->place, error) &&
-           emitter_init(&l->radiance, p, NULL, l->pic->space, error);
+    l->pic = picture_read_light(context, p, "filename", error);
+    return l->pic && emitter_init(&l->radiance, p, NULL, l->pic->space, error);
 }
 
 /* The emitter is white where it is textured, for its scale. */

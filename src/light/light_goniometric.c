@@ -107,7 +107,7 @@ static bool read_map(goniometric_light *l, const build_context *context, const p
             scene_sources_add(context->sources, path);
         return read_profile(l, path, place, error);
     }
-    return sphere_map_init(&l->map, picture_read(context, p, "filename", NULL, error),
+    return sphere_map_init(&l->map, picture_read_light(context, p, "filename", error),
                            place, error);
 }
 

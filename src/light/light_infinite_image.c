@@ -150,7 +150,7 @@ static bool read_picture(image_environment *l, const build_context *context,
                  "an infinite light has either 'L' or 'filename'");
         return false;
     }
-    picture *pic = picture_read(context, p, "filename", NULL, error);
+    picture *pic = picture_read_light(context, p, "filename", error);
     if (!pic)
         return false;
     source_place place = params_find(p, "filename")->place;

@@ -120,12 +120,11 @@ static bool read_light(projection_light *l, const build_context *context, const 
 {
     projected_sum sum = {0};
     emitter white;
-    l->pic = picture_read(context, p, "filename", NULL, error);
+    l->pic = picture_read_light(context, p, "filename", error);
     if (!l->pic)
         return false;
     source_place place = params_find(p, "filename")->place;
-    if (!read_fov(l, p, error) || !picture_check_light(l->pic, place, error) ||
-        !sum_up(l, &sum, place, error) ||
+    if (!read_fov(l, p, error) || !sum_up(l, &sum, place, error) ||
         !emitter_init(&white, p, NULL, l->pic->space, error))
         return false;
     bool done = emitter_set_total(&white, p, "power", (float)sum.y, error);

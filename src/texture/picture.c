@@ -130,22 +130,6 @@ void picture_unref(picture *pic)
         g_rc_box_release_full(pic, clear);
 }
 
-bool picture_check_light(const picture *pic, source_place place, GError **error)
-{
-    const texels *t = pic->levels[0];
-    for (size_t i = 0; i < texels_count(t); i++)
-        for (int c = 0; c < 3; c++) {
-            float x = texels_value(t, i, pic->channels[c]);
-            if (isfinite(x) && x >= 0.0f)
-                continue;
-            error_at(error, place,
-                     "expected an image of a light, found %g in it (column %zu, row %zu)",
-                     (double)x, i % (size_t)t->width, i / (size_t)t->width);
-            return false;
-        }
-    return true;
-}
-
 bool picture_has_alpha(const picture *pic)
 {
     const texels *t = pic->levels[0];
@@ -155,6 +139,62 @@ bool picture_has_alpha(const picture *pic)
         if (texels_value(t, i, pic->channels[3]) < 1.0f)
             return true;
     return false;
+}
+
+/* ---- Of lights ---- */
+
+#define LARGEST_HALF 65504.0f
+
+static float mend_light(float x)
+{
+    if (!(x > 0.0f))
+        return 0.0f;
+    return isfinite(x) ? x : LARGEST_HALF;
+}
+
+static bool is_light(float x)
+{
+    return x >= 0.0f && isfinite(x);
+}
+
+/* Texels with a colour that no light has. */
+static size_t count_unlit(const picture *pic)
+{
+    const texels *t = pic->levels[0];
+    size_t n = 0;
+    for (size_t i = 0; i < texels_count(t); i++)
+        n += !is_light(texels_value(t, i, pic->channels[0])) ||
+             !is_light(texels_value(t, i, pic->channels[1])) ||
+             !is_light(texels_value(t, i, pic->channels[2]));
+    return n;
+}
+
+/* A picture of its own, since others may share the one that was read. */
+static picture *mended(const picture *pic, GError **error)
+{
+    picture *copy = g_rc_box_new0(picture);
+    *copy = *pic;
+    memset(copy->levels, 0, sizeof copy->levels);
+    copy->levels[0] = texels_mended(pic->levels[0], mend_light, error);
+    copy->n_levels = 1;
+    if (copy->levels[0])
+        return copy;
+    picture_unref(copy);
+    return NULL;
+}
+
+picture *picture_read_light(const build_context *context, const params *p,
+                            const char *name, GError **error)
+{
+    picture *pic = picture_read(context, p, name, NULL, error);
+    size_t n = pic ? count_unlit(pic) : 0;
+    if (n == 0)
+        return pic;
+    log_at(p->log, LOG_WARNING, params_find(p, name)->place,
+           "%zu texels are below zero or not finite: taken as black, or as 65504", n);
+    picture *copy = mended(pic, error);
+    picture_unref(pic);
+    return copy;
 }
 
 /* ---- The pyramid ---- */

@@ -44,14 +44,18 @@ picture *picture_read(const build_context *context, const params *p, const char 
 /** @brief The same of a file. @return NULL with ERROR_INPUT */
 picture *picture_read_file(const build_context *context, const char *path,
                            const image_read_options *options, GError **error);
+/** @brief picture_read of a light's image. Of values that no light can have, which lossy
+ * compression and half floats leave in real photographs of skies, those below zero and
+ * what is no number are taken as black, infinite ones as the largest of half floats; how
+ * many they are is noted. */
+picture *picture_read_light(const build_context *context, const params *p,
+                            const char *name, GError **error);
 /** @brief Wraps an image of one channel, which is taken, also on failure. @return NULL:
  * no memory */
 picture *picture_from_grey(image *taken, GError **error);
 /** @brief Builds the pyramid. */
 bool picture_build_levels(picture *pic, GError **error);
 void picture_unref(picture *pic); /**< NULL is allowed */
-/** @brief Refuses texels that no light can have: not finite, or negative. */
-bool picture_check_light(const picture *pic, source_place place, GError **error);
 /** @brief The alpha channel is there and not one everywhere. */
 bool picture_has_alpha(const picture *pic);
 

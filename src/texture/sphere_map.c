@@ -138,7 +138,7 @@ bool sphere_map_init(sphere_map *map, picture *taken, source_place place, GError
                  "expected a square image (an equal-area map) or one twice as wide as "
                  "high (latitude-longitude), found %d x %d",
                  img->width, img->height);
-    else if (picture_check_light(map->pic, place, error) && build(map, place, error))
+    else if (build(map, place, error))
         return true;
     sphere_map_clear(map);
     return false;

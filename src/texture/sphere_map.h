@@ -28,9 +28,8 @@ typedef struct sphere_map {
     double integral; /**< of R, G and B's mean over the sphere, sr */
 } sphere_map;
 
-/** @brief Takes a picture, also on failure; NULL fails. @return false with ERROR_INPUT at
- * the place: its shape fits no layout, it is black or has texels that no light can have.
- */
+/** @brief Takes a picture (picture_read_light), also on failure; NULL fails. @return false with ERROR_INPUT at
+ * the place: its shape fits no layout or it is black. */
 bool sphere_map_init(sphere_map *map, picture *taken, source_place place, GError **error);
 void sphere_map_clear(sphere_map *map);
 /** @brief "equal-area" or "latitude-longitude". */

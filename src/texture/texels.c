@@ -93,6 +93,23 @@ texels *texels_from_image(image *taken, GError **error)
     return NULL;
 }
 
+texels *texels_mended(const texels *t, float (*mend)(float), GError **error)
+{
+    texels *copy = g_new0(texels, 1);
+    size_t n_channels = (size_t)t->n_channels, n = texels_count(t) * n_channels;
+    copy->width = t->width;
+    copy->height = t->height;
+    copy->n_channels = t->n_channels;
+    copy->values = big_alloc(n, sizeof *copy->values, "a picture", error);
+    if (!copy->values) {
+        texels_free(copy);
+        return NULL;
+    }
+    for (size_t i = 0; i < n; i++)
+        copy->values[i] = mend(texels_value(t, i / n_channels, (int)(i % n_channels)));
+    return copy;
+}
+
 /* The source texels that a texel of the smaller image covers, of n for n / 2 rounded up.
  */
 static void children(int i, int n, size_t out[2])

@@ -27,6 +27,9 @@ texels *texels_from_image(image *taken, GError **error);
 /** @brief The image of half the size, sides rounded up: each texel the mean of four.
  * @return owned by the caller; NULL: no memory */
 texels *texels_halved(const texels *large, GError **error);
+/** @brief A copy in which each value is what `mend` makes of it. @return owned by the
+ * caller; NULL: no memory */
+texels *texels_mended(const texels *t, float (*mend)(float), GError **error);
 void texels_free(texels *t);
 
 static inline size_t texels_count(const texels *t)

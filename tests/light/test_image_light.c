@@ -365,6 +365,56 @@ static void refuse(params *p, const transform *to_world, const char *part)
     params_free(p);
 }
 
+/* ---- What photographs of skies come with ---- */
+
+static void paint_faulty(int x, int y, int width, int height, float rgb[3])
+{
+    paint_wide(x, y, width, height, rgb);
+    if (y == 20 && x == 30)
+        rgb[1] = -3.0f;
+    if (y == 20 && x == 60)
+        rgb[2] = NAN;
+    if (y == 24 && x == 10)
+        rgb[0] = INFINITY;
+}
+
+static void paint_mended(int x, int y, int width, int height, float rgb[3])
+{
+    paint_faulty(x, y, width, height, rgb);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = isinf(rgb[c]) ? 65504.0f : rgb[c] > 0.0f ? rgb[c] : 0.0f;
+}
+
+static void note(log_level level, const char *text, void *data)
+{
+    g_assert_cmpint(level, ==, LOG_WARNING);
+    g_string_append(data, text);
+}
+
+static void test_faulty_texels(void)
+{
+    char *faulty_path = paint("faulty.exr", 96, 48, paint_faulty);
+    char *mended_path = paint("mended.exr", 96, 48, paint_mended);
+    g_autoptr(GString) said = g_string_new(NULL);
+    const log_sink log = {note, said};
+    params *p = sky_params(faulty_path);
+    p->log = &log;
+    light *faulty = make_sky(p, NULL);
+    light *mended = make_sky(sky_params(mended_path), NULL);
+    g_assert_nonnull(strstr(said->str, "3 texels are below zero or not finite"));
+    for (uint32_t i = 0; i < 2000; i++) {
+        double a = seen(faulty, direction_number(i));
+        double b = seen(mended, direction_number(i));
+        g_assert_cmpfloat(fabs(a - b), <=, 1e-6 * fabs(b));
+    }
+    light_free(faulty);
+    light_free(mended);
+    g_unlink(faulty_path);
+    g_unlink(mended_path);
+    g_free(faulty_path);
+    g_free(mended_path);
+}
+
 static void test_refusals(void)
 {
     transform stretched = transform_scale(1, 2, 1);
@@ -408,6 +458,7 @@ int main(int argc, char **argv)
     g_test_add_func("/image-light/scale", test_scale_and_illuminance);
     g_test_add_func("/image-light/portal/seen", test_portal_is_seen);
     g_test_add_func("/image-light/portal/power", test_portal_power);
+    g_test_add_func("/image-light/faulty-texels", test_faulty_texels);
     g_test_add_func("/image-light/refusals", test_refusals);
     int status = g_test_run();
     clean_up();
