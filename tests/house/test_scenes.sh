@@ -18,9 +18,10 @@ report() {
 # Those whose model is fetched are read where it is.
 can_be_read() {
     local folder=${1%/*}
-    case $folder in
-    */dragons) [ -f "$folder/dragon.ply" ] || return 0 ;;
-    */sponza) [ -f "$folder/walls.ply" ] || return 0 ;;
+    case $1 in
+    */breakfast/venice-*) [ -f "$folder/venice.exr" ] || return 0 ;;
+    */dragons/*) [ -f "$folder/dragon.ply" ] || return 0 ;;
+    */sponza/*) [ -f "$folder/walls.ply" ] || return 0 ;;
     esac
     "$program" info "$1" >/dev/null
 }
