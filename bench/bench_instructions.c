@@ -7,7 +7,7 @@
  * `auto` is none of them, since it plans by the clock.
  */
 #include "format/format.h"
-#include "photon/map/map.h"
+#include "photon/photon_map.h"
 #include "photon/trace/trace.h"
 #include "render/render.h"
 
@@ -44,7 +44,7 @@ static void map(const scene *s)
     const float radius = 0.05f * s->radius;
     trace_result of = photons(s);
     photon_map *m = photon_map_build(MAP_GRID, &of.photons, radius, 1, NULL);
-    photon_hits hits = {0};
+    point_hits hits = {0};
     if (!m)
         give_up("the map can not be built");
     const photon_store *store = photon_map_store(m);
@@ -53,7 +53,7 @@ static void map(const scene *s)
         photon_map_within(m, p, radius, NULL, &hits);
         photon_map_nearest(m, p, NEAREST, INFINITY, NULL, &hits);
     }
-    photon_hits_clear(&hits);
+    point_hits_clear(&hits);
     photon_map_free(m);
     trace_result_clear(&of);
 }

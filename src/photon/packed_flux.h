@@ -20,6 +20,7 @@ typedef struct packed_flux {
     uint8_t bytes[3 * N_WAVELENGTHS]; /**< of each float the lowest first */
 } packed_flux;
 
+typedef uint64_t flux_pairs __attribute__((vector_size(4 * N_WAVELENGTHS)));
 typedef uint32_t flux_bits __attribute__((vector_size(4 * N_WAVELENGTHS)));
 
 /** @param chance random bits, eight for each wavelength */
@@ -66,6 +67,13 @@ static inline spectrum flux_unpack(const packed_flux *packed)
     __m128i high = _mm_loadu_si128((const __m128i *)(packed->bytes + 12));
     return (spectrum)_mm256_shuffle_epi8(_mm256_set_m128i(high, low), bytes);
 #else
-    return flux_unpack_scalar(packed);
+    flux_pairs pairs;
+    for (int i = 0; i < N_WAVELENGTHS / 2; i++) {
+        uint64_t pair;
+        memcpy(&pair, packed->bytes + 6 * i, sizeof pair);
+        pairs[i] = pair;
+    }
+    const uint64_t first = 0xffffff00u, second = first << 32;
+    return (spectrum)((pairs << 8 & first) | (pairs << 16 & second));
 #endif
 }

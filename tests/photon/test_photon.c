@@ -252,7 +252,7 @@ int main(int argc, char **argv)
     g_test_add_func("/photon/store/put-get-permute", test_store);
     g_test_add_func("/photon/store/numbers", test_store_numbers);
     g_test_add_func("/photon/packed-flux", test_packed_flux);
-    g_test_add_func("/store/packed", test_store_packed);
+    g_test_add_func("/photon/store/packed", test_store_packed);
     g_test_add_func("/photon/store/memory", test_store_memory);
     g_test_add_func("/photon/store/refused", test_store_refused);
     return g_test_run();
