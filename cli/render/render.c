@@ -383,12 +383,21 @@ static void report_photons(const NephStatistics *s)
              s->photons_wanted, sent / (uint64_t)s->passes);
 }
 
+static void report_noise(const NephStatistics *s)
+{
+    if (s->left_noisy)
+        tell("note", "no time was left to take the noise out: pictures show it; a longer "
+                     "--time or a smaller --size would do");
+}
+
 static int write_statistics(const NephRender *render)
 {
     NephStatistics statistics;
     neph_render_statistics(render, &statistics);
     if (!given.quiet)
         report_photons(&statistics);
+    if (!given.quiet)
+        report_noise(&statistics);
     g_autofree char *table = neph_statistics_text(&statistics, false);
     g_autofree char *json = neph_statistics_text(&statistics, true);
     g_autoptr(GError) error = NULL;

@@ -390,7 +390,9 @@ typedef struct NephStatistics {
                      kept if the setting `noise` asks for it. */
     int64_t photons_wanted; /**< a pass by the settings, if fewer are sent since that is
                                worth more; else 0 */
-    bool can_look;          /**< neph_render_image may be called now */
+    bool left_noisy; /**< noise was to be taken out (`denoise`), but for that there was no
+                        time: there is no layer "denoised" */
+    bool can_look;   /**< neph_render_image may be called now */
     double part; /**< so many of the pixels, 0..1, have samples of one pass more: of the
                     first while it is under way, and of the last if time ended it */
     NephStop stopped_by;

@@ -58,6 +58,7 @@ static char *statistics_json(const NephStatistics *s)
     json_count(&j, "photons", s->memory_photons);
     json_object_end(&j);
     json_count(&j, "not_finite", s->n_not_finite);
+    json_bool(&j, "left_noisy", s->left_noisy);
     json_object_end(&j);
     return json_finish(&j);
 }

@@ -215,7 +215,7 @@ void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
         add_splat(f, pass, filter, &splats.splats[i]);
 }
 
-static void add_numbers(film_sum *sum, const pass_pixel *pass)
+void film_add_pass(film_sum *sum, const pass_pixel *pass)
 {
     double *number = (double *)sum;
     for (int k = 0; k < FILM_NUMBERS; k++)
@@ -242,6 +242,12 @@ int film_cell(const film *f, int x, int y)
     return cell;
 }
 
+bool film_pass_counts(const film *f, size_t pixel)
+{
+    int x = (int)(pixel % (size_t)f->width), y = (int)(pixel / (size_t)f->width);
+    return film_cell(f, f->x0 + x, f->y0 + y) < f->n_cells;
+}
+
 static void end_pixels(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
@@ -253,8 +259,8 @@ static void end_pixels(size_t begin, size_t end, unsigned thread, void *data)
     for (size_t i = begin; i < end; i++) {
         film_pixel *pixel = &f->pixels[i];
         film_sum pass = {0};
-        add_numbers(&pass, &f->pass[i]);
-        add_numbers(&pixel->sum, &f->pass[i]);
+        film_add_pass(&pass, &f->pass[i]);
+        film_add_pass(&pixel->sum, &f->pass[i]);
         double y = luminance(&pass);
         pixel->y2 += y * y;
         pixel->yw += y * pass.weight;
@@ -376,16 +382,9 @@ static void write_sum(const film *f, const film_sum *sum, float *out)
     rest[3] = (float)(sum->depth / weight);
 }
 
-/* Whether the pass under way is part of the picture at this pixel. */
-static bool pass_counts(const film *f, size_t i)
-{
-    int x = (int)(i % (size_t)f->width), y = (int)(i / (size_t)f->width);
-    return film_cell(f, f->x0 + x, f->y0 + y) < f->n_cells;
-}
-
 static void write_groups(const film *f, size_t i, double weight, float *out)
 {
-    bool counts = pass_counts(f, i);
+    bool counts = film_pass_counts(f, i);
     for (int k = 0; k < f->n_groups; k++) {
         size_t at = group_offset(f, i) + 3 * (size_t)k;
         double sum[3];
@@ -404,7 +403,7 @@ static size_t pixel_put(const film *f, size_t i)
     size_t width = (size_t)f->width, x = i % width, y = i / width;
     for (size_t step = 1; step <= FILM_COARSE; step *= 2) {
         size_t at = (y - y % step) * width + x - x % step;
-        if (pass_counts(f, at))
+        if (film_pass_counts(f, at))
             return at;
     }
     return i;
@@ -416,8 +415,8 @@ static void write_pixel(const film *f, size_t i, float *out)
         i = pixel_put(f, i);
     film_sum sum = f->pixels[i].sum;
     surface_sum surface = f->surfaces ? f->surfaces[i] : (surface_sum){0};
-    if (pass_counts(f, i)) {
-        add_numbers(&sum, &f->pass[i]);
+    if (film_pass_counts(f, i)) {
+        film_add_pass(&sum, &f->pass[i]);
         gbuffer_sum(f, i, &surface);
     }
     write_sum(f, &sum, out);

@@ -112,6 +112,10 @@ void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
  * 0..FILM_CELLS - 1: after 1, 4, 16 and 64 cells a grid of every 8th, 4th, 2nd and every
  * pixel is whole, and in between what there is lies evenly. */
 int film_cell(const film *f, int x, int y);
+/** @brief Adds what a pass made of a pixel. */
+void film_add_pass(film_sum *sum, const pass_pixel *pass);
+/** @brief Whether the pass under way is part of the picture at a pixel of the film. */
+bool film_pass_counts(const film *f, size_t pixel);
 /** @brief Adds the pass, of which every pixel was put, to the picture. */
 void film_end_pass(film *f, unsigned threads);
 
@@ -130,8 +134,8 @@ void film_to_rgb(const film *f, const double sum[3], double weight, float out[3]
 /** @brief The picture: R G B, the layers' R G B, albedo, normal, depth; linear, film's
  * space. With two passes or more also variance.Y, the square of the standard error of
  * the luminance; with light groups their layers light.NAME; then those of a gbuffer; last
- * denoised.R G B, of the passes done, where there is enough for film_denoise.
- * Of the pass under way, too, what its n_cells say; where that is all there is, pixels
+ * denoised.R G B, where there is enough for film_denoise.
+ * All of the pass under way, too, as far as its n_cells say; where that is all there is, pixels
  * that are still to come look like those beside. */
 image *film_image(const film *f, unsigned threads, GError **error);
 /** @brief Some of its rows only, from y on; never denoised. */

@@ -97,15 +97,23 @@ void halves_end_pass(const film *f, size_t begin, size_t end)
 
 /* ---- Halves of a pixel ---- */
 
+/* Whether what there is of a pass that is not whole is in this half of a pixel. */
+static bool has_pass(const film *f, size_t i, int half)
+{
+    return f->n_cells > 0 && half == (int)(f->n_passes % 2) && film_pass_counts(f, i);
+}
+
 /* Half 0 or 1 of a pixel's sums. */
 static film_sum half_of(const film *f, size_t i, int half)
 {
     film_sum sum;
     double *number = (double *)&sum;
     const double *all = (const double *)&f->pixels[i].sum;
+    const float *pass = has_pass(f, i, half) ? f->pass[i].number : NULL;
     for (int k = 0; k < FILM_NUMBERS; k++) {
         double even = (double)f->halves[i].even.number[k];
         number[k] = half == 0 ? even : all[k] - even;
+        number[k] += pass ? (double)pass[k] : 0.0;
     }
     return sum;
 }
@@ -113,12 +121,12 @@ static film_sum half_of(const film *f, size_t i, int half)
 static guide_sum guides_of(const film *f, size_t i, int half)
 {
     guide_sum sum = f->halves[i].guides_even;
-    if (half == 0)
-        return sum;
     float *number = (float *)&sum;
     const float *all = (const float *)&f->halves[i].guides;
-    for (int k = 0; k < GUIDE_NUMBERS; k++)
+    for (int k = 0; k < GUIDE_NUMBERS && half == 1; k++)
         number[k] = all[k] - number[k];
+    if (has_pass(f, i, half))
+        add_floats(number, &f->pass_guides[i], GUIDE_NUMBERS);
     return sum;
 }
 
@@ -128,11 +136,21 @@ static float layer_variance(const film *f, size_t i, int layer)
 {
     const film_sum *sum = &f->pixels[i].sum;
     double y = sum->color[layer][LUMINANCE], w = fabs(sum->weight);
+    double y2 = f->halves[i].y2[layer], n = (double)f->n_passes;
+    if (f->n_cells > 0 && film_pass_counts(f, i)) {
+        film_sum pass = {0};
+        film_add_pass(&pass, &f->pass[i]);
+        double more = pass.color[layer][LUMINANCE], by = fabs(pass.weight);
+        y += more;
+        w += by;
+        y2 += by > 0.0 ? more * more / by : 0.0;
+        n += 1.0;
+    }
     if (!(w > 0.0))
         return 0.0f;
-    double scatter = fmax(f->halves[i].y2[layer] - y * y / w, 0.0);
+    double scatter = fmax(y2 - y * y / w, 0.0);
     double scale2 = (double)f->scale * (double)f->scale;
-    return (float)(scale2 * scatter / (w * (double)(f->n_passes - 1)));
+    return (float)(scale2 * scatter / (w * (n - 1.0)));
 }
 
 /* ---- Features ---- */
@@ -292,8 +310,10 @@ static bool add_features(const film *f, denoiser *d, layer_room *room, unsigned 
 static void start_with_emission(const film *f, float *out)
 {
     for (size_t i = 0; i < n_pixels(f); i++) {
-        const film_sum *sum = &f->pixels[i].sum;
-        film_to_rgb(f, sum->color[LAYER_EMISSION], sum->weight, out + 3 * i);
+        film_sum sum = f->pixels[i].sum;
+        if (f->n_cells > 0 && film_pass_counts(f, i))
+            film_add_pass(&sum, &f->pass[i]);
+        film_to_rgb(f, sum.color[LAYER_EMISSION], sum.weight, out + 3 * i);
         for (int c = 0; c < 3; c++)
             out[3 * i + (size_t)c] *= f->scale;
     }
@@ -319,13 +339,12 @@ static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
 /* Of all samples, those of the even passes. */
 static float share_of_even(const film *f)
 {
-    const size_t weight = offsetof(film_sum, weight) / sizeof(double);
-    double even = 0.0, all = 0.0;
+    double even = 0.0, odd = 0.0;
     for (size_t i = 0; i < n_pixels(f); i++) {
-        even += (double)f->halves[i].even.number[weight];
-        all += f->pixels[i].sum.weight;
+        even += half_of(f, i, 0).weight;
+        odd += half_of(f, i, 1).weight;
     }
-    return (float)(even / all);
+    return (float)(even / (even + odd));
 }
 
 /* Processes that deal passes out may have given all to one half. */
@@ -389,6 +408,7 @@ double film_denoise_seconds(const film *f, unsigned threads)
         return 0.0;
     part.height = MIN(TRIAL_ROWS, f->height);
     part.denoise_size = 0;
+    part.n_cells = 0;
     size_t first = (size_t)((f->height - part.height) / 2) * (size_t)f->width;
     part.pixels += first;
     part.halves += first;

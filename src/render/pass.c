@@ -114,6 +114,7 @@ void render_time_writing(render *r)
         return;
     double denoising = film_denoise_seconds(&r->film, r->n_threads);
     r->film.no_time = r->film.no_time || denoising > DENOISE_SHARE * time;
+    r->statistics.left_noisy = r->film.no_time;
     r->after = pace_write_seconds(&r->film, r->n_threads, r->paths, WRITE_SHARE * time);
     if (!r->film.no_time)
         r->after += denoising;

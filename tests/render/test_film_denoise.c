@@ -138,6 +138,43 @@ static void test_one_pass(void)
     g_assert_cmpint(image_channel(two, "denoised.R"), >=, 0);
 }
 
+/* A pass that was ended early is in the picture shown as far as it came: of 63 of its 64
+   parts nearly all. */
+static void test_part_of_a_pass(void)
+{
+    g_autoptr(view) v = view_of(HALL);
+    static const char *const passes[] = {"2", "2.984375", "3"};
+    image *shown[3];
+    for (int i = 0; i < 3; i++) {
+        g_autofree char *words = g_strdup_printf(
+            "denoise=on integrator=path spp=1 planned_passes=3 passes=%s", passes[i]);
+        g_autoptr(image) img = render_with(v, words);
+        shown[i] = image_layer(img, "denoised", NULL);
+    }
+    double without = against(shown[0], shown[2]).rmse;
+    double with = against(shown[1], shown[2]).rmse;
+    g_test_message("from three passes: two are off by %g, nearly three by %g", without,
+                   with);
+    g_assert_cmpfloat(with, <, 0.3 * without);
+    for (int i = 0; i < 3; i++)
+        image_free(shown[i]);
+}
+
+/* Noise that there is no time to take out is left in, which is said. */
+static void test_no_time(void)
+{
+    g_autoptr(view) v = view_of(HALL);
+    for (int i = 0; i < 2; i++) {
+        g_autoptr(render) r = render_of(v, "denoise=on spp=1 passes=2 photons=500");
+        g_assert_true(render_run(r, NULL, NULL, NULL));
+        r->plan.how.time = i == 0 ? 1e-4 : 1e4;
+        render_time_writing(r);
+        g_assert_true(render_get_statistics(r).left_noisy == (i == 0));
+        g_autoptr(image) img = image_of(r);
+        g_assert_true((image_channel(img, "denoised.R") < 0) == (i == 0));
+    }
+}
+
 /* A scene in millimetres, with a sensor that is less sensitive, looks the same. */
 static void test_units(void)
 {
@@ -191,6 +228,8 @@ int main(int argc, char **argv)
     g_test_add_func("/film-denoise/algorithms", test_algorithms);
     g_test_add_func("/film-denoise/raw-stays", test_raw_stays);
     g_test_add_func("/film-denoise/one-pass", test_one_pass);
+    g_test_add_func("/film-denoise/part-of-a-pass", test_part_of_a_pass);
+    g_test_add_func("/film-denoise/no-time", test_no_time);
     g_test_add_func("/film-denoise/units", test_units);
     g_test_add_func("/film-denoise/files", test_files);
     return g_test_run();
