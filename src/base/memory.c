@@ -34,6 +34,11 @@ void big_alloc_fail_at(unsigned n)
     atomic_store(&fail_countdown, n);
 }
 
+unsigned big_alloc_fail_left(void)
+{
+    return atomic_load(&fail_countdown);
+}
+
 /* ---- The limit ---- */
 
 static atomic_size_t used, limit /* 0: not asked for yet */;

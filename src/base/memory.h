@@ -57,5 +57,8 @@ size_t memory_left(void);
  * next) fails once; 0 = never. */
 void big_alloc_fail_at(unsigned n);
 
+/** @brief So many calls until the one that big_alloc_fail_at asked for; 0: it came. */
+unsigned big_alloc_fail_left(void);
+
 /** @brief Largest resident size of this process so far, in bytes. */
 size_t memory_peak(void);

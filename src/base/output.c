@@ -140,15 +140,24 @@ static bool refuse(const output *out, GError **error)
     return false;
 }
 
+/* What was not written long ago has left no reason: who tries again hears it. The file is
+   given up in any case. */
+static bool is_written(FILE *stream)
+{
+    bool failed = ferror(stream);
+    errno = 0;
+    if (failed)
+        fputc(0, stream);
+    return fflush(stream) == 0 && !failed;
+}
+
 /* Flushes and syncs; devices and pipes know no sync. */
 bool output_close(output *out, GError **error)
 {
     FILE *stream = g_steal_pointer(&out->stream);
     if (!stream)
         return true;
-    errno = 0;
-    bool written = !ferror(stream) && fflush(stream) == 0 &&
-                   (!out->temporary || fsync(fileno(stream)) == 0);
+    bool written = is_written(stream) && (!out->temporary || fsync(fileno(stream)) == 0);
     int reason = errno;
     bool closed = fclose(stream) == 0;
     if (!written)

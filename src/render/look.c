@@ -239,7 +239,7 @@ bool look_close(look *l, transport_counts *counts, GError **error)
         counts->n_not_finite += scratch->n_not_finite;
         timed += l->clocks[i].time;
         gathering += scratch->time_gather;
-        failed |= scratch->estimate.failed;
+        failed |= scratch->estimate.failed || scratch->estimate.hits.refused;
     }
     if (timed > 0.0)
         counts->time_gather += l->seconds * (gathering / timed);

@@ -92,8 +92,8 @@ static radius_cache *cache_radii(const radius_rule *rule, GError **error)
 
 /* The median over the places where the camera looks or, for caustics and in media, where
    photons are. Where no two of them landed nothing asks for width. */
-static double typical_radius(const radius_rule *rule, const radius_cache *cache,
-                             bool at_photons)
+static bool typical_radius(const radius_rule *rule, const radius_cache *cache,
+                           bool at_photons, double *typical, GError **error)
 {
     const transport_plan *plan = rule->pilot->plan;
     const photon_store *store = photon_map_store(rule->map);
@@ -104,10 +104,11 @@ static double typical_radius(const radius_rule *rule, const radius_cache *cache,
     for (size_t i = 0; i < n; i++)
         radii[i] = at_photons ? radius_cache_nth(cache, i)
                               : radius_cache_at(cache, plan->sight[i].p, narrow, &hits);
-    double typical = store->n > 1 && n > 0 ? (double)median(radii, n) : (double)narrow;
+    *typical = store->n > 1 && n > 0 ? (double)median(radii, n) : (double)narrow;
+    bool refused = hits.refused;
     point_hits_clear(&hits);
     g_free(radii);
-    return typical;
+    return !refused || point_hits_refuse(error);
 }
 
 /* The photons of the pilot, on surfaces and in media. */
@@ -201,7 +202,9 @@ static bool choose_on_surfaces(pilot *p, photon_class c, const pilot_maps *maps,
     plan->radius_cache[c] = cache_radii(&rule, error);
     if (!plan->radius_cache[c])
         return false;
-    plan->radius[c] = typical_radius(&rule, plan->radius_cache[c], c == PHOTON_CAUSTIC);
+    if (!typical_radius(&rule, plan->radius_cache[c], c == PHOTON_CAUSTIC,
+                        &plan->radius[c], error))
+        return false;
     if (plan->how.one_radius)
         g_clear_pointer(&plan->radius_cache[c], radius_cache_free);
     return true;
@@ -222,9 +225,8 @@ static bool choose_in_media(pilot *p, photon_class c, const pilot_maps *maps,
     plan->radius_cache_in_media[c] = cache_radii(&rule, error);
     if (!plan->radius_cache_in_media[c])
         return false;
-    plan->radius_in_media[c] =
-        typical_radius(&rule, plan->radius_cache_in_media[c], true);
-    return true;
+    return typical_radius(&rule, plan->radius_cache_in_media[c], true,
+                          &plan->radius_in_media[c], error);
 }
 
 static bool choose_radius(pilot *p, photon_class c, const cancel_flag *cancel,

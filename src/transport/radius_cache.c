@@ -25,12 +25,13 @@ typedef struct radius_loop {
     const vec3 *places;
     const radius_source *source;
     float *radii;
+    atomic_bool refused; /* memory was */
 } radius_loop;
 
 static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
-    const radius_loop *loop = data;
+    radius_loop *loop = data;
     const radius_source *source = loop->source;
     point_hits hits = {0};
     for (size_t i = begin; i < end; i++) {
@@ -39,6 +40,8 @@ static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
         float distance = found ? radius_of_nearest(&hits) : 0.0f;
         loop->radii[i] = source->radius(source->data, p, distance, &hits);
     }
+    if (hits.refused)
+        atomic_store(&loop->refused, true);
     point_hits_clear(&hits);
 }
 
@@ -70,8 +73,10 @@ radius_cache *radius_cache_build(const vec3 *places, size_t n,
     g_autoptr(radius_cache) cache = cache_at(places, n, error);
     if (!cache)
         return NULL;
-    radius_loop loop = {places, source, cache->radii};
+    radius_loop loop = {places, source, cache->radii, false};
     parallel_for(n, CHUNK, threads, NULL, find_radii, &loop);
+    if (loop.refused && !point_hits_refuse(error))
+        return NULL;
     return g_steal_pointer(&cache);
 }
 

@@ -98,6 +98,12 @@ void point_hits_clear(point_hits *hits)
     *hits = (point_hits){0};
 }
 
+bool point_hits_refuse(GError **error)
+{
+    error_set(error, ERROR_FAILED, "out of memory: points that were found");
+    return false;
+}
+
 bool point_hits_reserve(point_hits *hits, size_t capacity)
 {
     if (capacity <= hits->capacity)
@@ -105,11 +111,13 @@ bool point_hits_reserve(point_hits *hits, size_t capacity)
     size_t room = MAX(capacity + LANES, 2 * hits->capacity);
     uint32_t *index =
         big_grow(hits->index, hits->n, room, sizeof *index, "points found", NULL);
+    hits->refused |= !index;
     if (!index)
         return false;
     hits->index = index;
     float *distance2 =
         big_grow(hits->distance2, hits->n, room, sizeof *distance2, "points found", NULL);
+    hits->refused |= !distance2;
     if (!distance2)
         return false;
     hits->distance2 = distance2;

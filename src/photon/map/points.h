@@ -39,8 +39,11 @@ typedef struct point_hits {
     size_t n, capacity;
     uint32_t *index;
     float *distance2;
+    bool refused; /**< memory was, in some query, which may have found too few */
 } point_hits;
 
 void point_hits_clear(point_hits *hits);
 /** @brief Room for capacity hits in all. @return false when memory is refused */
 bool point_hits_reserve(point_hits *hits, size_t capacity);
+/** @brief ERROR_FAILED where memory was refused to a query. @return false */
+bool point_hits_refuse(GError **error);

@@ -113,10 +113,7 @@ static bool put_part(writer *w, const void *pass, uint32_t index, const photon_p
     head.flags = IN_MEDIA;
     put_store(w, head, &result.in_media);
     trace_result_clear(&result);
-    if (!ferror(w->to))
-        return true;
-    error_set(error, ERROR_FAILED, "cannot write the photons: the disk may be full");
-    return false;
+    return !ferror(w->to); /* why, the end of the file tells */
 }
 
 static bool put_class(writer *w, const void *pass, uint32_t index, photon_class c,
@@ -243,7 +240,7 @@ bool photon_file_write(const photon_file_order *order, const char *path,
         w.to = output_stream(out);
         ok = put_all(&w, error);
     }
-    if (ok)
+    if (ok || (w.to && ferror(w.to)))
         ok = output_commit(g_steal_pointer(&out), error);
     output_discard(out);
     if (statistics)

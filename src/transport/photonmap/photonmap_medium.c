@@ -13,6 +13,7 @@ typedef struct radius_loop {
     double typical;                /* of pass 0 */
     float shrunk;                  /* radius of this pass over that of pass 0 */
     float *radii;
+    atomic_bool refused; /* memory was */
 } radius_loop;
 
 static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
@@ -29,6 +30,8 @@ static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
                                 ? radius_cache_at(loop->of_pass_0, p, typical, &hits)
                                 : typical);
     }
+    if (hits.refused)
+        atomic_store(&loop->refused, true);
     point_hits_clear(&hits);
 }
 
@@ -51,7 +54,8 @@ bool photonmap_keep_in_media(photonmap_pass *pass, int slice, photon_class c,
         .radii = radii,
     };
     parallel_for(photons->n, CHUNK, threads, NULL, find_radii, &loop);
-    pass->in_media[slice][c] = volume_map_build(photons, radii, threads, error);
+    if (!loop.refused || point_hits_refuse(error))
+        pass->in_media[slice][c] = volume_map_build(photons, radii, threads, error);
     big_free(radii);
     return pass->in_media[slice][c] != NULL;
 }

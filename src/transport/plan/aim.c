@@ -41,7 +41,8 @@ typedef struct trials {
     size_t n_arrived;         /* ... and behind them of this one */
     size_t each;              /* trials of a round */
     guide_trial round;
-    aim_result *result; /* NULL: not asked for */
+    aim_result *result;  /* NULL: not asked for */
+    atomic_bool refused; /* memory was */
 } trials;
 
 /* ---- Where the camera looks ---- */
@@ -151,6 +152,8 @@ static void run_trials(size_t begin, size_t end, unsigned thread, void *data)
         record->value = t.value;
         all->noise[all->n_known + i] = t.noise;
     }
+    if (hits.refused)
+        atomic_store(&all->refused, true);
     point_hits_clear(&hits);
 }
 
@@ -255,6 +258,8 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
         error_set(error, ERROR_CANCELLED, "cancelled");
         return false;
     }
+    if (atomic_load(&all->refused) && !point_hits_refuse(error))
+        return false;
     for (size_t i = 0; i < all->each; i++)
         add_round(&all->round, &records[i], noise[i].rays);
     all->n_arrived = keep_arrivals(records, noise, all->each);

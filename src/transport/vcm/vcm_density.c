@@ -65,10 +65,9 @@ bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **
         .light.n = MIN(plan->n_photons[PHOTON_INDIRECT],
                        plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_PILOTS)),
     };
-    if (!vcm_trace_light(&pilot, cancel, &counts, error))
-        return false;
+    bool traced = vcm_trace_light(&pilot, cancel, &counts, error);
     plan->planning += (double)counts.photon_rays;
-    bool kept = keep_radii(plan, &pilot.light, error);
+    bool kept = traced && keep_radii(plan, &pilot.light, error);
     light_paths_clear(&pilot.light);
     return kept;
 }

@@ -346,6 +346,8 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
             follow(&l);
         loop->pass->light.end[i] = out->n_vertices;
     }
+    if (out->hits.refused && !out->error)
+        point_hits_refuse(&out->error);
     point_hits_clear(&out->hits);
 }
 
