@@ -10,6 +10,10 @@
  *               of one face: its direction and its flag say that its own surface lies
  *               alike, or it lies in the plane, |d·n|² < 1e-5 |d|² (so that triangles of
  *               a sheet may be wound as they like)
+ *
+ * Without the normals /neighbourhood/bright-wall fails, a wall lights the floor at its
+ * foot; without the faces /verify/agree/thin-pane does, vcm shows 3 % too much; without
+ * the plane /map/sheet does, where triangles of a leaf are wound each its own way.
  */
 #pragma once
 

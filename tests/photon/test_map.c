@@ -397,6 +397,25 @@ static void test_faces_by_definition(void)
     point_hits_clear(&hits);
 }
 
+/* Of a sheet, whose triangles are wound each its own way, all photons. */
+static void test_sheet(void)
+{
+    for (map_choice choice = MAP_LIST; choice <= MAP_GRID; choice++) {
+        photon_store store = make_store(place_planar, 500);
+        g_autoptr(photon_map) map = build_map(choice, &store, 0.1f, 1);
+        point_hits hits = {0};
+        photon_filter filter = {.n = vec3_make(0, 0, 1), .flatten = 1};
+        vec3 p = vec3_make(0.4f, 0.5f, 0.25f);
+        g_assert_true(photon_map_within(map, p, 0.3f, &filter, &hits));
+        size_t all = hits.n;
+        filter.face = 1;
+        g_assert_true(photon_map_within(map, p, 0.3f, &filter, &hits));
+        g_assert_cmpuint(hits.n, ==, all);
+        g_assert_cmpuint(all, >, 50);
+        point_hits_clear(&hits);
+    }
+}
+
 static void test_empty(void)
 {
     for (map_choice choice = MAP_LIST; choice <= MAP_GRID; choice++) {
@@ -522,6 +541,7 @@ int main(int argc, char **argv)
     g_test_add_func("/map/list/by-definition", test_list_by_definition);
     g_test_add_func("/map/curves-by-definition", test_curves_by_definition);
     g_test_add_func("/map/list/faces", test_faces_by_definition);
+    g_test_add_func("/map/sheet", test_sheet);
     g_test_add_func("/map/kdtree/same-as-list", test_kdtree_same_as_list);
     g_test_add_func("/map/grid/same-as-list", test_grid_same_as_list);
     g_test_add_func("/map/grid/hashed-rows", test_grid_hashed_rows);
