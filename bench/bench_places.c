@@ -102,7 +102,7 @@ static void make_radii(places *of)
     pilot by = {
         photon_map_build(MAP_KDTREE, &store, 0.0f, 1, NULL),
         sqrtf((float)PLACE_WANTED / RADIUS_NEAREST * (float)n / (float)of->n_photons)};
-    size_t n_places = MIN(n, RADIUS_PLACES);
+    size_t n_places = MIN(n, MOST_PLACES);
     vec3 *at = aligned_alloc(64, (n_places * sizeof *at + 63) / 64 * 64);
     for (size_t i = 0; i < n_places; i++)
         at[i] = photon_store_get(photon_map_store(by.map), radius_place(i, n)).p;
