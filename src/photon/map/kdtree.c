@@ -439,29 +439,39 @@ static __attribute__((noinline)) void visit_leaves(const kd_search *s,
     s->visit(runs, n, s->data);
 }
 
-/* The same n nodes of a level; leaves are met in order. */
+/* The nodes below n of a level that are near enough, in order; n <= OPENED. Returns their
+ * number. */
+static inline __attribute__((always_inline)) size_t
+open_nodes(const kd_search *s, unsigned level, const uint32_t *nodes, size_t n,
+           uint32_t below[OPENED * WIDTH + LANES])
+{
+    const kd_group *groups = s->tree->groups + s->tree->offset[level];
+    size_t n_below = 0;
+    for (size_t i = 0; i < n; i++) {
+        for (int first = 0; first < WIDTH; first += LANES) {
+            lane_floats d2 = box_distances(groups + nodes[i], first, s->p);
+            n_below += pack_numbers(bits_below(d2, fill_lanes(s->limit)),
+                                    nodes[i] * WIDTH + (uint32_t)first, below + n_below);
+        }
+    }
+    return n_below;
+}
+
+/* The same n nodes of a level, at most OPENED * WIDTH; leaves are met in order. While
+ * they are few, as mostly, it goes down level by level without calls. */
 static void visit_nodes(const kd_search *s, unsigned level, const uint32_t *nodes,
                         size_t n)
 {
-    if (level == 0) {
+    uint32_t lists[2][OPENED * WIDTH + LANES];
+    for (; level > 0 && n <= OPENED; level--) {
+        uint32_t *below = lists[level & 1];
+        n = open_nodes(s, level, nodes, n, below);
+        nodes = below;
+    }
+    if (level == 0 && n > 0)
         visit_leaves(s, nodes, n);
-        return;
-    }
-    const kd_group *groups = s->tree->groups + s->tree->offset[level];
-    uint32_t below[OPENED * WIDTH + LANES];
-    for (size_t begin = 0; begin < n; begin += OPENED) {
-        size_t n_below = 0, end = MIN(begin + OPENED, n);
-        for (size_t i = begin; i < end; i++) {
-            for (int first = 0; first < WIDTH; first += LANES) {
-                lane_floats d2 = box_distances(groups + nodes[i], first, s->p);
-                n_below +=
-                    pack_numbers(bits_below(d2, fill_lanes(s->limit)),
-                                 nodes[i] * WIDTH + (uint32_t)first, below + n_below);
-            }
-        }
-        if (n_below > 0)
-            visit_nodes(s, level - 1, below, n_below);
-    }
+    for (size_t begin = 0; level > 0 && begin < n; begin += OPENED)
+        visit_nodes(s, level, nodes + begin, MIN(OPENED, n - begin));
 }
 
 void kdtree_runs(const kdtree *tree, const point_arrays *points, vec3 p, float radius,
