@@ -38,6 +38,12 @@ typedef struct light_sample {
     vec3 n;            /**< geometric normal of an area light there; else -wi */
 } light_sample;
 
+/** @brief Chooses a target once it is known where a ray starts. */
+typedef struct light_aim {
+    vec3 (*target)(void *data, vec3 start);
+    void *data;
+} light_aim;
+
 typedef struct light_kind {
     const char *name; /**< "point", "spot", "distant", "infinite", "diffuse" (area) */
     const char *parameters; /**< those it reads, with spaces between */
@@ -73,6 +79,11 @@ typedef struct light_kind {
      * The ray is filled in also where nothing is sent that way. */
     bool (*emit_toward)(const void *self, const wavelengths *w, float u_primitive, vec2 u,
                         vec3 target, light_emission *out);
+    /** emit_toward a target that depends on the start, of lights whose start is costly to
+     * find: aim is told where a ray toward `center` would start. NULL: emit_toward may as
+     * well be asked twice. */
+    bool (*emit_aimed)(const void *self, const wavelengths *w, float u_primitive, vec2 u,
+                       vec3 center, const light_aim *aim, light_emission *out);
     bool (*sample)(const void *self, const wavelengths *w, vec3 ref, float u_primitive,
                    vec2 u, light_sample *out);
     /** pdf_solid_angle of `sample` for a hit on the light's shape (area) seen from ref.

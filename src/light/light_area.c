@@ -213,19 +213,36 @@ static void emit_pdf(const void *self, vec3 p, vec3 n, vec3 direction,
     *pdf_direction = direction_pdf(l, dot3(n, direction));
 }
 
+/* From where a ray will start: off the surface by what may be much of a far target. */
+static vec3 start_toward(const shape_sample *at, vec3 target)
+{
+    return offset_point(at->p, at->n, 0.0f, at->error, target - at->p);
+}
+
+static bool leave_toward(const area_light *l, const wavelengths *w,
+                         const shape_sample *at, vec3 target, light_emission *out)
+{
+    vec3 direction = normalize3(target - start_toward(at, target));
+    leave(l, at, direction, out);
+    out->flux = shines_from(l, at, w) * (fabsf(dot3(at->n, direction)) * l->on->area);
+    return out->pdf_direction > 0.0f;
+}
+
 static bool emit_toward(const void *self, const wavelengths *w, float u_primitive, vec2 u,
                         vec3 target, light_emission *out)
 {
     const area_light *l = self;
     shape_sample at = shape_sample_area(l->on, u_primitive, u);
-    /* From where the ray will start: off the surface by what may be much of a far target.
-     */
-    vec3 start = offset_point(at.p, at.n, 0.0f, at.error, target - at.p);
-    vec3 direction = normalize3(target - start);
-    float cosine = dot3(at.n, direction);
-    leave(l, &at, direction, out);
-    out->flux = shines_from(l, &at, w) * (fabsf(cosine) * l->on->area);
-    return out->pdf_direction > 0.0f;
+    return leave_toward(l, w, &at, target, out);
+}
+
+static bool emit_aimed(const void *self, const wavelengths *w, float u_primitive, vec2 u,
+                       vec3 center, const light_aim *aim, light_emission *out)
+{
+    const area_light *l = self;
+    shape_sample at = shape_sample_area(l->on, u_primitive, u);
+    vec3 target = aim->target(aim->data, start_toward(&at, center));
+    return leave_toward(l, w, &at, target, out);
 }
 
 static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_primitive,
@@ -273,6 +290,7 @@ const light_kind light_area = {
     .emit = emit,
     .emit_pdf = emit_pdf,
     .emit_toward = emit_toward,
+    .emit_aimed = emit_aimed,
     .sample = sample,
     .pdf = pdf,
     .radiance = radiance,

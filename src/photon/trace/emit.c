@@ -132,14 +132,6 @@ float photon_cone_pdf(const caustic_casters *c, vec3 p)
     return warp_cone_pdf(cone_of_sphere(c, p));
 }
 
-/* A direction, uniform in that cone, and its density. */
-static vec3 direction_to_sphere(const caustic_casters *c, vec3 p, vec2 u, float *density)
-{
-    frame f = frame_from_normal(normalize3(c->center - p));
-    *density = photon_cone_pdf(c, p);
-    return frame_to_world(&f, warp_cone(u, cone_of_sphere(c, p)));
-}
-
 /* A point in direction d from p and at least as far as q: so far that rounding of its
    coordinates does not turn the direction. */
 static vec3 far_along(vec3 p, vec3 d, vec3 q)
@@ -147,21 +139,43 @@ static vec3 far_along(vec3 p, vec3 d, vec3 q)
     return p + (length3(p) + length3(q)) * d;
 }
 
-/* From a light apart: the place is drawn by the light, the direction in the cone. The
-   light is asked twice, since the cone depends on the place. */
+/* How a direction in the cone is drawn, once it is known from where. */
+typedef struct cone_aim {
+    const caustic_casters *casters;
+    vec2 u;
+    float density; /* of the direction */
+} cone_aim;
+
+/* Uniform in the cone in which the start sees the sphere. */
+static vec3 target_in_cone(void *data, vec3 start)
+{
+    cone_aim *aim = data;
+    const caustic_casters *c = aim->casters;
+    frame f = frame_from_normal(normalize3(c->center - start));
+    float cone = cone_of_sphere(c, start);
+    aim->density = warp_cone_pdf(cone);
+    return far_along(start, frame_to_world(&f, warp_cone(aim->u, cone)), c->center);
+}
+
+/* From a light apart: the place is drawn by the light, the direction in the cone, which
+   depends on the place. */
 static bool emit_in_cone(const caustic_casters *c, const light *l, const wavelengths *w,
                          const float u[EMISSION_DIMENSIONS], light_emission *out)
 {
     vec2 u_place = {u[2], u[3]};
-    float density;
+    cone_aim cone = {.casters = c, .u = {u[4], u[5]}};
+    const light_aim aim = {target_in_cone, &cone};
+    bool emitted;
     *out = (light_emission){0};
-    l->kind->emit_toward(l->self, w, u[1], u_place, c->center, out);
-    vec3 d = direction_to_sphere(c, out->ray.origin, (vec2){u[4], u[5]}, &density);
-    vec3 target = far_along(out->ray.origin, d, c->center);
-    if (!l->kind->emit_toward(l->self, w, u[1], u_place, target, out))
-        return false;
-    out->flux /= density;
-    return true;
+    if (l->kind->emit_aimed) {
+        emitted = l->kind->emit_aimed(l->self, w, u[1], u_place, c->center, &aim, out);
+    } else {
+        l->kind->emit_toward(l->self, w, u[1], u_place, c->center, out);
+        vec3 target = target_in_cone(&cone, out->ray.origin);
+        emitted = l->kind->emit_toward(l->self, w, u[1], u_place, target, out);
+    }
+    out->flux /= cone.density;
+    return emitted;
 }
 
 bool photon_emit_caustic(const caustic_casters *c, const wavelengths *w,
