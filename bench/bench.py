@@ -170,7 +170,7 @@ def thread_rows(bench):
     """From the start of the process to the file."""
     for integrator in ("auto", "path", "photonmap", "sppm", "vcm"):
         one, two = bench.turns(*(bench.render(GLASS, f"-j{n}", "--integrator", integrator,
-                                              "--passes", 4, "--size", "384x384")
+                                              "--passes", 4, "--size", "256x256")
                                  for n in (1, 2)), clock=True)
         yield Row(f"{integrator}, 2 threads", "1 thread, by the clock", "s", two, one,
                   one / two, "≥ 1.9")
