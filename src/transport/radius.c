@@ -83,7 +83,8 @@ static radius_cache *cache_radii(const radius_rule *rule, GError **error)
     vec3 *places = g_aligned_alloc0(MAX(n, 1), sizeof *places, 16);
     for (size_t i = 0; i < n; i++)
         places[i] = photon_store_get(store, radius_place(i, store->n)).p;
-    const radius_source source = {nearest_photons, radius_by, rule};
+    const radius_source source = {nearest_photons, radius_by, rule,
+                                  rule->pilot->plan->cancel};
     unsigned threads = (unsigned)rule->pilot->plan->how.threads;
     radius_cache *cache = radius_cache_build(places, n, &source, threads, error);
     g_aligned_free(places);

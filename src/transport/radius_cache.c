@@ -74,7 +74,10 @@ radius_cache *radius_cache_build(const vec3 *places, size_t n,
     if (!cache)
         return NULL;
     radius_loop loop = {places, source, cache->radii, false};
-    parallel_for(n, CHUNK, threads, NULL, find_radii, &loop);
+    if (!parallel_for(n, CHUNK, threads, source->cancel, find_radii, &loop)) {
+        error_set(error, ERROR_CANCELLED, "cancelled");
+        return NULL;
+    }
     if (loop.refused && !point_hits_refuse(error))
         return NULL;
     return g_steal_pointer(&cache);

@@ -4,6 +4,8 @@
  */
 #pragma once
 
+#include "base/parallel.h"
+
 #include "photon/map/point_set.h"
 
 /** Points whose distance tells how close they lie. */
@@ -22,6 +24,7 @@ typedef struct radius_source {
     /** The radius at p, from radius_of_nearest there. @param hits scratch */
     float (*radius)(const void *data, vec3 p, float distance, point_hits *hits);
     const void *data;
+    const cancel_flag *cancel; /**< may be NULL */
 } radius_source;
 
 /** @brief At most so many places of a scene are asked about: one for a patch of 14 x 14

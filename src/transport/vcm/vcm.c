@@ -8,7 +8,8 @@
 #include "transport/visible.h"
 
 /* The automatic radius over that of photon mapping's indirect light: merging is for what
-   connections do not find, and that is sharp. With all of it a furnace is off by 0.1 %. */
+   connections do not find, and that is sharp. With all of it a furnace is off by 0.1 %.
+ */
 #define RADIUS_SHARE 0.25
 
 vcm_strategies vcm_strategies_of(int choice)
@@ -165,7 +166,11 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
         pass->merged = big_alloc(n, sizeof *pass->merged, "light vertices", error);
     if (!pass->merged)
         return false;
-    parallel_for(n, VERTEX_CHUNK, (unsigned)how->threads, NULL, merge_some, pass);
+    if (!parallel_for(n, VERTEX_CHUNK, (unsigned)how->threads, pass->plan->cancel,
+                      merge_some, pass)) {
+        error_set(error, ERROR_CANCELLED, "cancelled");
+        return false;
+    }
     counts->time_build += clock_seconds() - start;
     counts->memory_photons += photon_map_bytes(pass->map) + n * sizeof *pass->merged;
     return true;

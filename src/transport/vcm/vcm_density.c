@@ -23,7 +23,7 @@ static float distance_itself(const void *data, vec3 p, float distance, point_hit
 
 /* Radii at places of some of the points. */
 static radius_cache *radii_among(const vec3 *points, size_t n, unsigned threads,
-                                 GError **error)
+                                 const cancel_flag *cancel, GError **error)
 {
     g_autoptr(point_set) index = point_set_build(points, n, threads, error);
     if (!index)
@@ -32,7 +32,7 @@ static radius_cache *radii_among(const vec3 *points, size_t n, unsigned threads,
     vec3 *places = g_aligned_alloc0(MAX(n_places, 1), sizeof *places, 16);
     for (size_t i = 0; i < n_places; i++)
         places[i] = points[point_set_number(index, radius_place(i, n))];
-    const radius_source source = {nearest, distance_itself, index};
+    const radius_source source = {nearest, distance_itself, index, cancel};
     radius_cache *cache = radius_cache_build(places, n_places, &source, threads, error);
     g_aligned_free(places);
     return cache;
@@ -47,7 +47,8 @@ static bool keep_radii(transport_plan *plan, const light_paths *paths, GError **
     for (size_t i = 0; i < n; i++)
         points[i] = scene_restore_hit(plan->scene, &paths->vertices[i].hit).p;
     plan->n_vertex_paths = paths->n;
-    plan->vertex_radii = radii_among(points, n, (unsigned)plan->how.threads, error);
+    plan->vertex_radii =
+        radii_among(points, n, (unsigned)plan->how.threads, plan->cancel, error);
     big_free(points);
     return plan->vertex_radii != NULL;
 }

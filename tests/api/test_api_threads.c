@@ -1,0 +1,211 @@
+/*
+ * The library in a process that does more than one thing: two renders at once are those
+ * of two that come one after the other, and whatever a render is at, it ends soon when it
+ * is asked to.
+ */
+#include "api_scene.h"
+
+#include <time.h>
+
+/* ---- Two at once ---- */
+
+typedef struct task {
+    const NephScene *scene;
+    const char *integrator;
+    NephImage *image;
+} task;
+
+static NephSettings *settings_of(const NephScene *scene, const char *integrator)
+{
+    NephSettings *settings = neph_scene_settings(scene);
+    neph_settings_set(settings, "integrator", integrator, NULL);
+    neph_settings_set(settings, "passes", "3", NULL);
+    neph_settings_set(settings, "spp", "2", NULL);
+    neph_settings_set(settings, "threads", "2", NULL);
+    return settings;
+}
+
+static gpointer render_task(gpointer data)
+{
+    task *t = data;
+    g_autoptr(NephSettings) settings = settings_of(t->scene, t->integrator);
+    g_autoptr(NephRender) render = neph_render_new(t->scene, settings, NULL);
+    g_assert_true(neph_render_run(render, NULL, NULL, NULL));
+    t->image = neph_render_image(render, NULL);
+    return NULL;
+}
+
+static void assert_same(const NephImage *a, const NephImage *b)
+{
+    int width, height, n, width_b, height_b, n_b;
+    neph_image_size(a, &width, &height, &n);
+    neph_image_size(b, &width_b, &height_b, &n_b);
+    size_t size = (size_t)(width * height * n) * sizeof(float);
+    size_t size_b = (size_t)(width_b * height_b * n_b) * sizeof(float);
+    g_assert_cmpmem(neph_image_pixels(a), size, neph_image_pixels(b), size_b);
+}
+
+/* Of one scene, by all integrators, and of another one. */
+static void test_at_once(void)
+{
+    static const char *const integrators[] = {"auto", "photonmap", "vcm", "path"};
+    enum { N = G_N_ELEMENTS(integrators) + 1 };
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    g_autoptr(NephScene) other = make_scene("LookAt 1 0 0  0 0 0  0 1 0 Camera "
+                                            "\"perspective\"\n");
+    task at_once[N], alone[N];
+    GThread *threads[N];
+    for (int i = 0; i < N; i++)
+        at_once[i] = alone[i] =
+            (task){i < N - 1 ? scene : other, integrators[i % (N - 1)], NULL};
+    for (int i = 0; i < N; i++)
+        threads[i] = g_thread_new("render", render_task, &at_once[i]);
+    for (int i = 0; i < N; i++)
+        g_thread_join(threads[i]);
+    for (int i = 0; i < N; i++) {
+        render_task(&alone[i]);
+        assert_same(at_once[i].image, alone[i].image);
+        neph_image_free(at_once[i].image);
+        neph_image_free(alone[i].image);
+    }
+}
+
+/* ---- Cancelling ---- */
+
+/* Within this it ends: s. */
+#define SOON 0.1
+
+/* Other programs may hold the machine up: what counts is the process' own time where that
+   is less, and the best of so many tries. */
+enum { TRIES = 4, MOMENTS = 6 };
+
+typedef struct cancelling {
+    NephRender *render;
+    double after; /* s */
+    double cpu;   /* s of the process, when it was asked */
+    gint64 asked; /* monotonic µs */
+} cancelling;
+
+static double cpu_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static gpointer cancel_later(gpointer data)
+{
+    cancelling *c = data;
+    g_usleep((gulong)(c->after * 1e6));
+    c->asked = g_get_monotonic_time();
+    c->cpu = cpu_seconds();
+    neph_render_cancel(c->render);
+    return NULL;
+}
+
+/* s from the asking to the end; 0: it was over before. */
+static double cancel_after(const NephScene *scene, const NephSettings *settings,
+                           double after)
+{
+    g_autoptr(NephRender) render = neph_render_new(scene, settings, NULL);
+    g_autoptr(GError) error = NULL;
+    cancelling c = {.render = render, .after = after};
+    GThread *thread = g_thread_new("cancel", cancel_later, &c);
+    bool done = neph_render_run(render, NULL, NULL, &error);
+    gint64 end = g_get_monotonic_time();
+    double cpu = cpu_seconds();
+    g_thread_join(thread);
+    if (done)
+        return 0.0;
+    g_assert_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
+    return fmin(1e-6 * (double)(end - c.asked), cpu - c.cpu);
+}
+
+/* s that one pass takes. */
+static double seconds_of(const NephScene *scene, const NephSettings *settings)
+{
+    g_autoptr(NephRender) render = neph_render_new(scene, settings, NULL);
+    gint64 start = g_get_monotonic_time();
+    g_assert_true(neph_render_run(render, NULL, NULL, NULL));
+    return 1e-6 * (double)(g_get_monotonic_time() - start);
+}
+
+/* At moments all through a pass: planning, sending photons, building maps, looking. */
+static void test_cancel(const void *words)
+{
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    g_autoptr(NephSettings) settings = neph_scene_settings(scene);
+    g_auto(GStrv) pairs = g_strsplit(words, " ", -1);
+    for (char **pair = pairs; *pair; pair++) {
+        g_auto(GStrv) two = g_strsplit(*pair, "=", 2);
+        g_assert_true(neph_settings_set(settings, two[0], two[1], NULL));
+    }
+    double whole = seconds_of(scene, settings), worst = 0.0;
+    for (int i = 0; i < MOMENTS; i++) {
+        double best = INFINITY;
+        for (int k = 0; k < TRIES && best > SOON; k++)
+            best = fmin(best, cancel_after(scene, settings, whole * (i + 0.3) / MOMENTS));
+        g_test_message("at %.2f of %.2f s: %.1f ms", whole * (i + 0.3) / MOMENTS, whole,
+                       1e3 * best);
+        worst = fmax(worst, best);
+    }
+    g_assert_cmpfloat(worst, <, SOON);
+}
+
+/* Photons that are kept, and their file that is not there then. */
+typedef struct patience {
+    gint64 end, asked;
+} patience;
+
+static bool until(void *data)
+{
+    patience *p = data;
+    if (g_get_monotonic_time() < p->end)
+        return true;
+    if (!p->asked)
+        p->asked = g_get_monotonic_time();
+    return false;
+}
+
+static void test_cancel_keeping(void)
+{
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    g_autoptr(NephSettings) settings = neph_scene_settings(scene);
+    g_autofree char *path = g_build_filename(folder, "kept", NULL);
+    g_assert_true(neph_settings_set(settings, "photons", "4000000", NULL));
+    double best = INFINITY;
+    for (int k = 0; k < TRIES && best > SOON; k++) {
+        g_autoptr(GError) error = NULL;
+        patience p = {.end = g_get_monotonic_time() + 150000};
+        const NephSaveOptions options = {.go_on = until, .go_on_data = &p};
+        g_assert_false(neph_photons_save(scene, settings, path, &options, &error));
+        g_assert_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
+        best = fmin(best, 1e-6 * (double)(g_get_monotonic_time() - p.asked));
+        g_assert_false(g_file_test(path, G_FILE_TEST_EXISTS));
+    }
+    g_test_message("%.1f ms", 1e3 * best);
+    g_assert_cmpfloat(best, <, SOON);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    open_folder();
+    g_test_add_func("/api-threads/at-once", test_at_once);
+    g_test_add_data_func("/api-threads/cancel/photonmap",
+                         "integrator=photonmap passes=1 photons=400000 spp=16",
+                         test_cancel);
+    g_test_add_data_func(
+        "/api-threads/cancel/gather",
+        "integrator=photonmap passes=1 photons=20000 final_gather=on spp=8", test_cancel);
+    g_test_add_data_func("/api-threads/cancel/auto", "integrator=auto passes=1 spp=128",
+                         test_cancel);
+    g_test_add_data_func("/api-threads/cancel/vcm", "integrator=vcm passes=1 spp=64",
+                         test_cancel);
+    g_test_add_data_func("/api-threads/cancel/path", "integrator=path passes=1 spp=256",
+                         test_cancel);
+    g_test_add_func("/api-threads/cancel/keeping", test_cancel_keeping);
+    int result = g_test_run();
+    remove_folder();
+    return result;
+}
