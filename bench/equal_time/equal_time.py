@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 """What each algorithm needs to come as near to the truth, against the default's time.
 
-usage: bench/equal_time/equal_time.py [--quick] [--build DIR] [SCENE...]
+usage: bench/equal_time/equal_time.py [--quick | --small] [--build DIR] [--report] [SCENE...]
 
 Runs equal_time (equal_time.c) on the scenes beside it and those of ../shared, and writes
 points.tsv, error.svg (error against processor seconds, log-log) and table.txt to
-DIR/equal_time, where references are kept too: `--quick` takes some minutes, all some hours.
+DIR/equal_time, where references are kept too: `--quick` takes some minutes, `--small` (all scenes
+at 128 x 128, one seed) half an hour of two processors, all some hours.
+`--report` puts table and curves into docs/report too, `--points FILE` reads what was measured
+before. Each algorithm stands there twice: as rendered, and without its noise.
 """
 import argparse
 import collections
@@ -17,10 +20,13 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+REPORT = ROOT / "docs/report"
 SHARED = ROOT.parent / "shared/refs"
 LEVELS = (0.05, 0.015, 0.005)  # of relMSE
 FLIPS = (0.2, 0.1, 0.06)
 QUICK = ["cornell", "cornell-glass", "ball", "window"]
+QUICKLY = "--size 64x64 --seconds 1.5 --longest 12 --seeds 3".split()
+SMALL_ONES = "--size 128x128 --seconds 3 --longest 12 --seeds 1".split()
 ALL = QUICK + ["glossy", "textured", "lamps", "water", "prism", "fog"]
 ELSEWHERE = [ROOT / "scenes/ring/ring.pbrt", SHARED / "bitterli/coffee/scene-v4.pbrt",
              SHARED / "bitterli/veach-mis/scene-v4.pbrt"]
@@ -81,9 +87,9 @@ def time_to(curve, level, column):
     return math.exp(t1 + (t1 - t0) * (e1 - wanted) / (e0 - e1)), True
 
 
-def table(curves, floors):
+def table(curves, floors, shown):
     """Seconds of each to each error; of the default over the best of the others."""
-    kinds = list(COLOURS)
+    kinds = [k + "+" * shown for k in COLOURS]
     lines = []
     for column, name, levels in ((1, "relMSE", LEVELS), (2, "FLIP", FLIPS)):
         lines.append(f"{'seconds to ' + name:28}" + "".join(f"{k:>9}" for k in kinds) +
@@ -94,9 +100,16 @@ def table(curves, floors):
                 if level < floor:
                     continue
                 lines.append(row(scene, by_kind, kinds, level, column))
-    lines += ["", "between the two references: " + ", ".join(
-        f"{s} {f[0]:.5f} {f[1]:.3f}" for s, f in floors.items())]
     return "\n".join(lines)
+
+
+def whole_text(curves, floors):
+    """Both tables, and what references differ by."""
+    return "\n".join([
+        "as rendered", "", table(curves, floors, False), "",
+        "without noise, with the time to take it out", "", table(curves, floors, True), "",
+        "between the two references, relMSE and FLIP:"] + [
+            f"    {s:16} {f[0]:.5f} {f[1]:.3f}" for s, f in floors.items()])
 
 
 def row(scene, by_kind, kinds, level, column):
@@ -105,12 +118,12 @@ def row(scene, by_kind, kinds, level, column):
     cells = "".join(
         "        -" if t is None else f"{t:8.2f}{'~' if guessed else ' '}"
         for t, guessed in found.values())
-    mine = found["auto"][0]
-    rest = [found[k][0] for k in kinds if k != "auto" and found[k][0]]
+    mine = found[kinds[0]][0]
+    rest = [found[k][0] for k in kinds[1:] if found[k][0]]
     def ratio(t):
         return f"{mine / t:11.2f}" if mine and t else f"{'-':>11}"
     return (f"{scene:20}{level:7.3f} {cells}" + ratio(min(rest, default=None)) +
-            ratio(found["path"][0]) + ratio(found["sppm"][0]))
+            ratio(found[kinds[1]][0]) + ratio(found[kinds[2]][0]))
 
 
 def panel(by_kind, scene, x0, y0, side):
@@ -132,8 +145,10 @@ def panel(by_kind, scene, x0, y0, side):
                    f'{10 ** decade:g} s</text>')
     for kind, curve in by_kind.items():
         points = " ".join(place(p[0], p[1]) for p in curve)
-        out.append(f'<polyline points="{points}" fill="none" stroke="{COLOURS[kind]}" '
-                   f'stroke-width="{3 if kind == "auto" else 1.5}"/>')
+        dashes = ' stroke-dasharray="4 3"' if kind.endswith("+") else ""
+        out.append(f'<polyline points="{points}" fill="none" '
+                   f'stroke="{COLOURS[kind.rstrip("+")]}"{dashes} '
+                   f'stroke-width="{2.5 if kind.startswith("auto") else 1.2}"/>')
     return out
 
 
@@ -146,6 +161,7 @@ def plot(curves):
            '<rect width="100%" height="100%" fill="white"/>']
     for i, (kind, colour) in enumerate(COLOURS.items()):
         out.append(f'<text x="{gap + 80 * i}" y="25" fill="{colour}">{kind}</text>')
+    out.append(f'<text x="{gap + 80 * len(COLOURS)}" y="25">dashed: without noise</text>')
     for i, (scene, by_kind) in enumerate(curves.items()):
         out += panel(by_kind, scene, gap + i % columns * (side + gap),
                      gap + i // columns * (side + gap), side)
@@ -155,7 +171,9 @@ def plot(curves):
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     arguments.add_argument("--quick", action="store_true")
+    arguments.add_argument("--small", action="store_true")
     arguments.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
+    arguments.add_argument("--report", action="store_true")
     arguments.add_argument("--points", type=pathlib.Path, help="measured before")
     arguments.add_argument("scenes", nargs="*", type=pathlib.Path)
     asked = arguments.parse_args()
@@ -163,15 +181,18 @@ def main():
                               for s in (QUICK if asked.quick else ALL)]
     if not asked.scenes and not asked.quick:
         scenes += [s for s in ELSEWHERE if s.exists()]
-    options = ["--size", "64x64", "--seconds", "1.5", "--longest", "12", "--seeds", "3"]
+    options = QUICKLY if asked.quick else SMALL_ONES if asked.small else []
     if not asked.points:
         build(asked.build)
-    points = asked.points or measure(asked.build, scenes, options if asked.quick else [])
+    points = asked.points or measure(asked.build, scenes, options)
     curves, floors = read(points)
-    text = table(curves, floors)
+    text = whole_text(curves, floors)
     print(text)
     (points.parent / "table.txt").write_text(text + "\n")
     (points.parent / "error.svg").write_text(plot(curves))
+    if asked.report:
+        (REPORT / "equal_time.txt").write_text(text + "\n")
+        (REPORT / "figures/equal_time.svg").write_text(plot(curves))
 
 
 if __name__ == "__main__":
