@@ -17,6 +17,10 @@
 #include "photon/map/point_index.h"
 #include "photon/photon.h"
 
+/** Where photons lie thinly no radius, of an estimate or of a bright spot, is wider than
+ * so many typical ones: one that lies alone covers no more, and look-ups stay quick. */
+#define WIDEST_OVER_TYPICAL 4.0f
+
 typedef struct photon_map photon_map;
 
 /** @brief Which photons a query sees, and how it measures their distance. It acts while

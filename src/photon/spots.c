@@ -13,9 +13,6 @@ enum { MOST_SPOTS = 512 };
 /* math: that a spot reaches, itself among them: so many equal discs touch one. */
 enum { NEIGHBOURS = 7 };
 
-/* The widest spot, over the median of them: what lies alone covers no more. */
-#define WIDEST 4.0f
-
 typedef struct disc {
     vec3 p, n;
     float radius;
@@ -107,7 +104,7 @@ static bool set_radii(photon_spots *spots, GError **error)
         return false;
     }
     memcpy(sorted, ways, sizeof sorted);
-    float most = WIDEST * median(sorted, spots->n);
+    float most = WIDEST_OVER_TYPICAL * median(sorted, spots->n);
     for (size_t i = 0; i < spots->n; i++) {
         disc *d = &spots->discs[i];
         d->radius = maxf(minf(ways[i], most), d->radius);

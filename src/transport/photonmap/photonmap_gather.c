@@ -40,7 +40,8 @@ static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
     if (r < 0.0f)
         return typical;
     float shrunk = typical / (float)pass->plan->radius[c];
-    return maxf(r, sqrtf(hits->distance2[0])) * shrunk;
+    return minf(maxf(r, sqrtf(hits->distance2[0])) * shrunk,
+                WIDEST_OVER_TYPICAL * typical);
 }
 
 estimate_options photonmap_options_at(const photonmap_pass *pass, photon_class c, vec3 p,
