@@ -387,7 +387,7 @@ int job_run(const options *o, double start)
     } else {
         say_farewell_with(&j, 0);
         if (ranks_me() == ROOT)
-            signal(SIGTERM, on_end);
+            sigaction(SIGTERM, &(struct sigaction){.sa_handler = on_end}, NULL);
         render_all(&j);
         progress_end(&j.shown);
         if (ranks_me() == ROOT)

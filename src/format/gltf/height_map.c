@@ -57,11 +57,10 @@ GBytes *height_map_as_normals(const image *img, double strength)
         g_strdup_printf("PF\n%d %d\n%s\n", img->width, img->height, order);
     size_t n_head = strlen(head), row = (size_t)img->width * RGB * sizeof(float);
     size_t size = n_head + row * (size_t)img->height;
-    char *out = big_alloc(size, 1, "height map", NULL), *to = out;
+    char *out = big_alloc(size, 1, "height map", NULL);
     if (!out)
         return NULL;
-    memcpy(to, head, n_head);
-    to += n_head;
+    char *to = g_stpcpy(out, head);
     for (int y = img->height - 1; y >= 0; y--)
         for (int x = 0; x < img->width; x++) {
             float n[RGB];
