@@ -73,8 +73,23 @@ static bool awaits_value(const usage *how, const char *argument)
            takes_value(find_option(how, argument[length - 1], NULL));
 }
 
-/* GLib wants a blank between a letter and its value. The strings stay as long as the
-   program runs, as those of main do. */
+/* Stay as long as the program runs, as those of main do, and are found by who looks for
+   what is lost: parsing takes letters out of the list. */
+static struct {
+    GPtrArray *letters;
+    char **list;
+} detached;
+
+static char *detach_letters(const char *argument, size_t length)
+{
+    char *letters = g_strndup(argument, length);
+    if (!detached.letters)
+        detached.letters = g_ptr_array_new();
+    g_ptr_array_add(detached.letters, letters);
+    return letters;
+}
+
+/* GLib wants a blank between a letter and its value. */
 static void detach_values(const usage *how, int *argc, char ***argv)
 {
     GPtrArray *apart = g_ptr_array_new();
@@ -85,14 +100,15 @@ static void detach_values(const usage *how, int *argc, char ***argv)
         bool may =
             i > 0 && options && !is_value && argument[0] == '-' && argument[1] != '-';
         size_t at = may ? value_in(how, argument) : 0;
-        g_ptr_array_add(apart, at ? g_strndup(argument, at) : argument);
+        g_ptr_array_add(apart, at ? detach_letters(argument, at) : argument);
         if (at)
             g_ptr_array_add(apart, argument + at);
         is_value = options && !is_value && !at && i > 0 && awaits_value(how, argument);
     }
     *argc = (int)apart->len;
     g_ptr_array_add(apart, NULL);
-    *argv = (char **)g_ptr_array_free(apart, FALSE);
+    detached.list = (char **)g_ptr_array_free(apart, FALSE);
+    *argv = detached.list;
 }
 
 /* GLib leaves "--" in place when an operand follows that begins with a dash. */
