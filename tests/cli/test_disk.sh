@@ -70,30 +70,34 @@ status=$?
 refused "Read-only file system" disk/a.exr
 report read-only/before $?
 
-# begun: until the first checkpoint is there
+# begun PICTURE: until the first checkpoint is there, however slow the machine is
 begun() {
     rm -f b.checkpoint
-    "$program" render box.pbrt -q --passes 100000 --time 3 -o "$1" --checkpoint b.checkpoint \
+    "$program" render box.pbrt -q --passes 100000 -o "$1" --checkpoint b.checkpoint \
         --checkpoint-every 0 >log 2>&1 &
     job=$!
-    for _ in $(seq 100); do
-        [ -s b.checkpoint ] && break
+    while kill -0 $job 2>/dev/null && [ ! -s b.checkpoint ]; do
         sleep 0.05
     done
+}
+
+# ended: asked to write what there is
+ended() {
+    kill -TERM $job
+    wait $job
+    status=$?
 }
 
 mount -o remount,rw,size=4m "$work/disk"
 begun disk/a.exr
 mount -o remount,ro "$work/disk"
-wait $job
-status=$?
+ended
 refused "Read-only file system" disk/a.exr
 report read-only/meanwhile $?
 
 mkdir away
 begun away/a.exr
 rm -r away
-wait $job
-status=$?
+ended
 [ $status != 0 ] && grep -q "away/a.exr: No such file or directory" log && [ -s b.checkpoint ]
 report gone $?
