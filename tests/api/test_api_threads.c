@@ -4,6 +4,7 @@
  * is asked to.
  */
 #include "api_scene.h"
+#include "sanitizers.h"
 
 #include <time.h>
 
@@ -72,8 +73,9 @@ static void test_at_once(void)
 
 /* ---- Cancelling ---- */
 
-/* Within this it ends: s. */
-#define SOON 0.1
+/* Within this it ends: s; where each access to memory is watched, ten times that: sorting
+   the photons of a map, which is not interrupted, takes 0.3 s there. */
+static const double soon = THREADS_ARE_WATCHED ? 1.0 : 0.1;
 
 /* Other programs may hold the machine up: what counts is the process' own time where that
    is less, and the best of so many tries. */
@@ -143,13 +145,13 @@ static void test_cancel(const void *words)
     double whole = seconds_of(scene, settings), worst = 0.0;
     for (int i = 0; i < MOMENTS; i++) {
         double best = INFINITY;
-        for (int k = 0; k < TRIES && best > SOON; k++)
+        for (int k = 0; k < TRIES && best > soon; k++)
             best = fmin(best, cancel_after(scene, settings, whole * (i + 0.3) / MOMENTS));
         g_test_message("at %.2f of %.2f s: %.1f ms", whole * (i + 0.3) / MOMENTS, whole,
                        1e3 * best);
         worst = fmax(worst, best);
     }
-    g_assert_cmpfloat(worst, <, SOON);
+    g_assert_cmpfloat(worst, <, soon);
 }
 
 /* Photons that are kept, and their file that is not there then. */
@@ -174,7 +176,7 @@ static void test_cancel_keeping(void)
     g_autofree char *path = g_build_filename(folder, "kept", NULL);
     g_assert_true(neph_settings_set(settings, "photons", "4000000", NULL));
     double best = INFINITY;
-    for (int k = 0; k < TRIES && best > SOON; k++) {
+    for (int k = 0; k < TRIES && best > soon; k++) {
         g_autoptr(GError) error = NULL;
         patience p = {.end = g_get_monotonic_time() + 150000};
         const NephSaveOptions options = {.go_on = until, .go_on_data = &p};
@@ -184,7 +186,7 @@ static void test_cancel_keeping(void)
         g_assert_false(g_file_test(path, G_FILE_TEST_EXISTS));
     }
     g_test_message("%.1f ms", 1e3 * best);
-    g_assert_cmpfloat(best, <, SOON);
+    g_assert_cmpfloat(best, <, soon);
 }
 
 int main(int argc, char **argv)

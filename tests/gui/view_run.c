@@ -1,6 +1,7 @@
 #include "view_run.h"
 
 #include "app.h"
+#include "sanitizers.h"
 
 #include <glib/gstdio.h>
 #include <string.h>
@@ -37,17 +38,6 @@ static void make_folder(void)
         g_setenv(variables[i], folder, TRUE);
 }
 
-#if defined(__SANITIZE_THREAD__)
-#define UNSEEN_THREADS true
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define UNSEEN_THREADS true
-#endif
-#endif
-#ifndef UNSEEN_THREADS
-#define UNSEEN_THREADS false
-#endif
-
 /* What GTK and the drivers keep from their start is not ours to free. */
 extern void __lsan_disable(void) __attribute__((weak));
 extern void __lsan_enable(void) __attribute__((weak));
@@ -70,7 +60,7 @@ bool view_init(int *argc, char ***argv)
     g_setenv("LIBGL_ALWAYS_SOFTWARE", "1", TRUE);
     g_setenv("GSK_RENDERER", "cairo", FALSE);
     g_test_init(argc, argv, NULL);
-    if (UNSEEN_THREADS || !start_gtk())
+    if (THREADS_ARE_WATCHED || !start_gtk())
         return false;
     g_log_set_always_fatal(G_LOG_LEVEL_CRITICAL | G_LOG_FATAL_MASK);
     app = app_new();
@@ -80,8 +70,9 @@ bool view_init(int *argc, char ***argv)
 
 static void skip(void)
 {
-    g_test_skip(UNSEEN_THREADS ? "GTK's threads are not instrumented; see test_session"
-                               : "no display");
+    g_test_skip(THREADS_ARE_WATCHED
+                    ? "GTK's threads are not instrumented; see test_session"
+                    : "no display");
 }
 
 void view_add_test(const char *path, void (*test)(void))
