@@ -5,6 +5,7 @@
 #include <malloc.h>
 #include <stdatomic.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -42,7 +43,7 @@ unsigned big_alloc_fail_left(void)
 /* ---- The limit ---- */
 
 static atomic_size_t used, limit /* 0: not asked for yet */;
-static atomic_size_t in_arrays, asked;
+static atomic_size_t in_arrays, asked, most_used;
 
 void memory_set_limit(size_t bytes)
 {
@@ -93,6 +94,25 @@ static void refuse(size_t bytes, const char *what, GError **error)
     refuse_beside(atomic_load(&used), bytes, what, error);
 }
 
+static void note_most(size_t now)
+{
+    size_t before = atomic_load(&most_used);
+    while (now > before && !atomic_compare_exchange_weak(&most_used, &before, now))
+        ;
+}
+
+size_t memory_most(void)
+{
+    return atomic_load(&most_used);
+}
+
+size_t memory_forget_most(void)
+{
+    size_t now = atomic_load(&used);
+    atomic_store(&most_used, now);
+    return now;
+}
+
 static bool reserve(size_t bytes)
 {
     size_t all = memory_limit(), before = atomic_load(&used);
@@ -100,6 +120,7 @@ static bool reserve(size_t bytes)
         if (before > all || bytes > all - before)
             return false;
     while (!atomic_compare_exchange_weak(&used, &before, before + bytes));
+    note_most(before + bytes);
     return true;
 }
 
@@ -113,7 +134,7 @@ bool memory_reserve(size_t bytes, const char *what, GError **error)
 
 void memory_count(size_t bytes)
 {
-    atomic_fetch_add(&used, bytes);
+    note_most(atomic_fetch_add(&used, bytes) + bytes);
 }
 
 void memory_release(size_t bytes)
@@ -235,4 +256,14 @@ size_t memory_peak(void)
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     return (size_t)usage.ru_maxrss * 1024;
+}
+
+size_t memory_resident(void)
+{
+    g_autofree char *text = NULL;
+    size_t all = 0, resident = 0;
+    if (!g_file_get_contents("/proc/self/statm", &text, NULL, NULL) ||
+        sscanf(text, "%zu %zu", &all, &resident) != 2)
+        return 0;
+    return resident * (size_t)sysconf(_SC_PAGESIZE);
 }

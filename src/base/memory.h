@@ -53,6 +53,11 @@ size_t memory_limit(void);
 /** @brief What of the limit is neither reserved nor in arrays. */
 size_t memory_left(void);
 
+/** @brief The most that was in use at once since memory_forget_most. */
+size_t memory_most(void);
+/** @brief @return what is in use */
+size_t memory_forget_most(void);
+
 /** @brief For tests: the n-th call of big_alloc, big_grow or memory_ask from now (1 =
  * next) fails once; 0 = never. */
 void big_alloc_fail_at(unsigned n);
@@ -62,3 +67,5 @@ unsigned big_alloc_fail_left(void);
 
 /** @brief Largest resident size of this process so far, in bytes. */
 size_t memory_peak(void);
+/** @brief What it has now, in bytes; 0: not known. */
+size_t memory_resident(void);

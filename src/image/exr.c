@@ -5,6 +5,7 @@
  *
  * The image is the data window: what lies outside it is not in the file.
  */
+#include "image/exr.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "image/codec.h"
@@ -17,6 +18,7 @@
 enum {
     MAX_SHORT_NAME = 31,
     CHUNKS_A_THREAD = 4, /* packed at once */
+    ZIP_ROWS = 16,       /* size: of a chunk, by the format */
     ZIP_LEVEL = 2, /* of 9: pictures get hardly larger, and are written much sooner */
 };
 
@@ -411,6 +413,14 @@ static bool write_pixels(exr_job *job)
     for (size_t i = 0; i < n; i++)
         exr_encoding_destroy(job->context, &chunks[i].encoder);
     return y >= 0;
+}
+
+/* A chunk as it is, and packed. */
+size_t exr_writing_bytes(int width, int height, int n_channels)
+{
+    size_t rows = CHUNKS_A_THREAD * ZIP_ROWS * (size_t)parallel_threads(0);
+    return 2 * sizeof(float) * MIN(rows, (size_t)height) * (size_t)width *
+           (size_t)n_channels;
 }
 
 static bool write_exr(const image *img, const image_sink *sink,

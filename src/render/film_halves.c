@@ -18,7 +18,7 @@ bool halves_open(film *f, GError **error)
         f->halves = big_alloc(n_pixels(f), sizeof *f->halves, "the film", error);
     if (!f->halves)
         return false;
-    size_t size = n_pixels(f) * film_denoise_bytes(true);
+    size_t size = film_denoise_bytes(f->width, f->height);
     if (memory_reserve(size, "denoising", error))
         f->denoise_size = size;
     return f->denoise_size > 0;
@@ -420,12 +420,13 @@ double film_denoise_seconds(const film *f, unsigned threads)
     return took * f->height / part.height / (double)threads;
 }
 
-size_t film_denoise_bytes(bool at_work)
+size_t film_denoise_bytes(int width, int height)
 {
+    const int n_features = G_N_ELEMENTS(features);
+    size_t pixel = sizeof(float) * (size_t)(4 * 3 + 1); /* layer_room, and the result */
     int n = 0;
-    for (size_t k = 0; k < G_N_ELEMENTS(features); k++)
+    for (int k = 0; k < n_features; k++)
         n += features[k].n_channels;
-    if (!at_work)
-        return sizeof(half_pixel) + sizeof(guide_sum);
-    return sizeof(float) * (size_t)(4 * 3 + 1) + denoise_bytes(n);
+    return (size_t)width * (size_t)height * pixel +
+           denoise_bytes(width, height, n_features, n);
 }

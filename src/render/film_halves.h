@@ -67,5 +67,5 @@ double film_denoise_seconds(const film *f, unsigned threads);
 /** @brief Bytes a pixel of what guides the denoiser in the pass under way. */
 size_t film_guide_bytes(void);
 
-/** @brief Bytes a pixel: of the sums, and while it is denoised. */
-size_t film_denoise_bytes(bool at_work);
+/** @brief Bytes while a picture of that size is denoised. */
+size_t film_denoise_bytes(int width, int height);

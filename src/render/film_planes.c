@@ -1,5 +1,6 @@
 #include "render/film_planes.h"
 
+#include "image/exr.h"
 #include "render/film_halves.h"
 
 #include <string.h>
@@ -105,37 +106,57 @@ void film_reset(film *f)
     f->n_cells = 0;
 }
 
-size_t film_bytes(const film *f)
+/* Of the pass under way. */
+static size_t pass_bytes(const film *f)
 {
-    film_plane planes[FILM_MOST_PLANES];
-    size_t n = film_planes(f, planes), n_pixels = (size_t)f->width * (size_t)f->height;
-    size_t bytes = f->image_size + f->denoise_size + n_pixels * sizeof *f->pass;
+    size_t n_pixels = (size_t)f->width * (size_t)f->height;
+    size_t bytes = n_pixels * sizeof *f->pass;
     if (f->pass_groups)
         bytes += n_pixels * 3 * (size_t)f->n_groups * sizeof *f->pass_groups;
     if (f->pass_surfaces)
         bytes += n_pixels * sizeof *f->pass_surfaces;
     if (f->pass_guides)
         bytes += n_pixels * film_guide_bytes();
+    return bytes;
+}
+
+static size_t sum_bytes(const film *f)
+{
+    film_plane planes[FILM_MOST_PLANES];
+    size_t n = film_planes(f, planes), bytes = pass_bytes(f);
     for (size_t i = 0; i < n; i++)
         bytes += film_plane_bytes(&planes[i]);
     return bytes;
 }
 
+static size_t scaled(size_t bytes, double by)
+{
+    return (size_t)((double)bytes * by);
+}
+
 /* A small film tells what a pixel takes. */
-size_t film_bytes_for(const view *v, bool denoise)
+film_size film_size_for(const view *v, bool denoise)
 {
     enum { SIDE = 16 };
     const float *crop = v->film.crop;
-    double part = (double)(crop[1] - crop[0]) * (double)(crop[3] - crop[2]);
-    double n_pixels = (double)v->film.width * (double)v->film.height * part;
+    int width = (int)((crop[1] - crop[0]) * (float)v->film.width);
+    int height = (int)((crop[3] - crop[2]) * (float)v->film.height);
+    double more = (double)width * (double)height / (SIDE * SIDE);
     view small = *v;
     film f;
     small.film.width = small.film.height = SIDE;
     small.film.crop[0] = small.film.crop[2] = 0.0f;
     small.film.crop[1] = small.film.crop[3] = 1.0f;
-    double each = film_open(&f, &small, denoise, NULL)
-                      ? (double)film_bytes(&f) / (SIDE * SIDE)
-                      : 0.0;
+    film_size size = {0};
+    if (film_open(&f, &small, denoise, NULL))
+        size = (film_size){
+            .pass = scaled(pass_bytes(&f), more),
+            .sums = scaled(sum_bytes(&f), more),
+            .image = scaled(f.image_size, more),
+            .denoising = denoise ? film_denoise_bytes(width, height) : 0,
+            .writing = exr_writing_bytes(
+                width, height, (int)(f.image_size / sizeof(float) / (SIDE * SIDE))),
+        };
     film_clear(&f);
-    return (size_t)(each * n_pixels);
+    return size;
 }

@@ -28,10 +28,15 @@ void film_add_sums(film *f, size_t first, size_t n, const double *more);
 /** @brief Forgets the passes. */
 void film_reset(film *f);
 
-/** @brief All that an open film takes: its sums, the pass under way, and what is reserved
- * for the image to come and for taking its noise out. */
-size_t film_bytes(const film *f);
+/** @brief What a film takes, bytes. */
+typedef struct film_size {
+    size_t pass;      /**< of the pass under way */
+    size_t sums;      /**< with all passes done */
+    size_t image;     /**< that it becomes */
+    size_t denoising; /**< while its noise is taken out; 0: it stays */
+    size_t writing;   /**< while the image is packed into OpenEXR, the most of formats */
+} film_size;
 
-/** @brief What the film of a view will take, bytes; 0 where not even a small one can be
+/** @brief What the film of a view will take; all 0 where not even a small one can be
  * had. */
-size_t film_bytes_for(const view *v, bool denoise);
+film_size film_size_for(const view *v, bool denoise);

@@ -1,7 +1,7 @@
 #include "api/describe/describe.h"
 
 #include "base/memory.h"
-#include "render/film_planes.h"
+#include "render/footprint.h"
 
 #include <math.h>
 #include <string.h>
@@ -83,18 +83,6 @@ static void count_textures(const scene *s, summary *all)
     g_array_sort(all->textures, compare_kinds);
 }
 
-/* Embree keeps about 90 bytes a triangle; a photon takes 52 bytes and as much again while
- * the map is built. */
-static size_t estimate_memory(const view *v, const summary *all)
-{
-    size_t triangles = 0;
-    for (guint i = 0; i < all->shapes->len; i++)
-        triangles += g_array_index(all->shapes, tally, i).n_triangles;
-    return all->geometry_bytes + 90 * triangles +
-           104 * (size_t)settings_photons(&v->scene->settings) +
-           film_bytes_for(v, v->scene->settings.denoise);
-}
-
 static void count_materials(const scene *s, summary *all)
 {
     for (guint i = 0; i < s->materials->len; i++) {
@@ -144,7 +132,7 @@ static void summary_init(summary *all, const view *v)
     count_textures(s, all);
     all->warnings = describe_warnings(v);
     all->process_bytes = memory_peak();
-    all->render_bytes = estimate_memory(v, all);
+    all->render_bytes = footprint_of(v, &v->scene->settings);
 }
 
 static void summary_clear(summary *all)

@@ -64,10 +64,11 @@ void denoiser_free(denoiser *d)
     g_free(d);
 }
 
-size_t denoise_bytes(int n_feature_channels)
+size_t denoise_bytes(int width, int height, int n_features, int n_feature_channels)
 {
-    const int doubts = n_feature_channels; /* at most */
-    return sizeof(float) *
+    const grid g = grid_make(width, height, 1, NULL);
+    const int doubts = n_features;
+    return sizeof(float) * g.n *
            (size_t)(LIGHT_PLANES + BLEND_PLANES + n_feature_channels + doubts);
 }
 

@@ -10,8 +10,8 @@
  * - choose: between bandwidths, where the halves say which errs less.
  * - shrink: toward the picture as it was, as far as what was taken out of it is more than
  *   its noise; James & Stein, "Estimation with Quadratic Loss", 1961. First means over
- *   squares, of which noise is small, then single pixels. So whatever the filter does, the error falls with that of the picture: a picture without noise stays
- *   what it is.
+ *   squares, of which noise is small, then single pixels. So whatever the filter does,
+ * the error falls with that of the picture: a picture without noise stays what it is.
  *
  * The same bits on any number of threads. Numbers that are not finite are replaced by the
  * other half's or a neighbour's.
@@ -54,5 +54,5 @@ int denoiser_add(denoiser *d, const denoise_layer *feature, GError **error);
 bool denoiser_filter(const denoiser *d, const denoise_layer *light, int divide_by,
                      float *out, GError **error);
 
-/** @brief Bytes a pixel that it takes while it works, of large pictures. */
-size_t denoise_bytes(int n_feature_channels);
+/** @brief Bytes that it takes while it works on a picture, margins with it. */
+size_t denoise_bytes(int width, int height, int n_features, int n_feature_channels);

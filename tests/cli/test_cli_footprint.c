@@ -1,0 +1,111 @@
+/*
+ * What 'nephroid info' says that rendering takes, against the peak of a process that
+ * renders, as the system counts it: within a tenth of it, and 4 MiB. These are the
+ * process' own, which no scene tells of: code and tables that only rendering touches,
+ * stacks of threads, and what malloc keeps of pieces that were freed.
+ */
+#include "cli_run.h"
+
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#define SHARE 0.1
+#define OWN (4.0 * 1024.0 * 1024.0)
+
+/* Two passes, or one. */
+#define SAID "\"integer spp\" 1 \"integer passes\" "
+#define AUTO "Integrator \"auto\" " SAID
+#define PATH "Integrator \"auto\" \"string integrator\" \"path\" " SAID
+#define VCM "Integrator \"vcm\" " SAID
+#define SPPM "Integrator \"sppm\" \"integer iterations\" "
+
+/* A glass ball over a floor, and the floor alone. */
+static const char *const bodies[] = {
+    "LightSource \"point\" \"point3 from\" [0 3 3] \"rgb I\" [9 9 9]\n"
+    "Shape \"disk\" \"float radius\" 3\n"
+    "Material \"dielectric\"\nTranslate 0 0 1 Shape \"sphere\" \"float radius\" 0.5\n",
+    "LightSource \"point\" \"point3 from\" [0 3 3] \"rgb I\" [9 9 9]\n"
+    "Shape \"disk\" \"float radius\" 3\n",
+};
+
+typedef struct example {
+    const char *integrator, *passes; /**< and what else is set */
+    int width, height, body;
+} example;
+
+static void write_scene(const folder *f, const example *e)
+{
+    g_autofree char *text = g_strdup_printf(
+        "%s%s\n"
+        "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d\n"
+        "LookAt 0 -6 3 0 0 0.5 0 0 1\nCamera \"perspective\" \"float fov\" 40\n"
+        "WorldBegin\n%s",
+        e->integrator, e->passes, e->width, e->height, bodies[e->body]);
+    folder_write(f, "sized.pbrt", text);
+}
+
+static double told(const folder *f)
+{
+    static const char key[] = "\"rendering\": ";
+    g_auto(result) r = run(f, "info --json sized.pbrt");
+    const char *at = strstr(r.out, key);
+    g_assert_nonnull(at);
+    return g_ascii_strtod(at + strlen(key), NULL);
+}
+
+static double measured(const folder *f)
+{
+    const char *argv[] = {run_program(), "render", "sized.pbrt", "-q",
+                          "-o",          "a.exr",  NULL};
+    GPid child;
+    int status = 0;
+    struct rusage used;
+    g_assert_true(g_spawn_async(f->path, (char **)argv, NULL, G_SPAWN_DO_NOT_REAP_CHILD,
+                                NULL, NULL, &child, NULL));
+    g_assert_cmpint(wait4(child, &status, 0, &used), ==, child);
+    g_assert_cmpint(status, ==, 0);
+    return (double)used.ru_maxrss * 1024.0;
+}
+
+static void check(const folder *f, const example *e)
+{
+    write_scene(f, e);
+    double expected = told(f), peak = measured(f);
+    g_test_message("%s%s, %d x %d, scene %d: told %.1f MiB, measured %.1f", e->integrator,
+                   e->passes, e->width, e->height, e->body, expected / 0x1p20,
+                   peak / 0x1p20);
+    g_assert_cmpfloat(expected, <=, peak * (1.0 + SHARE) + OWN);
+    g_assert_cmpfloat(expected, >=, peak * (1.0 - SHARE) - OWN);
+}
+
+static void test_info_tells(folder *f, gconstpointer data)
+{
+    (void)data;
+    static const example all[] = {
+        {AUTO, "2", 64, 64, 0},
+        {PATH, "2", 64, 64, 0},
+        {SPPM, "2", 64, 64, 0},
+        {SPPM, "2", 64, 64, 1},
+        {SPPM, "2 \"integer photonsperiteration\" 400000", 64, 64, 0},
+        {VCM, "2", 64, 64, 0},
+        {VCM, "2 \"integer photons\" 200000", 64, 64, 0},
+        {AUTO, "2", 512, 512, 0},
+        {AUTO, "1", 512, 512, 1},
+        {PATH, "2 \"bool denoise\" false", 512, 512, 1},
+        {SPPM, "2", 512, 512, 0},
+        {VCM, "2", 512, 512, 1},
+        {PATH, "1", 1024, 768, 1},
+        {PATH, "2 \"bool denoise\" false", 1024, 768, 0},
+        {AUTO, "2", 1024, 768, 1},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(all); i++)
+        check(f, &all[i]);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    folder_add_test("/cli/footprint", test_info_tells);
+    return g_test_run();
+}
