@@ -215,13 +215,6 @@ void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
         add_splat(f, pass, filter, &splats.splats[i]);
 }
 
-void film_add_pass(film_sum *sum, const pass_pixel *pass)
-{
-    double *number = (double *)sum;
-    for (int k = 0; k < FILM_NUMBERS; k++)
-        number[k] += (double)pass->number[k];
-}
-
 /* Of the beauty image, not yet divided by the weight. */
 static double luminance(const film_sum *sum)
 {
@@ -229,23 +222,6 @@ static double luminance(const film_sum *sum)
     for (int i = 0; i < N_LAYERS; i++)
         y += sum->color[i][LUMINANCE];
     return y;
-}
-
-int film_cell(const film *f, int x, int y)
-{
-    static const int within[2][2] = {{0, 2}, {3, 1}}; /* [y][x]: the far corner second */
-    int cell = 0;
-    x -= f->x0;
-    y -= f->y0;
-    for (int step = 1; step < FILM_COARSE; step *= 2)
-        cell = 4 * cell + within[y / step % 2][x / step % 2];
-    return cell;
-}
-
-bool film_pass_counts(const film *f, size_t pixel)
-{
-    int x = (int)(pixel % (size_t)f->width), y = (int)(pixel / (size_t)f->width);
-    return film_cell(f, f->x0 + x, f->y0 + y) < f->n_cells;
 }
 
 static void end_pixels(size_t begin, size_t end, unsigned thread, void *data)

@@ -1,0 +1,29 @@
+/*
+ * A pass that is not whole yet: in which order its pixels come, which are there, and how
+ * one is added to a sum.
+ */
+#include "render/film.h"
+
+int film_cell(const film *f, int x, int y)
+{
+    static const int within[2][2] = {{0, 2}, {3, 1}}; /* [y][x]: the far corner second */
+    int cell = 0;
+    x -= f->x0;
+    y -= f->y0;
+    for (int step = 1; step < FILM_COARSE; step *= 2)
+        cell = 4 * cell + within[y / step % 2][x / step % 2];
+    return cell;
+}
+
+bool film_pass_counts(const film *f, size_t pixel)
+{
+    int x = (int)(pixel % (size_t)f->width), y = (int)(pixel / (size_t)f->width);
+    return film_cell(f, f->x0 + x, f->y0 + y) < f->n_cells;
+}
+
+void film_add_pass(film_sum *sum, const pass_pixel *pass)
+{
+    double *number = (double *)sum;
+    for (int k = 0; k < FILM_NUMBERS; k++)
+        number[k] += (double)pass->number[k];
+}
