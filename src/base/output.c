@@ -12,6 +12,7 @@
    so nodes stay once they are there, and whoever takes the path out of one owns it. */
 typedef struct unfinished {
     _Atomic(char *) path; /* NULL: the node is free */
+    char *abandoned;      /* what it was then: a signal's handler may not free it */
     struct unfinished *next;
 } unfinished;
 
@@ -32,7 +33,7 @@ static unfinished *note_unfinished(const char *path)
         if (atomic_compare_exchange_strong(&u->path, &none, copy))
             return u;
     }
-    unfinished *made = g_new(unfinished, 1);
+    unfinished *made = g_new0(unfinished, 1);
     atomic_init(&made->path, copy);
     made->next = atomic_load(&all_unfinished);
     while (!atomic_compare_exchange_weak(&all_unfinished, &made->next, made))
@@ -44,8 +45,10 @@ void output_abandon_all(void)
 {
     for (unfinished *u = atomic_load(&all_unfinished); u; u = u->next) {
         char *path = atomic_exchange(&u->path, NULL);
-        if (path)
+        if (path) {
             unlink(path);
+            u->abandoned = path;
+        }
     }
 }
 

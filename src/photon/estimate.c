@@ -16,8 +16,9 @@
 #include "photon/neighbourhood.h"
 #include "photon/photon_query.h"
 
-/* Photons arrive in proportion to |wi·n_geom|, so without a limit on |wi·n| / |wi·n_geom|
- * the variance would not be finite; the light cut off is below 1/2000. */
+/* math: Photons arrive in proportion to |wi·n_geom|, so without a limit on |wi·n| /
+ * |wi·n_geom| the variance would not be finite. Any large number serves: the light that
+ * is cut off is below half its inverse. */
 #define MAX_GRAZING_RATIO 1000.0f
 
 enum { BLOCK = 256 }; /* size: of photons that are weighed at a time */

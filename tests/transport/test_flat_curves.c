@@ -126,7 +126,7 @@ static void test_instances(gconstpointer place)
 /* ---- Under glass ---- */
 
 static const way glass_ways[] = {
-    {"auto", "integrator=auto passes=8 spp=8 photons=40000", 0.05},
+    {"auto", "integrator=auto passes=8 spp=8 caustic_photons=40000", 0.05},
     {"photonmap", "integrator=photonmap passes=8 spp=8 photons=40000 radius=0.1", 0.05},
     {"vcm", "integrator=vcm passes=8 spp=8 photons=40000 radius=0.1", 0.05},
 };

@@ -3,9 +3,9 @@
 #include <string.h>
 
 enum {
-    BINS = 4,                         /* an axis' unevenness is judged in quarters */
-    LEAST_ARRIVALS = BINS * BINS * 2, /* in a cell that is split: two in each square */
-    MAX_DEPTH = 40, /* math: cells finer than floats tell apart are none */
+    BINS = 4,          /* an axis' unevenness is judged in quarters */
+    MIN_ARRIVALS = 24, /* a cell with fewer is not split */
+    MAX_DEPTH = 40,    /* math: cells finer than floats tell apart are none */
     N_PAIRS = EMISSION_DIMENSIONS * (EMISSION_DIMENSIONS - 1) / 2,
 };
 
@@ -210,7 +210,7 @@ static int correlated_axis(const guide_tally *tally)
 /* The axis to split a leaf along, or -1. */
 static int axis_to_split(const guide_node *leaf, const guide_tally *tally)
 {
-    const bool tells = tally->arrivals >= LEAST_ARRIVALS;
+    const bool tells = tally->arrivals >= MIN_ARRIVALS;
     if (leaf->child || leaf->depth >= MAX_DEPTH || !tells)
         return -1;
     int axis = uneven_axis(tally);
