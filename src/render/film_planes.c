@@ -120,7 +120,7 @@ static size_t pass_bytes(const film *f)
     return bytes;
 }
 
-static size_t sum_bytes(const film *f)
+size_t film_bytes(const film *f)
 {
     film_plane planes[FILM_MOST_PLANES];
     size_t n = film_planes(f, planes), bytes = pass_bytes(f);
@@ -151,7 +151,7 @@ film_size film_size_for(const view *v, bool denoise)
     if (film_open(&f, &small, denoise, NULL))
         size = (film_size){
             .pass = scaled(pass_bytes(&f), more),
-            .sums = scaled(sum_bytes(&f), more),
+            .sums = scaled(film_bytes(&f), more),
             .image = scaled(f.image_size, more),
             .denoising = denoise ? film_denoise_bytes(width, height) : 0,
             .writing = exr_writing_bytes(
