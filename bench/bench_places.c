@@ -106,7 +106,7 @@ static void make_radii(places *of)
     vec3 *at = aligned_alloc(64, (n_places * sizeof *at + 63) / 64 * 64);
     for (size_t i = 0; i < n_places; i++)
         at[i] = photon_store_get(photon_map_store(by.map), radius_place(i, n)).p;
-    const radius_source source = {nearest, scaled, &by};
+    const radius_source source = {nearest, scaled, &by, NULL};
     of->radii = radius_cache_build(at, n_places, &source, 1, NULL);
     photon_map_free(by.map);
     free(at);

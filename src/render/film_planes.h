@@ -28,8 +28,8 @@ void film_add_sums(film *f, size_t first, size_t n, const double *more);
 /** @brief Forgets the passes. */
 void film_reset(film *f);
 
-/** @brief An open film's sums, those of the pass under way with them; what is reserved for
- * later (image_size, denoise_size) is not there yet. */
+/** @brief An open film's sums, those of the pass under way with them; what is reserved
+ * for later (image_size, denoise_size) is not there yet. */
 size_t film_bytes(const film *f);
 
 /** @brief What a film takes, bytes. */
