@@ -36,8 +36,8 @@
 enum { LEAST_TRIALS = RADIUS_NEAREST };
 
 /** Photons, or light subpaths, that tell how dense they lie: those that a distance is
- * measured by, for every fourth of the places. */
-enum { MOST_PILOTS = RADIUS_NEAREST * MOST_PLACES / 4 };
+ * measured by, for every second of the places. */
+enum { MOST_PILOTS = RADIUS_NEAREST * MOST_PLACES / 2 };
 
 /** Pairs of samples of a trial, at every fourth of the places: a variance is then known
  * within a tenth where no sample stands out. */
