@@ -249,6 +249,21 @@ static bool shrink(const blend_loop *loop)
     return plane_rows(g, share_row, (void *)loop) && give_back(loop);
 }
 
+/* The darkest of the picture around a pixel. */
+static float darkest_around(const blend_loop *loop, int c, size_t at)
+{
+    float share = loop->b->share, darkest = INFINITY;
+    for (size_t y = 0; y < 3; y++)
+        for (size_t x = 0; x < 3; x++) {
+            size_t i = at + (y * loop->g->stride + x) - (loop->g->stride + 1);
+            darkest = minf(darkest, share * loop->b->raw[0][c][i] +
+                                        (1.0f - share) * loop->b->raw[1][c][i]);
+        }
+    return darkest;
+}
+
+/* Lines through the edge of a lamp swing below what is beside it: nothing is darker than
+   all around it was. */
 static void join_row(int y, void *data)
 {
     const blend_loop *loop = data;
@@ -256,8 +271,9 @@ static void join_row(int y, void *data)
     for (int x = 0; x < loop->g->width; x++) {
         size_t at = plane_at(loop->g, x, y);
         for (int c = 0; c < 3; c++)
-            loop->b->out[c][at] = share * loop->filtered[0][c][at] +
-                                  (1.0f - share) * loop->filtered[1][c][at];
+            loop->b->out[c][at] = maxf(share * loop->filtered[0][c][at] +
+                                           (1.0f - share) * loop->filtered[1][c][at],
+                                       darkest_around(loop, c, at));
     }
 }
 
