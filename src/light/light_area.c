@@ -57,6 +57,8 @@ static spectrum shines(const area_light *l, const surface_hit *hit, const wavele
 static spectrum shines_from(const area_light *l, const shape_sample *at,
                             const wavelengths *w)
 {
+    if (!is_textured(l) && !l->on->has_alpha)
+        return emitter_eval(&l->radiance, w);
     const surface_hit hit = {.p = at->p,
                              .n = at->n,
                              .n_geom = at->n,

@@ -100,6 +100,9 @@ spectrum scene_transmittance(const scene *s, const ray *r, const wavelengths *w)
 spectrum scene_transmittance_to(const scene *s, const surface_hit *from, vec3 direction,
                                 float distance, const wavelengths *w)
 {
+    bool is_clear = !scene_has_media(s) && !from->media.solid[0] && !from->solid;
+    if (is_clear)
+        return spectrum_fill(1.0f);
     const ray r = hit_ray_to(from, direction, distance);
     return participating_transmittance(s, r, w) *
            scene_solid_transmittance(s, &r.media, distance, w);

@@ -115,9 +115,7 @@ shape_sample shape_sample_area(const shape *s, float u_primitive, vec2 u)
     return s->kind->sample_area(s->self, u_primitive, u);
 }
 
-/* pdf_area to pdf_solid_angle at ref; 0 where the surface is seen edge on or from itself.
- */
-static float to_solid_angle(float pdf_area, vec3 ref, vec3 p, vec3 n)
+float shape_to_solid_angle(float pdf_area, vec3 ref, vec3 p, vec3 n)
 {
     vec3 d = p - ref;
     float distance2 = length3_2(d);
@@ -132,7 +130,7 @@ bool shape_sample_toward(const shape *s, vec3 ref, float u_primitive, vec2 u,
     if (s->kind->sample_toward)
         return s->kind->sample_toward(s->self, ref, u_primitive, u, out);
     *out = shape_sample_area(s, u_primitive, u);
-    out->pdf = to_solid_angle(out->pdf, ref, out->p, out->n);
+    out->pdf = shape_to_solid_angle(out->pdf, ref, out->p, out->n);
     return out->pdf > 0.0f;
 }
 
@@ -140,5 +138,5 @@ float shape_pdf_toward(const shape *s, vec3 ref, const surface_hit *hit)
 {
     if (s->kind->pdf_toward)
         return s->kind->pdf_toward(s->self, ref, hit);
-    return to_solid_angle(1.0f / s->area, ref, hit->p, hit->n_geom);
+    return shape_to_solid_angle(1.0f / s->area, ref, hit->p, hit->n_geom);
 }

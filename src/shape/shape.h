@@ -123,6 +123,10 @@ static inline float shape_opacity(const shape *s, const surface_hit *hit)
  * given attempt, made from u. */
 vec2 shape_retry(vec2 u, uint64_t attempt, float *third);
 
+/** @brief pdf_area to pdf_solid_angle at ref; 0 where the surface, with normal n at p, is
+ * seen edge on or from itself. */
+float shape_to_solid_angle(float pdf_area, vec3 ref, vec3 p, vec3 n);
+
 /** @brief Uniform by area; pdf per area. */
 shape_sample shape_sample_area(const shape *s, float u_primitive, vec2 u);
 /** @brief Toward ref; pdf per solid angle. false: cannot be seen from there. */

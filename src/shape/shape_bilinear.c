@@ -6,11 +6,13 @@
  *
  * A point is drawn uniformly by area: a patch by its area, a place in (u, v) by rejection
  * against the area element, which accepts at once where the patch is a parallelogram.
+ * Toward a point a single patch that is a rectangle is sampled as one (rectangle.h).
  */
 #include "base/memory.h"
 #include "math/distribution.h"
 #include "shape/mesh_params.h"
 #include "shape/patch.h"
+#include "shape/rectangle.h"
 #include "shape/shape_kinds.h"
 
 #include <glib.h>
@@ -24,6 +26,8 @@ typedef struct bilinear_mesh {
     uint32_t *indices;
     bool flip; /* without normals */
     distribution areas;
+    bool is_rectangle;
+    rectangle rectangle; /* if it is one */
 } bilinear_mesh;
 
 static void free_mesh(void *self)
@@ -106,6 +110,15 @@ static bool init_areas(bilinear_mesh *m, const params *p, GError **error)
     return done;
 }
 
+static void find_rectangle(bilinear_mesh *m)
+{
+    vec3 p[4];
+    for (int i = 0; i < 4; i++)
+        p[i] = load3(m->positions, m->indices[i]);
+    m->is_rectangle = m->n_patches == 1 &&
+                      rectangle_from_corners(p[0], p[1], p[2], p[3], &m->rectangle);
+}
+
 /* pbrt draws points by that image; here the light's own image tells. */
 static bool check_emission(const params *p, GError **error)
 {
@@ -118,8 +131,10 @@ static void *create(const params *p, const shape_place *at, GError **error)
     bilinear_mesh *m = g_new0(bilinear_mesh, 1);
     m->flip = at->reverse_orientation != transform_swaps_handedness(&at->to_world);
     if (check_emission(p, error) && read_mesh(m, p, error) &&
-        move_to_world(m, at, p, error) && init_areas(m, p, error))
+        move_to_world(m, at, p, error) && init_areas(m, p, error)) {
+        find_rectangle(m);
         return m;
+    }
     free_mesh(m);
     return NULL;
 }
@@ -248,6 +263,18 @@ static float area(const void *self)
     return (float)distribution_total(&((const bilinear_mesh *)self)->areas);
 }
 
+static shape_sample sample_at(const bilinear_mesh *m, size_t i, const patch *s, vec2 u)
+{
+    const double at[2] = {(double)u.x, (double)u.y};
+    const uint32_t *vertex = m->indices + 4 * i;
+    vec3 ignored, tangents[2];
+    return (shape_sample){.p = dvec3_to_float(patch_point(s, at[0], at[1])),
+                          .n = normal_of(m, vertex, s, at, &ignored),
+                          .uv = uv_of(m, vertex, s, at, tangents),
+                          .primitive = (uint32_t)i,
+                          .pdf = 1.0f / area(m)};
+}
+
 static shape_sample sample_area(const void *self, float u_primitive, vec2 u)
 {
     const bilinear_mesh *m = self;
@@ -261,14 +288,32 @@ static shape_sample sample_area(const void *self, float u_primitive, vec2 u)
             break;
         u = shape_retry(u, attempt, &keep);
     }
-    const double at[2] = {(double)u.x, (double)u.y};
-    const uint32_t *vertex = m->indices + 4 * i;
-    vec3 ignored, tangents[2];
-    return (shape_sample){.p = dvec3_to_float(patch_point(&s, at[0], at[1])),
-                          .n = normal_of(m, vertex, &s, at, &ignored),
-                          .uv = uv_of(m, vertex, &s, at, tangents),
-                          .primitive = (uint32_t)i,
-                          .pdf = 1.0f / area(self)};
+    return sample_at(m, i, &s, u);
+}
+
+static bool sample_toward(const void *self, vec3 ref, float u_primitive, vec2 u,
+                          shape_sample *out)
+{
+    const bilinear_mesh *m = self;
+    if (m->is_rectangle) {
+        const seen_rectangle seen = rectangle_seen_from(&m->rectangle, ref);
+        const patch s = patch_of(m, 0);
+        *out = sample_at(m, 0, &s, rectangle_sample(&seen, u));
+        out->pdf = rectangle_pdf(&m->rectangle, &seen, ref, out->p);
+    } else {
+        *out = sample_area(self, u_primitive, u);
+        out->pdf = shape_to_solid_angle(out->pdf, ref, out->p, out->n);
+    }
+    return out->pdf > 0.0f;
+}
+
+static float pdf_toward(const void *self, vec3 ref, const surface_hit *hit)
+{
+    const bilinear_mesh *m = self;
+    if (!m->is_rectangle)
+        return shape_to_solid_angle(1.0f / area(self), ref, hit->p, hit->n_geom);
+    const seen_rectangle seen = rectangle_seen_from(&m->rectangle, ref);
+    return rectangle_pdf(&m->rectangle, &seen, ref, hit->p);
 }
 
 const shape_kind shape_bilinear = {
@@ -284,4 +329,6 @@ const shape_kind shape_bilinear = {
     .fill_hit = fill_hit,
     .area = area,
     .sample_area = sample_area,
+    .sample_toward = sample_toward,
+    .pdf_toward = pdf_toward,
 };

@@ -17,10 +17,12 @@
  *
  * Toward a point a triangle is chosen by area, then sampled uniformly by solid angle; one
  * that looks tiny or fills nearly the hemisphere by area, where the former loses digits.
+ * Two triangles that are a rectangle are sampled as one (rectangle.h).
  */
 #include "base/memory.h"
 #include "shape/mesh_params.h"
 #include "shape/mesh_triangle.h"
+#include "shape/rectangle.h"
 #include "shape/shape_kinds.h"
 
 #include "math/distribution.h"
@@ -36,6 +38,8 @@ typedef struct mesh_shape {
     distribution areas;
     vec3 *planes; /* per triangle: unit normal as the corners turn, and in the unused lane
                      1 / |e1 x e2|, which tells slivers */
+    bool is_rectangle;
+    mesh_rectangle rectangle; /* if it is one */
 } mesh_shape;
 
 /* ---- Building ---- */
@@ -130,6 +134,7 @@ static bool init_triangles(mesh_shape *s, GError **error)
         s->planes[i] = plane_of(&t);
     }
     bool done = s->planes && distribution_init(&s->areas, areas, n, error);
+    s->is_rectangle = mesh_rectangle_find(&s->m, &s->rectangle);
     big_free(areas);
     return done;
 }
@@ -400,10 +405,23 @@ static float pdf_of(const mesh_shape *s, const triangle *t, double solid_angle, 
     return isfinite(pdf) ? (float)pdf : 0.0f;
 }
 
+static bool sample_rectangle(const mesh_shape *s, vec3 ref, vec2 u, shape_sample *out)
+{
+    const rectangle *whole = &s->rectangle.whole;
+    const seen_rectangle seen = rectangle_seen_from(whole, ref);
+    double b[3];
+    int primitive = mesh_rectangle_weights(&s->rectangle, rectangle_sample(&seen, u), b);
+    *out = sample_at(s, (size_t)primitive, b);
+    out->pdf = rectangle_pdf(whole, &seen, ref, out->p);
+    return out->pdf > 0.0f;
+}
+
 static bool sample_toward(const void *self, vec3 ref, float u_primitive, vec2 u,
                           shape_sample *out)
 {
     const mesh_shape *s = self;
+    if (s->is_rectangle)
+        return sample_rectangle(s, ref, u, out);
     size_t primitive = distribution_sample(&s->areas, &u_primitive);
     triangle t;
     triangle_get(&s->m, primitive, &t);
@@ -421,6 +439,10 @@ static bool sample_toward(const void *self, vec3 ref, float u_primitive, vec2 u,
 static float pdf_toward(const void *self, vec3 ref, const surface_hit *hit)
 {
     const mesh_shape *s = self;
+    if (s->is_rectangle) {
+        const seen_rectangle seen = rectangle_seen_from(&s->rectangle.whole, ref);
+        return rectangle_pdf(&s->rectangle.whole, &seen, ref, hit->p);
+    }
     triangle t;
     triangle_get(&s->m, hit->primitive, &t);
     return pdf_of(s, &t, triangle_seen_from(&t, ref).solid_angle, ref, hit->p,

@@ -95,7 +95,9 @@ static view *load_shown(const char *middle, const float texels[12])
 static scene *load(const char *middle, const float texels[12])
 {
     view *v = load_shown(middle, texels);
-    scene *s = g_steal_pointer(&v->owned);
+    scene *s = g_steal_pointer(&v->owned); /* with which the view would free these */
+    filter_clear(&v->filter);
+    g_free(v->film.filename);
     view_free(v);
     return s;
 }

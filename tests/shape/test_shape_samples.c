@@ -177,6 +177,103 @@ static void test_solid_angles(void)
     shape_free(square_shape);
 }
 
+/* ---- Rectangles ---- */
+
+/* That the part of a rectangle in its own axes fills, seen from the origin, z off. */
+static double angle_of_part(double x0, double x1, double y0, double y1, double z)
+{
+    const double x[2] = {x0, x1}, y[2] = {y0, y1};
+    double sum = 0;
+    for (int i = 0; i < 4; i++) {
+        double a = x[i & 1], b = y[i >> 1];
+        sum += (i == 0 || i == 3 ? 1 : -1) * atan2(a * b, z * sqrt(a * a + b * b + z * z));
+    }
+    return sum;
+}
+
+/* Samples of the square [-1, 1]² toward ref are uniform by solid angle. */
+static void check_rectangle(const shape *s, vec3 ref)
+{
+    enum { N = 20000 };
+    unsigned count[BINS * BINS] = {0};
+    double x = (double)ref[0], y = (double)ref[1], z = (double)ref[2], chi2 = 0;
+    double whole = angle_of_part(-1 - x, 1 - x, -1 - y, 1 - y, z);
+    for (uint32_t n = 0; n < N; n++) {
+        sampler random = sampler_make(71, n);
+        random.dimension = 40;
+        shape_sample to;
+        vec2 u = sampler_2d(&random);
+        g_assert_true(shape_sample_toward(s, ref, sampler_1d(&random), u, &to));
+        g_assert_cmpfloat(fabs((double)to.pdf * whole - 1), <, 1e-5);
+        g_assert_cmpfloat(fabsf(to.n[2] - 1), <, 1e-6f);
+        const surface_hit hit = {.p = to.p, .n_geom = to.n, .primitive = to.primitive};
+        g_assert_cmpfloat(fabsf(shape_pdf_toward(s, ref, &hit) / to.pdf - 1), <, 1e-6f);
+        count[bin_of(0.5f + 0.5f * to.p[0]) * BINS + bin_of(0.5f + 0.5f * to.p[1])]++;
+    }
+    for (int i = 0; i < BINS * BINS; i++) {
+        double a = -1 + i / BINS * 2.0 / BINS - x, b = -1 + i % BINS * 2.0 / BINS - y;
+        double mean = N * angle_of_part(a, a + 2.0 / BINS, b, b + 2.0 / BINS, z) / whole;
+        chi2 += (count[i] - mean) * (count[i] - mean) / mean;
+    }
+    g_assert_cmpfloat(chi2, <, chi2_limit(BINS * BINS - 1));
+}
+
+static shape *two_triangles(const int indices[6])
+{
+    static const float points[18] = {-1, -1, 0, 1, -1, 0, 1, 1, 0,
+                                     -1, 1,  0, 1, 1,  0, -1, -1, 0};
+    const shape_place at = {.to_world = transform_identity()};
+    g_autoptr(params) p = params_new(here, "/", NULL);
+    params_add_numbers(p, here, PARAM_POINT3, "P", points, 18, NULL);
+    params_add_integers(p, here, PARAM_INTEGER, "indices", indices, 6, NULL);
+    return shape_new("trianglemesh", p, &at, NULL);
+}
+
+static shape *square_patch(void)
+{
+    static const float points[12] = {-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0};
+    const shape_place at = {.to_world = transform_identity()};
+    g_autoptr(params) p = params_new(here, "/", NULL);
+    params_add_numbers(p, here, PARAM_POINT3, "P", points, 12, NULL);
+    return shape_new("bilinearmesh", p, &at, NULL);
+}
+
+static void test_rectangle_samples(void)
+{
+    /* whichever corner comes first, and whether they share vertices or only places */
+    static const int indices[4][6] = {
+        {0, 1, 2, 0, 2, 3}, {2, 0, 1, 3, 0, 2}, {1, 2, 0, 4, 3, 5}, {3, 0, 1, 2, 3, 1}};
+    const vec3 refs[4] = {vec3_make(0.2f, -0.1f, 0.3f), vec3_make(0.5f, 0.9f, 3.0f),
+                          vec3_make(1.5f, 0.3f, 0.05f), vec3_make(2.5f, -3.0f, 0.8f)};
+    for (int i = 0; i < 5; i++) {
+        shape *s = i < 4 ? two_triangles(indices[i]) : square_patch();
+        for (int k = 0; k < 4; k++)
+            check_rectangle(s, refs[k]);
+        shape_free(s);
+    }
+}
+
+/* Triangles that face two ways are no rectangle: each keeps its own normal. */
+static void test_folded_is_no_rectangle(void)
+{
+    static const int indices[6] = {0, 1, 2, 0, 3, 2};
+    shape *s = two_triangles(indices);
+    unsigned n_up = 0;
+    for (uint32_t n = 0; n < 64; n++) {
+        sampler random = sampler_make(81, n);
+        shape_sample to;
+        vec2 u = sampler_2d(&random);
+        float u_primitive = sampler_1d(&random);
+        g_assert_true(
+            shape_sample_toward(s, vec3_make(0, 0, 0.5f), u_primitive, u, &to));
+        g_assert_true((to.n[2] > 0) == (to.primitive == 0));
+        n_up += to.n[2] > 0;
+    }
+    g_assert_cmpuint(n_up, >, 16);
+    g_assert_cmpuint(n_up, <, 48);
+    shape_free(s);
+}
+
 /* Toward a sphere, a ray in the sampled direction first meets the sampled point. */
 static void test_sphere_samples_are_seen(void)
 {
@@ -207,6 +304,8 @@ int main(int argc, char **argv)
     g_test_add_func("/shape-samples/area", test_area_and_uniform_samples);
     g_test_add_func("/shape-samples/mesh/samples", test_mesh_samples_are_uniform);
     g_test_add_func("/shape-samples/solid-angle", test_solid_angles);
+    g_test_add_func("/shape-samples/rectangle", test_rectangle_samples);
+    g_test_add_func("/shape-samples/rectangle/folded", test_folded_is_no_rectangle);
     g_test_add_func("/shape-samples/sphere/seen", test_sphere_samples_are_seen);
     return g_test_run();
 }
