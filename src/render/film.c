@@ -96,8 +96,7 @@ film_pass film_pass_for(const film *f, const wavelengths *w)
                        f->most > 0.0f ? f->most / f->scale : INFINITY};
 }
 
-/* What radiance must be scaled by so as not to be brighter than allowed. */
-static float dimming(const film_pass *pass, spectrum radiance)
+float film_dimming(const film_pass *pass, spectrum radiance)
 {
     float xyz[3];
     if (isinf(pass->most))
@@ -107,10 +106,13 @@ static float dimming(const film_pass *pass, spectrum radiance)
     return largest > pass->most ? pass->most / largest : 1.0f;
 }
 
+/* Most layers of a sample are black. */
 static void add_color(double sum[3], const wavelengths *w, spectrum radiance,
                       float weight)
 {
     float xyz[3];
+    if (spectrum_is_black(radiance))
+        return;
     spectrum_to_xyz(w, radiance, xyz);
     for (int i = 0; i < 3; i++)
         sum[i] += (double)(xyz[i] * weight);
@@ -122,7 +124,7 @@ float film_add(film_sum *sum, const film_pass *pass, const radiance_sample *samp
     spectrum all = {0};
     for (int i = 0; i < N_LAYERS; i++)
         all += sample->layers[i];
-    float dimmed = dimming(pass, all);
+    float dimmed = film_dimming(pass, all);
     for (int i = 0; i < N_LAYERS; i++)
         add_color(sum->color[i], pass->w, sample->layers[i], weight * dimmed);
     sum->weight += (double)weight;
@@ -162,57 +164,6 @@ void film_put(film *f, int x, int y, const film_sum *sum)
     const double *number = (const double *)sum;
     for (int k = 0; k < FILM_NUMBERS; k++)
         f->pass[i].number[k] = (float)number[k];
-}
-
-/* A pixel's sums are still to be divided by its weight, so a splat is multiplied by it.
- */
-static void add_splat_to(pass_pixel *pixel, const float xyz[3], radiance_layer layer,
-                         float share)
-{
-    float weight = pixel->number[offsetof(film_sum, weight) / sizeof(double)];
-    float *color =
-        &pixel->number[offsetof(film_sum, color) / sizeof(double) + 3 * (size_t)layer];
-    for (int i = 0; i < 3; i++)
-        color[i] += xyz[i] * share * weight;
-}
-
-static void add_splat_to_group(film *f, size_t pixel, const float xyz[3], int group,
-                               float share)
-{
-    float weight = f->pass[pixel].number[offsetof(film_sum, weight) / sizeof(double)];
-    float *to = f->pass_groups + group_offset(f, pixel) + 3 * (size_t)group;
-    for (int i = 0; i < 3; i++)
-        to[i] += xyz[i] * share * weight;
-}
-
-static void add_splat(film *f, const film_pass *pass, const pixel_filter *filter,
-                      const splat *s)
-{
-    float xyz[3];
-    spectrum_to_xyz(pass->w, s->value * dimming(pass, s->value), xyz);
-    /* Pixels whose centres are within the filter's radius. */
-    vec2 at = {s->raster.x - 0.5f, s->raster.y - 0.5f};
-    int x0 = MAX((int)ceilf(at.x - filter->x_radius), f->x0);
-    int x1 = MIN((int)floorf(at.x + filter->x_radius), f->x0 + f->width - 1);
-    int y0 = MAX((int)ceilf(at.y - filter->y_radius), f->y0);
-    int y1 = MIN((int)floorf(at.y + filter->y_radius), f->y0 + f->height - 1);
-    for (int y = y0; y <= y1; y++) {
-        for (int x = x0; x <= x1; x++) {
-            size_t i = (size_t)(y - f->y0) * (size_t)f->width + (size_t)(x - f->x0);
-            vec2 offset = {at.x - (float)x, at.y - (float)y};
-            float share = filter_density(filter, offset);
-            add_splat_to(&f->pass[i], xyz, s->layer, share);
-            if (f->n_groups > 0)
-                add_splat_to_group(f, i, xyz, s->group, share);
-        }
-    }
-}
-
-void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
-                     splat_list splats)
-{
-    for (size_t i = 0; i < splats.n; i++)
-        add_splat(f, pass, filter, &splats.splats[i]);
 }
 
 /* Of the beauty image, not yet divided by the weight. */

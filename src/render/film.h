@@ -96,6 +96,9 @@ typedef struct film_pass {
 
 film_pass film_pass_for(const film *f, const wavelengths *w);
 
+/** @brief What radiance must be scaled by so as not to be brighter than allowed. */
+float film_dimming(const film_pass *pass, spectrum radiance);
+
 /** @brief Adds a sample to the sum of a pixel. @return what it was scaled by, 1 unless it
  * was brighter than allowed */
 float film_add(film_sum *sum, const film_pass *pass, const radiance_sample *sample,
@@ -105,9 +108,9 @@ void film_put(film *f, int x, int y, const film_sum *sum);
 /** @brief The same for what the light groups gave: Σ of weighed radiance, n_groups. */
 void film_put_groups(film *f, const film_pass *pass, int x, int y, const spectrum *sums);
 /** @brief Adds what the pass brought from the lights to pixels that are all put, splat by
- * splat in their order, by the pixel filter. */
+ * splat in their order, by the pixel filter: the same bits on any number of threads. */
 void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
-                     splat_list splats);
+                     splat_list splats, unsigned threads);
 /** @brief When a pixel of the whole picture comes where a pass is rendered in parts,
  * 0..FILM_CELLS - 1: after 1, 4, 16 and 64 cells a grid of every 8th, 4th, 2nd and every
  * pixel is whole, and in between what there is lies evenly. */

@@ -6,13 +6,11 @@
 
 int film_cell(const film *f, int x, int y)
 {
-    static const int within[2][2] = {{0, 2}, {3, 1}}; /* [y][x]: the far corner second */
-    int cell = 0;
-    x -= f->x0;
-    y -= f->y0;
-    for (int step = 1; step < FILM_COARSE; step *= 2)
-        cell = 4 * cell + within[y / step % 2][x / step % 2];
-    return cell;
+    static const unsigned within[2][2] = {{0, 2}, {3, 1}}; /* [y][x]: the far corner second */
+    unsigned cell = 0, column = (unsigned)(x - f->x0), row = (unsigned)(y - f->y0);
+    for (int step = 1; step < FILM_COARSE; step *= 2, column /= 2, row /= 2)
+        cell = 4 * cell + within[row % 2][column % 2];
+    return (int)cell;
 }
 
 bool film_pass_counts(const film *f, size_t pixel)

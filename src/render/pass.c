@@ -189,7 +189,8 @@ static void add_splats(render *r, const void *pass)
     if (!r->transport->splats)
         return;
     film_pass colors = film_pass_for(&r->film, r->transport->pass_wavelengths(pass));
-    film_add_splats(&r->film, &colors, &r->plan.view->filter, r->transport->splats(pass));
+    film_add_splats(&r->film, &colors, &r->plan.view->filter, r->transport->splats(pass),
+                    r->n_threads);
 }
 
 static void note_pass(render *r, double photons_done)

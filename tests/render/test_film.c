@@ -6,6 +6,7 @@
 #include "rooms.h"
 
 #include "color/balance.h"
+#include "render/film.h"
 
 static view *wall(const char *film_text, const char *camera_text)
 {
@@ -218,6 +219,57 @@ static void test_cameras_agree(void)
     g_assert_nonnull(strstr(error->message, "orthographic"));
 }
 
+/* ---- Splats ---- */
+
+/* Some on the film and some beside it, several of the loop's pieces of them. */
+static splat *some_splats(size_t n)
+{
+    splat *splats = g_aligned_alloc0(n, sizeof *splats, 64);
+    for (size_t i = 0; i < n; i++) {
+        sampler random = sampler_make(91, i);
+        random.dimension = 40;
+        vec2 u = sampler_2d(&random);
+        splats[i] = (splat){.value = spectrum_fill(sampler_1d(&random)),
+                            .raster = {46.0f * u.x - 3.0f, 43.0f * u.y - 3.0f},
+                            .layer = (radiance_layer)(i % N_LAYERS)};
+    }
+    return splats;
+}
+
+static void add_splats(film *f, const view *v, splat_list splats, unsigned threads)
+{
+    const wavelengths w = wavelengths_at(0.25f);
+    g_assert_true(film_open(f, v, false, NULL));
+    for (int i = 0; i < f->width * f->height; i++) {
+        const film_sum sum = {.weight = 1.0 + 0.125 * (i % 3)};
+        film_put(f, i % f->width, i / f->width, &sum);
+    }
+    film_pass pass = film_pass_for(f, &w);
+    film_add_splats(f, &pass, &v->filter, splats, threads);
+}
+
+/* Each pixel's are added in their order, whoever adds them. */
+static void test_splats_on_any_number_of_threads(void)
+{
+    enum { N = 50000 };
+    g_autoptr(view) v = view_of("Film \"rgb\" \"integer xresolution\" 40 \"integer "
+                                "yresolution\" 37\nPixelFilter \"gaussian\"\nCamera "
+                                "\"perspective\"\nWorldBegin\n");
+    splat *splats = some_splats(N);
+    const splat_list list = {splats, N};
+    film one;
+    add_splats(&one, v, list, 1);
+    size_t size = (size_t)one.width * (size_t)one.height * sizeof *one.pass;
+    for (unsigned threads = 2; threads <= 5; threads += 3) {
+        film many;
+        add_splats(&many, v, list, threads);
+        g_assert_cmpint(memcmp(one.pass, many.pass, size), ==, 0);
+        film_clear(&many);
+    }
+    film_clear(&one);
+    g_aligned_free(splats);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -228,5 +280,6 @@ int main(int argc, char **argv)
     g_test_add_func("/film/gbuffer/noise", test_gbuffer_noise);
     g_test_add_func("/film/gbuffer/file", test_gbuffer_file);
     g_test_add_func("/film/cameras", test_cameras_agree);
+    g_test_add_func("/film/splats", test_splats_on_any_number_of_threads);
     return g_test_run();
 }

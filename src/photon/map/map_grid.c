@@ -21,16 +21,25 @@
  * Block Hashing", 2002.
  */
 #include "base/memory.h"
+#include "base/parallel.h"
+#include "math/box.h"
 #include "math/sampler.h"
 #include "photon/map/cell_sort.h"
 #include "photon/map/index_kind.h"
 #include "photon/map/nearest.h"
 
+#include <float.h>
+
 enum {
     MAX_CELLS_AN_AXIS = 1 << 20, /* size: their numbers are exact in floats */
     MIN_SLOTS = 1 << 12,         /* size: of the smallest table */
     MAX_HASHED_ROWS = 256,       /* size: a query that meets more looks at all points */
+    MOST_RADII = 4,              /* size: a cell may be wide */
+    POINTS_A_CELL = 4,           /* size: where no radius is known */
 };
+
+/* size: steps in which the width of cells is tried */
+#define CELL_STEP 1.0625f
 
 typedef struct grid {
     vec3 low, high; /* of the points */
@@ -75,15 +84,39 @@ static size_t slot_of_point(size_t i, const void *data)
 
 /* ---- Building ---- */
 
-static void find_bounds(grid *g, const point_arrays *s)
+typedef struct bounds_loop {
+    const point_arrays *points;
+    box3 *boxes; /* of each chunk */
+} bounds_loop;
+
+static void bound_chunk(size_t begin, size_t end, unsigned thread, void *data)
 {
-    g->low = vec3_make(INFINITY, INFINITY, INFINITY);
-    g->high = -g->low;
-    for (size_t i = 0; i < s->n; i++) {
+    (void)thread;
+    const bounds_loop *loop = data;
+    const point_arrays *s = loop->points;
+    box3 box = box3_empty();
+    for (size_t i = begin; i < end; i++) {
         vec3 p = vec3_make(s->x[i], s->y[i], s->z[i]);
-        g->low = min3(p, g->low); /* in this order a NaN changes nothing */
-        g->high = max3(p, g->high);
+        box.low = min3(p, box.low); /* in this order a NaN changes nothing */
+        box.high = max3(p, box.high);
     }
+    loop->boxes[begin / ITEMS_AT_ONCE] = box;
+}
+
+static bool find_bounds(grid *g, const point_arrays *s, unsigned threads, GError **error)
+{
+    size_t n_chunks = (s->n + ITEMS_AT_ONCE - 1) / ITEMS_AT_ONCE;
+    box3 all = box3_empty();
+    bounds_loop loop = {s, big_alloc(n_chunks, sizeof(box3), "grid of points", error)};
+    if (!loop.boxes)
+        return false;
+    parallel_for(s->n, ITEMS_AT_ONCE, threads, NULL, bound_chunk, &loop);
+    for (size_t i = 0; i < n_chunks; i++)
+        all = box3_union(all, loop.boxes[i]);
+    big_free(loop.boxes);
+    g->low = all.low;
+    g->high = all.high;
+    return true;
 }
 
 static double count_cells(grid *g, float cell)
@@ -101,10 +134,10 @@ static double count_cells(grid *g, float cell)
 }
 
 /* Chooses the width of cells for a radius; returns their number, which is above `most`
- * only if four times the width would not help. */
+ * only if MOST_RADII would not help. */
 static double choose_cell(grid *g, float radius, double most)
 {
-    for (float cell = radius; cell < 4.0f * radius; cell *= 1.0625f) {
+    for (float cell = radius; cell < MOST_RADII * radius; cell *= CELL_STEP) {
         double cells = count_cells(g, cell);
         if (cells <= most)
             return cells;
@@ -112,12 +145,13 @@ static double choose_cell(grid *g, float radius, double most)
     return count_cells(g, radius);
 }
 
-/* The same when no radius is known: a cell for every four points. */
+/* The same when no radius is known. */
 static double choose_cell_by_density(grid *g, float extent, size_t n)
 {
     float cell = extent;
-    while (count_cells(g, cell) < 0.25 * (double)n && cell > extent / MAX_CELLS_AN_AXIS)
-        cell *= 0.84f;
+    while (count_cells(g, cell) < (double)n / POINTS_A_CELL &&
+           cell > extent / MAX_CELLS_AN_AXIS)
+        cell /= CELL_STEP;
     return count_cells(g, cell);
 }
 
@@ -133,7 +167,7 @@ static size_t power_of_two_at_most(size_t n)
 static void shape_grid(grid *g, size_t n, float radius)
 {
     size_t most = MAX(n, MIN_SLOTS);
-    float extent = fmaxf(max_component3(g->high - g->low), 1e-20f);
+    float extent = fmaxf(max_component3(g->high - g->low), FLT_MIN);
     double cells =
         radius > 0.0f
             ? choose_cell(g, fmaxf(radius, extent / MAX_CELLS_AN_AXIS), (double)most)
@@ -155,7 +189,8 @@ static size_t *grid_sort(point_index *index, float radius, unsigned threads,
     grid *g = index->structure = big_alloc(1, sizeof *g, "grid of points", error);
     if (!g)
         return NULL;
-    find_bounds(g, &index->points);
+    if (!find_bounds(g, &index->points, threads, error))
+        return NULL;
     shape_grid(g, index->points.n, radius);
     g->start = big_alloc(g->n_slots + 1, sizeof *g->start, "grid of points", error);
     if (!g->start)
@@ -280,7 +315,7 @@ static void nearest_runs(const point_run *runs, size_t n, void *data)
 static float radius_of_all(const grid *g, vec3 p)
 {
     vec3 reach = max3(abs3(p - g->low), abs3(p - g->high));
-    return 1.001f * length3(reach);
+    return 2.0f * length3(reach);
 }
 
 /* A first radius, from the number of points in the cells around p, taken to lie on a
@@ -296,15 +331,8 @@ static float guess_radius(const point_index *index, vec3 p, size_t k, float larg
             break;
     }
     float side = 2.0f * radius + g->cell;
-    float wanted = 1.5f * (float)k / (float)MAX(found, 1);
+    float wanted = 1.5f * (float)k / (float)MAX(found, 1); /* size: of the search */
     return fminf(side * sqrtf(INV_PI_F * wanted), largest);
-}
-
-/* The next radius to try when the last one found only n. */
-static float grow_radius(float radius, size_t n, size_t k)
-{
-    float wanted = 1.5f * (float)k / (float)MAX(n, 1);
-    return radius * clampf(sqrtf(wanted), 1.25f, 3.0f);
 }
 
 /* Searches shells growing outwards until k points are within the radius searched. */
@@ -318,7 +346,7 @@ static bool grid_nearest(const point_index *index, const point_query *query, siz
     float all = radius_of_all(g, query->p);
     float largest = all < radius ? all : radius;
     float r = guess_radius(index, query->p, k, largest);
-    for (;; r = grow_radius(r, hits->n, k)) {
+    for (;; r *= 2.0f) {
         bool last = !(r < largest);
         nearest_restart(&set, last ? radius : r);
         grid_runs(index, query->p, last ? radius : r, nearest_runs, &set);
