@@ -1,5 +1,7 @@
 #include "math/sampler.h"
 
+#include <string.h>
+
 /* Past this dimension points are hashed: deep bounces gain nothing from stratification.
  */
 enum { SOBOL_DIMENSIONS = 32 };
@@ -53,6 +55,19 @@ static float scrambled(uint32_t reversed, uint32_t seed)
     return to_unit(reverse_bits(laine_karras(reversed, seed)));
 }
 
+/* Where what a stream draws in these dimensions was computed ahead, if it draws them as
+   was foreseen. NULL: it was not. */
+static const float *known(const sampler *s, uint32_t dimension)
+{
+    return s->ahead && s->dimension == dimension
+               ? &s->ahead->number[dimension][s->index - s->ahead->first]
+               : NULL;
+}
+
+/* The first dimensions that sampler_light, sampler_2d and sampler_scatter draw behind one
+   another. */
+enum { AHEAD_LIGHT = 0, AHEAD_2D = 4, AHEAD_SCATTER = 6 };
+
 float sampler_1d(sampler *s)
 {
     uint64_t h = hash_mix(s->key, s->dimension++);
@@ -64,6 +79,11 @@ float sampler_1d(sampler *s)
 
 vec2 sampler_2d(sampler *s)
 {
+    const float *ahead = known(s, AHEAD_2D);
+    if (ahead) {
+        s->dimension += 2;
+        return (vec2){ahead[0], ahead[AHEAD_STREAMS]};
+    }
     uint64_t h = hash_mix(s->key, s->dimension);
     s->dimension += 2;
     if (s->dimension > SOBOL_DIMENSIONS) {
@@ -132,6 +152,12 @@ static floats4 four_numbers(uint32_t index, const uint64_t hash[4], words4 secon
 scatter_numbers sampler_scatter(sampler *s)
 {
     uint32_t d = s->dimension;
+    const float *u = known(s, AHEAD_SCATTER);
+    if (u) {
+        enum { NEXT = AHEAD_STREAMS };
+        s->dimension += 4;
+        return (scatter_numbers){u[0], {u[NEXT], u[2 * NEXT]}, u[3 * NEXT]};
+    }
     if (d + 4 > SOBOL_DIMENSIONS) {
         float lobe = sampler_1d(s);
         vec2 direction = sampler_2d(s);
@@ -140,13 +166,19 @@ scatter_numbers sampler_scatter(sampler *s)
     s->dimension += 4;
     uint64_t pair = hash_mix(s->key, d + 1);
     const uint64_t hash[4] = {hash_mix(s->key, d), pair, pair, hash_mix(s->key, d + 3)};
-    floats4 u = four_numbers(s->index, hash, (words4){0, 0, ~0u, 0});
-    return (scatter_numbers){u[0], {u[1], u[2]}, u[3]};
+    floats4 four = four_numbers(s->index, hash, (words4){0, 0, ~0u, 0});
+    return (scatter_numbers){four[0], {four[1], four[2]}, four[3]};
 }
 
 light_numbers sampler_light(sampler *s)
 {
     uint32_t d = s->dimension;
+    const float *u = known(s, AHEAD_LIGHT);
+    if (u) {
+        enum { NEXT = AHEAD_STREAMS };
+        s->dimension += 4;
+        return (light_numbers){u[0], u[NEXT], {u[2 * NEXT], u[3 * NEXT]}};
+    }
     if (d + 4 > SOBOL_DIMENSIONS) {
         float light = sampler_1d(s), primitive = sampler_1d(s);
         return (light_numbers){light, primitive, sampler_2d(s)};
@@ -154,6 +186,65 @@ light_numbers sampler_light(sampler *s)
     s->dimension += 4;
     uint64_t pair = hash_mix(s->key, d + 2);
     const uint64_t hash[4] = {hash_mix(s->key, d), hash_mix(s->key, d + 1), pair, pair};
-    floats4 u = four_numbers(s->index, hash, (words4){0, 0, 0, ~0u});
-    return (light_numbers){u[0], u[1], {u[2], u[3]}};
+    floats4 four = four_numbers(s->index, hash, (words4){0, 0, 0, ~0u});
+    return (light_numbers){four[0], four[1], {four[2], four[3]}};
+}
+
+/* ---- Streams side by side, the same to the bit ---- */
+
+typedef uint32_t words16 __attribute__((vector_size(4 * AHEAD_STREAMS)));
+typedef int32_t ints16 __attribute__((vector_size(4 * AHEAD_STREAMS)));
+typedef float floats16 __attribute__((vector_size(4 * AHEAD_STREAMS)));
+
+static inline words16 reverse_bits16(words16 x)
+{
+    x = (x >> 16) | (x << 16);
+    x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
+    x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+    x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+    return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+static inline words16 laine_karras16(words16 x, uint32_t seed)
+{
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+static inline words16 sobol_second_reversed16(words16 x)
+{
+    x ^= x >> 16;
+    x ^= (x & 0xff00ff00u) >> 8;
+    x ^= (x & 0xf0f0f0f0u) >> 4;
+    x ^= (x & 0xccccccccu) >> 2;
+    return x ^ (x & 0xaaaaaaaau) >> 1;
+}
+
+static inline void scrambled16(words16 reversed, uint32_t seed, float to[AHEAD_STREAMS])
+{
+    words16 bits = reverse_bits16(laine_karras16(reversed, seed));
+    floats16 u = __builtin_convertvector((ints16)(bits >> 8), floats16) * 0x1p-24f;
+    memcpy(to, &u, sizeof u);
+}
+
+void sampler_look_ahead(const sampler *s, sampler_ahead *out)
+{
+    static const bool is_pair[AHEAD_DIMENSIONS] = {[2] = true, [4] = true, [7] = true};
+    words16 index = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const words16 reversed = reverse_bits16(index + s->index);
+    out->key = s->key;
+    out->first = s->index;
+    for (uint32_t d = 0; d < AHEAD_DIMENSIONS; d++) {
+        uint64_t h = hash_mix(s->key, d);
+        uint32_t scramble = (uint32_t)(h >> 32);
+        words16 shuffled = reverse_bits16(laine_karras16(reversed, (uint32_t)h));
+        scrambled16(shuffled, scramble, out->number[d]);
+        if (is_pair[d])
+            scrambled16(sobol_second_reversed16(shuffled), scramble * 0x9e3779b9u + 1u,
+                        out->number[++d]);
+    }
 }

@@ -24,6 +24,7 @@ typedef struct sampler {
     uint64_t key;
     uint32_t index;
     uint32_t dimension;
+    const struct sampler_ahead *ahead; /**< borrowed; NULL: nothing is known ahead */
 } sampler;
 
 /** @brief A well-mixed 64-bit hash of two words (used to build keys). */
@@ -74,3 +75,22 @@ typedef struct light_numbers {
 
 /** @brief What sampler_1d, sampler_1d and sampler_2d give in turn, as above. */
 light_numbers sampler_light(sampler *s);
+
+/** @brief The first numbers of neighbouring streams, computed side by side: what
+ * sampler_light, sampler_2d and sampler_scatter give in turn. */
+enum { AHEAD_STREAMS = 16, AHEAD_DIMENSIONS = 10 };
+typedef struct sampler_ahead {
+    _Alignas(64) float number[AHEAD_DIMENSIONS][AHEAD_STREAMS];
+    uint64_t key;
+    uint32_t first; /**< index of the first stream */
+} sampler_ahead;
+
+/** @brief Computes those of s and of the streams behind it. */
+void sampler_look_ahead(const sampler *s, sampler_ahead *out);
+
+/** @brief Lets a stream use them, if it is one of those and has drawn nothing yet. */
+static inline void sampler_use_ahead(sampler *s, const sampler_ahead *ahead)
+{
+    if (s->key == ahead->key && s->index - ahead->first < AHEAD_STREAMS)
+        s->ahead = ahead;
+}

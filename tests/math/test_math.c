@@ -100,6 +100,39 @@ static void test_sampler_side_by_side_is_one_by_one(void)
     }
 }
 
+/* Numbers known ahead are those that a stream draws by itself; a stranger to them draws
+   its own. */
+static void test_sampler_ahead_is_as_drawn(void)
+{
+    const uint64_t firsts[3] = {0, 12345, UINT32_MAX - 5};
+    for (int i = 0; i < 3; i++) {
+        const sampler first = sampler_make(9, firsts[i]);
+        sampler_ahead ahead;
+        sampler_look_ahead(&first, &ahead);
+        for (uint64_t k = 0; k < 2 * AHEAD_STREAMS; k++) {
+            sampler one = sampler_make(9, firsts[i] + k), with = one;
+            sampler_use_ahead(&with, &ahead);
+            bool is_known = k < AHEAD_STREAMS && with.key == ahead.key;
+            g_assert_true((with.ahead == &ahead) == is_known);
+            light_numbers l = sampler_light(&one), m = sampler_light(&with);
+            vec2 u = sampler_2d(&one), v = sampler_2d(&with);
+            g_assert_true(same_bits(l.light, m.light));
+            g_assert_true(same_bits(l.primitive, m.primitive));
+            g_assert_true(same_bits(l.place.x, m.place.x));
+            g_assert_true(same_bits(l.place.y, m.place.y));
+            g_assert_true(same_bits(u.x, v.x) && same_bits(u.y, v.y));
+            for (int draw = 0; draw < 2; draw++) {
+                scatter_numbers s = sampler_scatter(&one), t = sampler_scatter(&with);
+                g_assert_true(same_bits(s.lobe, t.lobe));
+                g_assert_true(same_bits(s.roulette, t.roulette));
+                g_assert_true(same_bits(s.direction.x, t.direction.x));
+                g_assert_true(same_bits(s.direction.y, t.direction.y));
+            }
+            g_assert_cmpuint(one.dimension, ==, with.dimension);
+        }
+    }
+}
+
 static void test_sampler_is_uniform_and_uncorrelated(void)
 {
     enum { N = 1 << 14 };
@@ -255,6 +288,7 @@ int main(int argc, char **argv)
     g_test_add_func("/math/sampler/nets", test_sampler_pairs_are_nets);
     g_test_add_func("/math/sampler/side-by-side",
                     test_sampler_side_by_side_is_one_by_one);
+    g_test_add_func("/math/sampler/ahead", test_sampler_ahead_is_as_drawn);
     g_test_add_func("/math/sampler/uniform", test_sampler_is_uniform_and_uncorrelated);
     g_test_add_func("/math/warp/integrals", test_warps_integrate);
     g_test_add_func("/math/frame/orthonormal", test_frames_are_orthonormal);

@@ -19,12 +19,6 @@ void photon_path_tell_flux(const photon_path *path, photon_event_kind kind,
     path->tell(&event, path->tell_data);
 }
 
-void photon_path_tell(const photon_path *path, photon_event_kind kind,
-                      const surface_hit *hit, unsigned lobe)
-{
-    photon_path_tell_flux(path, kind, hit, lobe, path->at.throughput);
-}
-
 bool photon_path_goes_on(const photon_path *path)
 {
     const trace_task *task = path->task;

@@ -18,6 +18,7 @@
 typedef struct photon_path {
     const trace_task *task;
     uint64_t index;
+    const sampler_ahead *ahead; /* numbers that it starts with; NULL: none are known */
     sampler random;
     path_segment at;
     int light;
@@ -35,13 +36,17 @@ typedef struct photon_path {
     void *tell_data;
 } photon_path;
 
-/** @brief Tells what happened, at a hit or (NULL) where the path is. */
-void photon_path_tell(const photon_path *path, photon_event_kind kind,
-                      const surface_hit *hit, unsigned lobe);
-
-/** @brief The same of another flux than the path's. */
+/** @brief Tells who listens what happened, at a hit or (NULL) where the path is. */
 void photon_path_tell_flux(const photon_path *path, photon_event_kind kind,
                            const surface_hit *hit, unsigned lobe, spectrum flux);
+
+/** @brief The same of the path's own flux. Nearly always nobody listens. */
+static inline void photon_path_tell(const photon_path *path, photon_event_kind kind,
+                                    const surface_hit *hit, unsigned lobe)
+{
+    if (path->tell)
+        photon_path_tell_flux(path, kind, hit, lobe, path->at.throughput);
+}
 
 /** @brief Whether a photon that lands now is of the class that is traced. */
 bool photon_path_is_wanted(const photon_path *path);
@@ -57,6 +62,9 @@ float photon_path_survival(const photon_path *path, spectrum flux);
 
 /** @brief Roulette by the number u: gives the photon a new flux, or ends it (false). */
 bool photon_path_survives(photon_path *path, spectrum flux, float survival, float u);
+
+/** @brief The random numbers of a photon. */
+sampler photon_stream(const trace_task *task, uint64_t index);
 
 /** @brief Emits the photon that path->index is. @return false: this one carries nothing
  */

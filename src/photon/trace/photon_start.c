@@ -6,6 +6,11 @@ static uint64_t stream_key(const trace_task *task)
     return hash_mix(key, 0x70686f746f6eu + (uint64_t)task->photon_class);
 }
 
+sampler photon_stream(const trace_task *task, uint64_t index)
+{
+    return sampler_make(stream_key(task), index);
+}
+
 /* The guide serves the caustic photons that it was made for. */
 static const emission_guide *guide_of(const trace_task *task)
 {
@@ -17,7 +22,7 @@ static const emission_guide *guide_of(const trace_task *task)
 float photon_start_point(const trace_task *task, uint64_t index,
                          float u[EMISSION_DIMENSIONS])
 {
-    sampler random = sampler_make(stream_key(task), index);
+    sampler random = photon_stream(task, index);
     return emission_guide_draw(guide_of(task), &random, u);
 }
 
@@ -56,7 +61,9 @@ static void give_light(const trace_task *task, uint64_t index, photon_start *at)
 bool photon_path_start(photon_path *path)
 {
     const trace_task *task = path->task;
-    path->random = sampler_make(stream_key(task), path->index);
+    path->random = photon_stream(task, path->index);
+    if (path->ahead)
+        sampler_use_ahead(&path->random, path->ahead);
     photon_start at = {.ray.time = time_of(task, path->index)};
     if (task->how->photons_per_light && !guide_of(task))
         give_light(task, path->index, &at);

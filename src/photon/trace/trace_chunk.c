@@ -1,14 +1,12 @@
 #include "photon/trace/trace_chunk.h"
 
-enum { LEAST_ROOM = 4096 }; /* size: photons there is room for at first */
-
 void trace_chunk_put(trace_chunk *chunk, photon_store *store, const photon *p)
 {
     if (!spectrum_is_finite(p->flux)) {
         chunk->of.n_not_finite++;
         return;
     }
-    size_t more = MAX(2 * store->capacity, LEAST_ROOM);
+    size_t more = MAX(2 * store->capacity, RAYS_AT_ONCE);
     if (chunk->error || (store->n == store->capacity &&
                          !photon_store_reserve(store, more, &chunk->error)))
         return;
