@@ -42,6 +42,11 @@ typedef void (*parallel_body)(size_t begin, size_t end, unsigned thread, void *d
 bool parallel_for(size_t n, size_t chunk_size, unsigned threads,
                   const cancel_flag *cancel, parallel_body body, void *data);
 
+/** @brief Chunks that are worth a thread's while, where the result is the same with any
+ * other: of elements that trace or ask something, some microseconds each, and of those
+ * that are only moved. */
+enum { RAYS_AT_ONCE = 1 << 10, ITEMS_AT_ONCE = 1 << 14 };
+
 /** @brief The number of threads that a setting of n (0 = automatic) means on this
  * machine. */
 unsigned parallel_threads(unsigned n);

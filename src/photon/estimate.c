@@ -392,7 +392,8 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
 
 static bool is_bent(const bsdf *b, const estimate_options *options)
 {
-    return options->curve || dot3(b->shading.n, b->n_geom) < 1.0f - 1e-6f;
+    float cosine = dot3(b->shading.n, b->n_geom);
+    return options->curve || cosine < 1.0f - 1e-6f; /* math: or by rounding alone */
 }
 
 /* True if all the lobes in use are rho/pi. */

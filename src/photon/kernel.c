@@ -29,7 +29,7 @@ static float cone_eval(float t, float k)
 
 static float cone_area(float k)
 {
-    return 1.0f - 2.0f / (3.0f * k);
+    return 1.0f - 2.0f / (3.0f * k); /* math: of a cone */
 }
 
 static float gaussian_eval(float t, float k)

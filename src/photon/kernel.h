@@ -26,8 +26,7 @@ typedef struct kernel {
 /** math: Jensen's filter */
 #define GAUSSIAN_ALPHA 0.918f
 #define GAUSSIAN_BETA 1.953f
-/** math: 1 - e^-β */
-#define GAUSSIAN_RANGE 0.85815211f
+#define GAUSSIAN_RANGE (1.0f - expf(-GAUSSIAN_BETA))
 
 /** @brief κ at squared distance d2 <= r2. */
 float kernel_eval(const kernel *k, float d2, float r2);
@@ -43,12 +42,11 @@ static inline lane_floats exp_negative_lanes(lane_floats x)
     lane_floats y = 0.5f - x, sum = fill_lanes(inverse_factorial[7]);
     for (int i = 6; i >= 0; i--)
         sum = fused_lanes(sum, y, fill_lanes(inverse_factorial[i]));
-    return 0.60653066f * sum;
+    return expf(-0.5f) * sum;
 }
 
 /** @brief kernel_eval of a lane each, to rounding. Lanes with d2 > r2 mean nothing. */
-static inline lane_floats kernel_eval_lanes(const kernel *k, lane_floats d2,
-                                            float inv_r2)
+static inline lane_floats kernel_eval_lanes(const kernel *k, lane_floats d2, float inv_r2)
 {
     lane_floats t = d2 * inv_r2;
     switch (k->choice) {

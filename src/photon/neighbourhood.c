@@ -142,16 +142,14 @@ bool neighbourhood_is_whole(neighbourhood *hood)
     return whole_rim(hood);
 }
 
-/* math: corners of the horizon between open directions lie so far out that its sides
-   clear the disc. */
-#define OPEN_HORIZON (1.0f / 0.98078528f)
-
 /* A straight wall between two corners is the side between them: nothing behind it is
  * seen. */
 static void find_horizon(neighbourhood *hood)
 {
-    const turn sector = {0.92387953f, 0.38268343f}; /* a sixteenth */
-    float reach = OPEN_HORIZON * hood->radius;
+    const float half = PI_F / NEIGHBOURHOOD_SECTORS; /* of a sector */
+    const turn sector = turn_by(2.0f * half);
+    float reach =
+        hood->radius / cosf(half); /* sides between open corners clear the disc */
     turn a = {1.0f, 0.0f};
     vec2 corner[NEIGHBOURHOOD_SECTORS];
     for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++, a = turn_further(a, sector)) {
@@ -173,7 +171,7 @@ static void find_horizon(neighbourhood *hood)
  * photons: what bends off the plane counts as further away (photon_filter). */
 float neighbourhood_coverage(neighbourhood *hood, const kernel *k)
 {
-    const turn golden = {-0.73736888f, 0.67549029f}; /* the golden angle */
+    const turn golden = turn_by(PI_F * (3.0f - sqrtf(5.0f))); /* math: its angle */
     turn a = {1.0f, 0.0f};
     float whole = 0.0f, found = 0.0f;
     find_horizon(hood);

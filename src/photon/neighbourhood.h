@@ -62,7 +62,7 @@ float neighbourhood_coverage(neighbourhood *hood, const kernel *k);
  * there between the tangents of the sectors. */
 static inline int neighbourhood_sector(float x, float y)
 {
-    const float tangent = 0.41421356f; /* of a sixteenth */
+    const float tangent = (float)(M_SQRT2 - 1.0); /* of a sixteenth */
     int left = x < 0.0f, below = y < 0.0f, odd = left ^ below;
     float across = odd ? fabsf(y) : fabsf(x), up = odd ? fabsf(x) : fabsf(y);
     int within = (up > tangent * across) + (up > across) + (tangent * up > across);

@@ -46,7 +46,7 @@ bool photon_store_reserve(photon_store *store, size_t capacity, GError **error)
 {
     if (store->x && capacity <= store->capacity)
         return true;
-    if (capacity > SIZE_MAX / 64) {
+    if (capacity > SIZE_MAX / (4 * sizeof(photon))) {
         error_set(error, ERROR_FAILED, "out of memory: %zu photons", capacity);
         return false;
     }
@@ -173,7 +173,7 @@ bool photon_store_pack(photon_store *store, const size_t *order, unsigned thread
     job.to = big_alloc(points_padded(store->n), sizeof *job.to, "photons", error);
     if (!job.to)
         return false;
-    parallel_for(store->n, 1 << 14, threads, NULL, pack_piece, &job);
+    parallel_for(store->n, ITEMS_AT_ONCE, threads, NULL, pack_piece, &job);
     big_free(store->flux);
     store->flux = NULL;
     store->packed = job.to;

@@ -29,8 +29,7 @@ typedef struct photon_filter {
     vec3 n;         /**< unit normal of the surface at the point */
     bool one_sided; /**< only photons that arrived on the side of n: wi·n > 0 */
     float flatten;  /**< the neighbourhood is a disc of this height over radius: distance
-                       is the larger of |d| and |d·n| / flatten (0 is taken as 0.001);
-                       >= 1: a ball */
+                       is the larger of |d| and |d·n| / flatten, > 0; >= 1: a ball */
     int face; /**< where both sides count: 1, -1: n is, or is opposite to, the normal
                   of the surface itself, and photons off its plane count only if
                   theirs points alike (by PHOTON_BEHIND), so that those on the other

@@ -45,7 +45,7 @@ static inline photon_query photon_query_of(const photon_store *store, vec3 p,
         query.face = on_curve ? 0 : filter->face;
         query.at.n = filter->n;
         query.at.flat = !on_curve && filter->flatten < 1.0f;
-        query.at.inv_flatten = 1.0f / maxf(filter->flatten, 1e-3f);
+        query.at.inv_flatten = 1.0f / filter->flatten;
     }
     return query;
 }

@@ -22,10 +22,18 @@
 
 typedef struct photon_spots photon_spots;
 
-/** @brief Photons, or other places that are lit, to make spots of. */
+/** @brief A place that is lit and lights others. */
+typedef struct lit_place {
+    float p[3], n[3]; /**< where; unit geometric normal on the side that is lit */
+    float power;      /**< up to a factor that is the same of all */
+} lit_place;
+
+/** @brief What to make spots of: photons, or places. */
 typedef struct spot_source {
-    const photon_store *places; /**< NULL: none; without normals (oriented) too */
-    float least;                /**< radius of a spot, m: what an estimate there blurs */
+    const photon_store *photons; /**< NULL, or they keep no normals: none */
+    const lit_place *places;     /**< where there are no photons; NULL: none */
+    size_t n_places;
+    float least; /**< radius of a spot, m: what an estimate there blurs */
 } spot_source;
 
 /** @brief Spots of some sources, as many of each.

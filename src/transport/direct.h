@@ -30,7 +30,8 @@ typedef struct direct_query {
                                     path keeps */
 } direct_query;
 
-/** @brief Up to so many lights are few. */
+/** @brief Up to so many lights are few: each more costs a shadow ray at all that is seen.
+ */
 enum { FEW_LIGHTS = 4 };
 
 /** @brief Radiance sent to wo from one light, by the class of lobe that sends it. */

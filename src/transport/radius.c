@@ -34,9 +34,6 @@ static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
    photons in a map no more are wanted than this share, and at least one. */
 #define MOST_SHARE (1.0 / 200.0)
 
-/* id: a pass number no render reaches: the pilot's photons are not those of pass 0. */
-#define PILOT_PASS 0xffffffffu
-
 typedef struct pilot {
     transport_plan *plan;
     wavelengths w;
@@ -99,7 +96,7 @@ static bool typical_radius(const radius_rule *rule, const radius_cache *cache,
     const transport_plan *plan = rule->pilot->plan;
     const photon_store *store = photon_map_store(rule->map);
     size_t n = at_photons ? MIN(store->n, MOST_PLACES) : plan->n_sight;
-    float narrow = 0.2f * (float)rule->largest;
+    float narrow = (float)unknown_radius(plan);
     float *radii = g_new0(float, n + 1);
     point_hits hits = {0};
     for (size_t i = 0; i < n; i++)
@@ -150,7 +147,7 @@ static bool send_pilot(const pilot *p, photon_class c, const cancel_flag *cancel
         .scene = plan->scene,
         .how = &plan->how,
         .w = p->w,
-        .pass = PILOT_PASS,
+        .pass = plan_trial_pass(TRIAL_RADII),
         .photon_class = c,
         .casters = plan->casters,
         .guide = plan->guide,
@@ -196,7 +193,7 @@ static bool choose_on_surfaces(pilot *p, photon_class c, const pilot_maps *maps,
     double in_map = (double)photon_map_store(map)->n * density;
     const radius_rule rule = {
         .scale = sqrt(wanted_in_reach(plan, c, in_map) / RADIUS_NEAREST / density),
-        .largest = 0.1 * (double)plan->scene->radius,
+        .largest = widest_radius(plan),
         .pilot = p,
         .map = map,
     };
@@ -219,7 +216,7 @@ static bool choose_in_media(pilot *p, photon_class c, const pilot_maps *maps,
     double density = density_over_pilot(p, c, maps);
     const radius_rule rule = {
         .scale = cbrt(photons_wanted_least[PHOTON_CAUSTIC] / RADIUS_NEAREST / density),
-        .largest = 0.1 * (double)plan->scene->radius,
+        .largest = widest_radius(plan),
         .pilot = p,
         .map = map,
     };

@@ -4,8 +4,6 @@
 
 #include <string.h>
 
-enum { CHUNK = 256 }; /* size: of a thread's work */
-
 struct radius_cache {
     size_t n;
     point_set *index;
@@ -74,7 +72,7 @@ radius_cache *radius_cache_build(const vec3 *places, size_t n,
     if (!cache)
         return NULL;
     radius_loop loop = {places, source, cache->radii, false};
-    if (!parallel_for(n, CHUNK, threads, source->cancel, find_radii, &loop)) {
+    if (!parallel_for(n, RAYS_AT_ONCE, threads, source->cancel, find_radii, &loop)) {
         error_set(error, ERROR_CANCELLED, "cancelled");
         return NULL;
     }

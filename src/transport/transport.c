@@ -89,7 +89,7 @@ void transport_plan_clear(transport_plan *plan)
     g_clear_pointer(&plan->sight, g_aligned_free);
     plan->n_sight = 0;
     g_clear_pointer(&plan->vertex_radii, radius_cache_free);
-    photon_store_clear(&plan->lit);
+    g_free(plan->lit);
     plan->mis = (caustic_mis){0};
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         g_clear_pointer(&plan->radius_cache[c], radius_cache_free);

@@ -14,6 +14,7 @@
 #include "math/sampler.h"
 #include "photon/caustic_mis.h"
 #include "photon/estimate.h"
+#include "photon/spots.h"
 #include "photon/trace/trace.h"
 #include "scene/view.h"
 #include "transport/radius_cache.h"
@@ -33,11 +34,11 @@ typedef enum radiance_layer {
  * Sums, where there are several, weighed by how much of their light arrives. */
 typedef struct light_guide {
     spectrum albedo;
-    spectrum lamps;   /**< light that arrives from lights by mirrors and glass alone:
-                         radiance, whatever the weight */
-    vec3 normal;      /**< shading normal, toward where it is seen from */
-    float depth;      /**< distance from the eye as the crow flies, m */
-    float weight;     /**< 0: nothing is seen yet */
+    spectrum lamps; /**< light that arrives from lights by mirrors and glass alone:
+                       radiance, whatever the weight */
+    vec3 normal;    /**< shading normal, toward where it is seen from */
+    float depth;    /**< distance from the eye as the crow flies, m */
+    float weight;   /**< 0: nothing is seen yet */
 } light_guide;
 
 /** @brief What one camera ray found. */
@@ -171,8 +172,8 @@ typedef struct transport_plan {
     caustic_mis mis;       /**< what they share before radii are known, for trials */
     float *boost;          /**< share.boost; owned */
     const photon_supply *supply; /**< borrowed; NULL: photons are traced */
-    photon_store lit;   /**< places that light sampling found lit (path_effort_measure)
-                         */
+    lit_place *lit; /**< that light sampling found (path_effort_measure); owned */
+    size_t n_lit;
     float p_spots;      /**< path_pass.p_spots */
     bool gathers;       /**< auto: photons carry indirect light too (plan/gather.h) */
     double sample_rays; /**< that a sample costs, photons apart ... */

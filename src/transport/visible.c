@@ -95,3 +95,9 @@ float visible_pixel(transport_plan *plan)
         sum += 1.0 / (double)plan->sight[i].pixel;
     return sum > 0.0 ? (float)((double)plan->n_sight / sum) : 0.0f;
 }
+
+double sharp_radius(transport_plan *plan)
+{
+    double pixel = (double)visible_pixel(plan);
+    return pixel > 0.0 ? SHARP_PIXELS * pixel : unknown_radius(plan);
+}

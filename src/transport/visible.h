@@ -9,10 +9,6 @@
 /** @brief Up to n points into out. @return how many. */
 size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point *out);
 
-/** A radius of so many pixels is sharp, and still holds some photons: what merging takes
- * where connections find smooth light, and what stands for radii that are not known. */
-#define SHARP_PIXELS 2.0
-
 /** @brief Fills plan->sight, unless it is filled; as many points as the work is worth. */
 void plan_look(transport_plan *plan);
 
@@ -22,3 +18,27 @@ point_set *visible_index(const transport_plan *plan, GError **error);
 /** @brief The width of a pixel's footprint on what the camera sees, m: the harmonic mean,
  * by which what is near counts before a landscape; 0 if it sees nothing. */
 float visible_pixel(transport_plan *plan);
+
+/** A radius of so many pixels is sharp, and still holds some photons: what merging takes
+ * where connections find smooth light, and what trials take it for before radii are
+ * known. */
+#define SHARP_PIXELS 2.0
+
+/** No radius is wider than this share of the scene's: beyond it nothing is local. Where
+ * nothing tells of one it is this share of the widest. */
+#define WIDEST_SHARE 0.1
+
+/** @brief The widest radius, m. */
+static inline double widest_radius(const transport_plan *plan)
+{
+    return WIDEST_SHARE * (double)plan->scene->radius;
+}
+
+/** @brief What stands for one of which nothing is known, m. */
+static inline double unknown_radius(const transport_plan *plan)
+{
+    return WIDEST_SHARE * widest_radius(plan);
+}
+
+/** @brief SHARP_PIXELS of what the camera sees, m; unknown_radius if it sees nothing. */
+double sharp_radius(transport_plan *plan);

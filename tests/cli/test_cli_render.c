@@ -368,7 +368,7 @@ static void test_stops_by_rules(folder *f, gconstpointer data)
         {"--set passes=0", "\"passes\"", 16, 16},
         {"--noise 1", "\"noise\"", 4, 4}, /* the scene's two passes are no limit */
         {"--noise 1e-9 --passes 5", "\"passes\"", 5, 5},
-        {"--time 0.2", "\"time\"", 1, 1e9},
+        {"--time 1", "\"time\"", 1, 1e9},
         {"--time 1e6 --set passes=3", "\"passes\"", 3, 3},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {

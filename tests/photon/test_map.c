@@ -221,7 +221,7 @@ static void compare_maps(pair *maps, field_place place, float extent)
 {
     static const size_t counts[] = {1, 2, 7, 50, 200, 100000};
     static const float radii[] = {0.0f, 1e-6f, 1e-3f, 0.02f, 0.1f, 0.3f, 2.0f, 1e9f};
-    static const float flatten[] = {1.0f, 0.3f, 0.0f};
+    static const float flatten[] = {1.0f, 0.3f, 0.001f};
     for (uint32_t i = 0; i < 20; i++) {
         sampler s = sampler_make(77, i);
         vec3 p = field_photon(place, 11, i).p;

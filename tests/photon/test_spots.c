@@ -82,7 +82,7 @@ static void test_density_is_that_of_directions(void)
     enum { SAMPLES = 200000 };
     photon_store store = {0};
     put_photons(&store);
-    const spot_source source = {.places = &store, .least = 0.01f};
+    const spot_source source = {.photons = &store, .least = 0.01f};
     g_autoptr(photon_spots) spots = photon_spots_new(&source, 1, NULL);
     const vec3 from[] = {{0.2f, 0.3f, 0.8f}, {0.8f, 0.6f, 0.1f}};
     double all = 0.0;

@@ -154,7 +154,7 @@ static const fog_view absorbing[] = {
          BOX("2", ".5", "2") BETWEEN("", "f") PLATE BETWEEN("", "")
              DISTANT("0 0 1") "Material \"diffuse\" \"rgb reflectance\" [.1 .1 .1] Shape "
                               "\"disk\" \"float radius\" 1.2\n",
-     .more = " photons=20000 passes=32",
+     .more = " photons=20000 passes=128",
      .expected = closed,
      .value = 0.1 / G_PI * PLATE_PASSES,
      .depth = 0.5,

@@ -429,8 +429,8 @@ static void test_point_light_through_glass(void)
                 "0 "
                 "0 0.8 Shape \"sphere\" \"float radius\" 0.5");
     g_autoptr(image) photons =
-        render_with(v, "passes=8 spp=8 photons=100000 max_backward_bounces=-1");
-    g_autoptr(image) vcm = render_with(v, "integrator=vcm passes=16 spp=8 photons=16384");
+        render_with(v, "passes=32 spp=32 photons=50000 max_backward_bounces=-1");
+    g_autoptr(image) vcm = render_with(v, "integrator=vcm passes=64 spp=4 photons=16384");
     double a = mean_of(vcm, ""), b = mean_of(photons, "");
     double found = mean_of(vcm, "caustic"), caustic = mean_of(photons, "caustic");
     g_test_message("vcm %g, photons %g; caustic %g and %g", a, b, found, caustic);

@@ -16,7 +16,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-enum { N_BINS = 512, CHUNK = 1 << 15 }; /* size: of a thread's work */
+enum { N_BINS = 512 }; /* size: so many are sorted through the cache */
 
 typedef struct pair {
     size_t cell, element;
@@ -37,7 +37,7 @@ static void count_chunk(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     sorter *s = data;
-    size_t *count = s->counts[begin / CHUNK];
+    size_t *count = s->counts[begin / ITEMS_AT_ONCE];
     for (size_t i = begin; i < end; i++)
         count[s->cell_of(i, s->data) / s->cells_per_bin]++;
 }
@@ -61,7 +61,7 @@ static void scatter_chunk(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     sorter *s = data;
-    size_t *place = s->counts[begin / CHUNK];
+    size_t *place = s->counts[begin / ITEMS_AT_ONCE];
     for (size_t i = begin; i < end; i++) {
         size_t cell = s->cell_of(i, s->data);
         s->pairs[place[cell / s->cells_per_bin]++] = (pair){cell, i};
@@ -105,15 +105,15 @@ size_t *cell_sort(size_t n, size_t n_cells, cell_of_element cell_of, const void 
         .n = n,
         .n_cells = n_cells,
         .cells_per_bin = n_cells / N_BINS + 1,
-        .n_chunks = (n + CHUNK - 1) / CHUNK,
+        .n_chunks = (n + ITEMS_AT_ONCE - 1) / ITEMS_AT_ONCE,
         .cell_of = cell_of,
         .data = data,
         .start = start,
     };
     if (sort_allocate(&s, error)) {
-        parallel_for(n, CHUNK, threads, NULL, count_chunk, &s);
+        parallel_for(n, ITEMS_AT_ONCE, threads, NULL, count_chunk, &s);
         sum_counts(&s);
-        parallel_for(n, CHUNK, threads, NULL, scatter_chunk, &s);
+        parallel_for(n, ITEMS_AT_ONCE, threads, NULL, scatter_chunk, &s);
         parallel_for(N_BINS, 1, threads, NULL, sort_bin, &s);
     }
     big_free(s.counts);

@@ -24,11 +24,11 @@
 #include "math/box.h"
 
 enum {
-    WIDTH = 16,      /* size: of a group */
-    LEAF = 16,       /* size: points of one */
-    MAX_LEVELS = 15, /* size: of 2^64 points, to spare */
+    WIDTH = 16,   /* size: of a group; so many lanes fill one vector, or two */
+    LEAF = WIDTH, /* points of one */
+    MAX_LEVELS = 2 * sizeof(size_t), /* math: of four bits each */
     MAX_STACK = MAX_LEVELS * (WIDTH - 1) + WIDTH,
-    TASK = 1 << 15, /* size: points that one task sorts down to leaves by itself */
+    OPENED = WIDTH, /* groups that are opened before what is below them */
 };
 
 /* The boxes of sixteen subtrees; an absent one is empty, infinitely far from everything.
@@ -83,7 +83,7 @@ static float choose_pivot(const kd_item *items, size_t n, int axis, size_t rank)
 {
     enum { MOST = 31 }; /* size: of the sample */
     float sample[MOST];
-    size_t n_sample = n < 32 ? 1 : n < 1024 ? 7 : MOST;
+    size_t n_sample = n <= MOST ? 1 : n <= MOST * MOST ? MOST / 4 : MOST; /* size: too */
     for (size_t i = 0; i < n_sample; i++) {
         float x = items[(2 * i + 1) * n / (2 * n_sample)].x[axis];
         size_t j = i;
@@ -156,7 +156,7 @@ static void split_task(size_t node, size_t end, unsigned thread, void *data)
     (void)end, (void)thread;
     const kd_builder *b = data;
     size_t begin = node * b->span, n = MIN(b->span, b->n - begin);
-    if (b->span > TASK)
+    if (b->span > ITEMS_AT_ONCE)
         split_node(b->items + begin, n, b->span);
     else
         split_subtree(b->items + begin, n, b->span);
@@ -171,7 +171,7 @@ static void split_all(kd_builder *b, unsigned threads)
         b->span *= WIDTH;
     for (;; b->span /= 2) {
         parallel_for((b->n + b->span - 1) / b->span, 1, threads, NULL, split_task, b);
-        if (b->span <= TASK)
+        if (b->span <= ITEMS_AT_ONCE)
             return;
     }
 }
@@ -217,11 +217,11 @@ size_t *kdtree_sort(const point_arrays *points, unsigned threads, GError **error
     b.items = big_alloc(b.n, sizeof *b.items, "sorting points", error);
     if (!b.items)
         return NULL;
-    parallel_for(b.n, 1 << 14, threads, NULL, load_items, &b);
+    parallel_for(b.n, ITEMS_AT_ONCE, threads, NULL, load_items, &b);
     split_all(&b, threads);
     b.order = big_alloc(b.n, sizeof *b.order, "sorting points", error);
     if (b.order)
-        parallel_for(b.n, 1 << 14, threads, NULL, store_order, &b);
+        parallel_for(b.n, ITEMS_AT_ONCE, threads, NULL, store_order, &b);
     big_free(b.items);
     return b.order;
 }
@@ -296,7 +296,8 @@ kdtree *kdtree_build(const point_arrays *sorted, unsigned threads, GError **erro
     }
     kd_builder b = {.tree = tree, .n = sorted->n, .points = sorted};
     for (b.level = 1; b.level <= tree->n_levels; b.level++)
-        parallel_for(nodes_on_level(b.n, b.level), 64, threads, NULL, fill_groups, &b);
+        parallel_for(nodes_on_level(b.n, b.level), ITEMS_AT_ONCE / (WIDTH * LEAF),
+                     threads, NULL, fill_groups, &b);
     return tree;
 }
 
@@ -420,9 +421,6 @@ typedef struct kd_search {
     point_run_visitor visit;
     void *data;
 } kd_search;
-
-/* size: groups that are opened before what is below them */
-enum { OPENED = 16 };
 
 /* n <= OPENED * WIDTH. Apart, so that what calls itself has a small frame. */
 static __attribute__((noinline)) void visit_leaves(const kd_search *s,

@@ -19,14 +19,11 @@
 #endif
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
-/* size: 1: of sixteen */
 #define HAS_WIDE_LANES 1
-enum { LANES = 16 }; /* size: of a vector */
 #else
-/* size: of eight */
 #define HAS_WIDE_LANES 0
-enum { LANES = 8 }; /* size: of a vector */
 #endif
+enum { LANES = 8 << HAS_WIDE_LANES }; /* size: of a vector */
 
 typedef float lane_floats __attribute__((vector_size(4 * LANES)));
 typedef int32_t lane_ints __attribute__((vector_size(4 * LANES)));

@@ -3,11 +3,9 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-enum { BLOCK = 16 }; /* size: of SIMD, or a multiple */
-
 size_t points_padded(size_t n)
 {
-    return (n + BLOCK - 1) / BLOCK * BLOCK + BLOCK;
+    return (n + LANES - 1) / LANES * LANES + LANES;
 }
 
 bool point_arrays_make(point_arrays *points, size_t n, const char *what, GError **error)
@@ -85,7 +83,7 @@ bool points_permute(void *array, size_t n, size_t size, const size_t *order,
     if (!to)
         return false;
     permutation job = {order, *old, to, size};
-    parallel_for(n, 1 << 14, threads, NULL, permute_piece, &job);
+    parallel_for(n, ITEMS_AT_ONCE, threads, NULL, permute_piece, &job);
     big_free(*old);
     *old = to;
     return true;

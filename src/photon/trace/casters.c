@@ -92,7 +92,7 @@ static bool find_surfaces(caustic_casters *c, GError **error)
     float *areas = list_all(c, lists, &box, error);
     free_lists(lists, s->n_objects);
     c->center = box3_is_empty(box) ? s->center : box3_center(box);
-    c->radius = 1.001f * box3_radius(box);
+    c->radius = box3_radius(box);
     bool done = areas && distribution_init(&c->area, areas, (size_t)c->n, error);
     big_free(areas);
     return done;
@@ -103,7 +103,7 @@ static bool find_surfaces(caustic_casters *c, GError **error)
 static bool stands_apart(const caustic_casters *c, const light_bound *bound)
 {
     vec3 nearest = max3(bound->box.low, min3(c->center, bound->box.high));
-    return bound->is_local && length3(nearest - c->center) > 1.01f * c->radius;
+    return bound->is_local && length3(nearest - c->center) > c->radius;
 }
 
 /* The share of a light's power that may meet the sphere: parallel light is spread over

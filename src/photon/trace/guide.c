@@ -10,7 +10,8 @@ enum {
 };
 
 /* A cell is split where the fullest and emptiest quarters along some axis differ by this
-   share of what it holds, */
+   share of what it holds (by what is beyond chance alone, 12 % of photons met what 20 %
+   and more did: /guide/flux), */
 #define UNEVEN 0.2
 
 /* math: or the squares of two axes by this χ², one in 10⁴ by chance of 15 degrees of

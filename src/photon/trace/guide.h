@@ -30,7 +30,8 @@ enum { EMISSION_DIMENSIONS = 6 };
 /** The share that what is not known gets. Of photons, and of each cell's, so many are
  * drawn without regard to what was learned inside it: next to where much arrives it thins
  * out step by step, and what arrives from there unforeseen is not much heavier than its
- * neighbours. A photon that lands out of the camera's sight is worth this share of one in
+ * neighbours. Of two sides of glass that the eye's path may go on by each gets so much at
+ * least. A photon that lands out of the camera's sight is worth this share of one in
  * sight: it may still be seen by way of other surfaces. */
 #define DEFENSIVE_SHARE 0.05f
 

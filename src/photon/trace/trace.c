@@ -3,8 +3,6 @@
 #include "base/memory.h"
 #include "photon/trace/photon_path.h"
 
-enum { CHUNK = 4096 }; /* size: photons emitted per parallel piece of work */
-
 /* Takes the photon to where it is scattered next: a surface, or a point in a medium.
    @return false: its way ends */
 static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
@@ -74,11 +72,17 @@ static void trace_some(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     trace_loop *loop = data;
-    trace_chunk *out = &loop->chunks[begin / CHUNK];
+    trace_chunk *out = &loop->chunks[begin / RAYS_AT_ONCE];
     out->of = loop->empty;
     const cancel_flag *cancel = loop->task->cancel;
+    sampler_ahead ahead;
     for (size_t i = begin; i < end && !out->error && !cancelled(cancel); i++) {
         photon_path path = {.task = loop->task, .index = loop->first + i, .out = out};
+        if ((i - begin) % AHEAD_STREAMS == 0) {
+            const sampler random = photon_stream(loop->task, path.index);
+            sampler_look_ahead(&random, &ahead);
+        }
+        path.ahead = &ahead;
         trace_one(&path);
     }
 }
@@ -98,12 +102,12 @@ bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
     unsigned threads = (unsigned)task->how->threads;
     *result = empty_result(task->scene, oriented);
     size_t n = (size_t)(task->end > 0 ? task->end - task->begin : task->n_photons);
-    size_t n_chunks = (n + CHUNK - 1) / CHUNK;
+    size_t n_chunks = (n + RAYS_AT_ONCE - 1) / RAYS_AT_ONCE;
     trace_chunk *chunks = big_alloc(n_chunks, sizeof *chunks, "photon chunks", error);
     if (!chunks)
         return false;
     trace_loop loop = {task, task->first + task->begin, *result, chunks};
-    bool done = parallel_for(n, CHUNK, threads, task->cancel, trace_some, &loop);
+    bool done = parallel_for(n, RAYS_AT_ONCE, threads, task->cancel, trace_some, &loop);
     if (!done)
         error_set(error, ERROR_CANCELLED, "cancelled");
     bool joined = done && trace_chunks_join(chunks, n_chunks, threads, result, error);

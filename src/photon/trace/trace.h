@@ -42,7 +42,7 @@
 static inline float most_survival(int64_t n)
 {
     float part = (float)n / LONG_PATH;
-    return maxf(0.5f, 1.0f - part * part / LONG_PATH);
+    return expf(-part * part / LONG_PATH);
 }
 
 /** @brief Lobes that a path from the eye and a caustic photon go on by. */

@@ -14,7 +14,7 @@ enum {
     MOST_PLAN = 1 << 28, /* size: bytes */
 };
 
-static const checked_kind kind = {"photons", "photon map", "1"};
+static const checked_kind kind = {"photons", "photon map", "2"};
 
 /* What photons do not depend on, nor the plan that they were sent by. */
 static const char *const free_rows[] = {

@@ -10,15 +10,9 @@
 /* The share of trial photons, as of a pass with a radius of a few pixels. */
 static caustic_mis trial_mis(transport_plan *plan)
 {
-    double radius = plan->how.radius;
-    if (!(radius > 0.0))
-        radius = SHARP_PIXELS * (double)visible_pixel(plan);
-    if (!(radius > 0.0))
-        radius = 0.01 * (double)plan->scene->radius;
+    double own = plan->how.radius, radius = own > 0.0 ? own : sharp_radius(plan);
     return (caustic_mis){.casters = plan->casters, .discs = caustic_discs(plan, radius)};
 }
-
-enum { MOST_LIT = 8192 }; /* size: places that light sampling found lit */
 
 /* Spots of the places that light sampling found lit and of the pass' photons. */
 static bool find_spots(path_pass *pass, GError **error)
@@ -29,10 +23,10 @@ static bool find_spots(path_pass *pass, GError **error)
     pass->n_slices = photons ? photons->n_slices : 1;
     for (int i = 0; i < pass->n_slices && !failed; i++) {
         const spot_source sources[] = {
-            {.places =
+            {.photons =
                  photons ? photon_map_store(photons->maps[i][PHOTON_CAUSTIC]) : NULL,
              .least = isfinite(radius) ? radius : 0.0f},
-            {.places = pass->plan->lit.n > 0 ? &pass->plan->lit : NULL},
+            {.places = pass->plan->lit, .n_places = pass->plan->n_lit},
         };
         pass->spots[i] = photon_spots_new(sources, G_N_ELEMENTS(sources), &failed);
     }
@@ -83,10 +77,7 @@ static bool try_photons(transport_plan *plan, path_effort *paths,
                         const cancel_flag *cancel, GError **error)
 {
     aim_result found = {0};
-    plan->lit.oriented = true;
-    if (plan->how.bright_spots && !photon_store_reserve(&plan->lit, MOST_LIT, error))
-        return false;
-    *paths = path_effort_measure(plan, plan->how.bright_spots ? &plan->lit : NULL);
+    *paths = path_effort_measure(plan);
     plan->sample_rays = paths->rays;
     if (!aim_caustics(plan, &found, cancel, error)) {
         g_free(found.boost);
@@ -119,7 +110,7 @@ static transport_plan small_pass(const transport_plan *plan)
 static bool may_look(const transport_plan *plan)
 {
     bool sends = plan->n_photons[PHOTON_CAUSTIC] > 0;
-    return plan->how.bright_spots && spots_fit(plan) && (sends || plan->lit.n > 0);
+    return plan->how.bright_spots && spots_fit(plan) && (sends || plan->n_lit > 0);
 }
 
 /* With a small pass as it would be: whether and how often paths look at bright spots, and

@@ -20,8 +20,9 @@ typedef struct path_pass {
     int n_slices;                          /**< of them */
     float p_spots;            /**< probability of looking at them from a surface */
     struct spot_trial *trial; /**< to measure with: what looking is worth; else NULL */
-    photon_store *lit; /**< to measure with: places that light sampling found lit, and how
-                          much of the picture they light; else NULL */
+    GArray *lit; /**< to measure with, of lit_place: gets those that light sampling finds
+                    and how much of the picture they light, MOST_PLACES at most; else
+                    NULL */
     bool without_caustics; /**< to measure with: light by way of a specular or glossy
                               bounce to a diffuse surface is left out */
 } path_pass;

@@ -95,14 +95,13 @@ const bsdf *path_all_wavelengths(const path_walk *walk, const camera_path *path,
 static void note_lit(const path_walk *walk, const camera_path *path,
                      const surface_hit *hit, const bsdf *b, spectrum radiance)
 {
-    photon_store *lit = walk->pass->lit;
-    vec3 toward = -path->at.ray.direction;
-    const photon place = {.p = hit->p,
-                          .wi = toward,
-                          .flux = path->at.throughput * radiance,
-                          .n = face_forward(hit->n_geom, toward)};
-    if (path->n_diffuse > 0 && !b->is_phase && lit->n < lit->capacity)
-        photon_store_put(lit, &place);
+    GArray *lit = walk->pass->lit;
+    const vec3 p = hit->p, n = face_forward(hit->n_geom, -path->at.ray.direction);
+    const lit_place place = {.p = {p[0], p[1], p[2]},
+                             .n = {n[0], n[1], n[2]},
+                             .power = spectrum_mean(path->at.throughput * radiance)};
+    if (path->n_diffuse > 0 && !b->is_phase && lit->len < MOST_PLACES)
+        g_array_append_val(lit, place);
 }
 
 /* Adds what a lobe sends on of one light. */

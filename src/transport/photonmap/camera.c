@@ -112,7 +112,7 @@ static void plan_sides(const camera_tree *tree, const camera_branch *branch,
     float reflected = spectrum_mean(bsdf_albedo(b, wo, classes | LOBE_REFLECTION));
     float transmitted = spectrum_mean(bsdf_albedo(b, wo, classes | LOBE_TRANSMISSION));
     p[0] = reflected + transmitted > 0.0f ? reflected / (reflected + transmitted) : 0.5f;
-    p[0] = clampf(p[0], 0.05f, 0.95f);
+    p[0] = clampf(p[0], DEFENSIVE_SHARE, 1.0f - DEFENSIVE_SHARE);
     p[1] = 1.0f - p[0];
 }
 

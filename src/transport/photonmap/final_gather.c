@@ -18,7 +18,8 @@
 
 /* ---- Irradiance kept at photon positions ---- */
 
-/* How far off a kept irradiance may be, over the radius it was estimated with. */
+/* How far off a kept irradiance may be, over the radius it was estimated with: as far as
+   that /transport and /flat-curves show light that leaks. */
 #define KEPT_REACH 0.5f
 
 typedef struct irradiance_loop {
@@ -27,7 +28,7 @@ typedef struct irradiance_loop {
     irradiance_cache *out;
     size_t offset;
     int slice;
-    bool *failed;
+    atomic_bool failed; /* memory was refused */
 } irradiance_loop;
 
 /* A place where the maps of a slice are asked. */
@@ -85,7 +86,7 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
         loop->out->irradiance[at] = irradiance_at(&place, &scratch, groups);
     }
     if (scratch.failed || !ready)
-        loop->failed[begin / 256] = true;
+        atomic_store(&loop->failed, true);
     estimate_scratch_clear(&scratch);
 }
 
@@ -93,24 +94,19 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
 static bool add_points(const photonmap_pass *pass, int slice, const trace_result *points,
                        size_t offset, irradiance_cache *out, GError **error)
 {
-    size_t n = points->photons.n, n_chunks = n / 256 + 1;
-    g_autofree bool *failed = g_new0(bool, n_chunks);
     irradiance_loop loop = {.pass = pass,
                             .points = &points->photons,
                             .out = out,
                             .offset = offset,
-                            .slice = slice,
-                            .failed = failed};
-    if (!parallel_for(n, 256, (unsigned)pass->how->threads, pass->plan->cancel,
-                      irradiance_chunk, &loop)) {
+                            .slice = slice};
+    if (!parallel_for(points->photons.n, RAYS_AT_ONCE, (unsigned)pass->how->threads,
+                      pass->plan->cancel, irradiance_chunk, &loop)) {
         error_set(error, ERROR_CANCELLED, "cancelled");
         return false;
     }
-    for (size_t i = 0; i < n_chunks; i++) {
-        if (failed[i]) {
-            error_set(error, ERROR_FAILED, "out of memory for irradiance estimates");
-            return false;
-        }
+    if (atomic_load(&loop.failed)) {
+        error_set(error, ERROR_FAILED, "out of memory for irradiance estimates");
+        return false;
     }
     return true;
 }

@@ -5,8 +5,6 @@
 
 #include "base/memory.h"
 
-enum { CHUNK = 1024 }; /* size: of a thread's work */
-
 typedef struct radius_loop {
     const photon_store *store;
     const radius_cache *of_pass_0; /* NULL: one for all */
@@ -53,7 +51,7 @@ bool photonmap_keep_in_media(photonmap_pass *pass, int slice, photon_class c,
         .shrunk = (float)photonmap_radius(1.0, plan->how.alpha, pass->index),
         .radii = radii,
     };
-    parallel_for(photons->n, CHUNK, threads, NULL, find_radii, &loop);
+    parallel_for(photons->n, RAYS_AT_ONCE, threads, NULL, find_radii, &loop);
     if (!loop.refused || point_hits_refuse(error))
         pass->in_media[slice][c] = volume_map_build(photons, radii, threads, error);
     big_free(radii);

@@ -5,14 +5,11 @@
 #include "transport/plan/work.h"
 #include "transport/visible.h"
 
+#include <float.h>
+
 /* The first is uniform, the last tells what the guide is worth; between them it is
    refined twice. */
 enum { ROUNDS = 4 };
-
-enum { CHUNK = 256 }; /* size: of a thread's work */
-
-/* id: trial photons are those of passes that no render reaches. */
-#define TRIAL_PASS 0xfffffff0u
 
 /* What a trial photon adds to the noise that paths would have, and to what is left of it
    with shares of all photons. */
@@ -115,7 +112,7 @@ typedef struct trial {
    density, all of them together leave the 1 / (1 + m)-th part. */
 static void add_noise(trial_noise *sum, const photon_event *event, float sight)
 {
-    double w = (double)event->mis_weight, odds = w / fmax(1.0 - w, 1e-9);
+    double w = (double)event->mis_weight, odds = w / fmax(1.0 - w, (double)FLT_EPSILON);
     double survived = fmin(1.0, w / (double)PHOTON_LEAST_WEIGHT);
     double flux = (double)spectrum_mean(event->flux) * survived / w;
     double noise = flux * flux * odds / (survived * (double)sight);
@@ -250,10 +247,10 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
 {
     emission_record *records = all->records + all->n_known;
     trial_noise *noise = all->noise + all->n_known;
-    all->task.pass = TRIAL_PASS + round;
+    all->task.pass = plan_trial_pass(TRIAL_GUIDE + round);
     all->task.w = scene_trial_wavelengths(all->task.scene, round);
     all->round = (guide_trial){0};
-    if (!parallel_for(all->each, CHUNK, (unsigned)all->task.how->threads,
+    if (!parallel_for(all->each, RAYS_AT_ONCE, (unsigned)all->task.how->threads,
                       all->task.cancel, run_trials, all)) {
         error_set(error, ERROR_CANCELLED, "cancelled");
         return false;

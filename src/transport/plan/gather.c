@@ -40,6 +40,16 @@ typedef struct gather_errors {
     double path, samples, photons, bias2;
 } gather_errors;
 
+/* Samples by maps of a place: map[] and other, then wider[]. */
+enum { N_NARROW = 2 + 1, N_BY_MAPS = N_NARROW + 2 }; /* math: as many */
+
+/* What a place costs: two paths, and samples by maps, each of which asks two classes
+   twice at the surface that it sees. */
+static double place_rays(double path_rays)
+{
+    return 2.0 * path_rays + N_BY_MAPS * 2.0 * 2.0 * PHOTON_RAYS;
+}
+
 /* ---- Trial passes ---- */
 
 /* In a medium the bias is not known: its discs have one radius for good. Bounds on
@@ -50,7 +60,7 @@ static bool may_gather(const transport_plan *plan)
     return how->gather_indirect && how->direct_illumination &&
            !scene_has_media(plan->scene) && how->max_backward_bounces < 0 &&
            how->max_forward_bounces < 0 && scene_is_lit(plan->scene) &&
-           plan_grant(plan, 1.0) >= LEAST_TRIALS * 8.0 * SAMPLE_RAYS;
+           plan_grant(plan, 1.0) >= LEAST_TRIALS * place_rays(SAMPLE_RAYS);
 }
 
 /* Photons as of photon mapping, but all of them together take no longer than the camera.
@@ -202,11 +212,10 @@ static void run_places(gather_trial *t, transport_plan *plan, const path_pass *p
 {
     transport_scratch by_maps = {0}, by_paths = {0};
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x706c61636573u);
-    double each = 2.0 * plan->sample_rays + 5.0 * 4.0 * PHOTON_RAYS;
-    t->n = plan_trials_for(plan, 1.0, each, MOST_PAIRS);
+    t->n = plan_trials_for(plan, 1.0, place_rays(plan->sample_rays), MOST_PAIRS);
     t->places = g_new0(gather_place, t->n);
     ask_maps(t, plan, key, false, &by_maps);
-    t->sample_rays = rays_of(&t->plan, &by_maps) / (3.0 * t->n);
+    t->sample_rays = rays_of(&t->plan, &by_maps) / (N_NARROW * t->n);
     for (int i = 0; i < 2; i++)
         widen(t->maps[i], WIDER);
     ask_maps(t, plan, key, true, &by_maps);
@@ -219,11 +228,11 @@ static void run_places(gather_trial *t, transport_plan *plan, const path_pass *p
 
 /* ---- What they say ---- */
 
-/* A place counts by how bright it is, in the dark by how bright the picture is. */
+/* A place counts by how bright it is, and the picture is. */
 static double weight_of(const gather_place *at, double mean)
 {
     double here = (at->map[0] + at->map[1]) / 2.0;
-    return 1.0 / (here * here + 0.1 * mean * mean);
+    return 1.0 / (here * here + mean * mean);
 }
 
 static gather_errors errors_of(const gather_trial *t)

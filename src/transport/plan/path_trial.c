@@ -33,11 +33,12 @@ static double variance_of_pairs(const path_pass *pass, uint64_t key, uint32_t n,
     return sum / n;
 }
 
-path_effort path_effort_measure(transport_plan *plan, photon_store *lit)
+path_effort path_effort_measure(transport_plan *plan)
 {
+    g_autoptr(GArray) lit = g_array_new(FALSE, FALSE, sizeof *plan->lit);
     transport_scratch scratch = {0};
     const path_pass pass = {.plan = plan,
-                            .lit = lit,
+                            .lit = plan->how.bright_spots ? lit : NULL,
                             .without_caustics = true,
                             .w = scene_trial_wavelengths(plan->scene, 0),
                             .options.deterministic = !plan->how.multiple_samples};
@@ -49,6 +50,7 @@ path_effort path_effort_measure(transport_plan *plan, photon_store *lit)
     out.rays = rays / (2.0 * n);
     out.surfaces = (double)scratch.camera_rays / (2.0 * n);
     transport_scratch_clear(&scratch);
+    plan->lit = g_array_steal(lit, &plan->n_lit);
     return out;
 }
 
@@ -72,7 +74,7 @@ static double run_spot_trial(transport_plan *plan, const path_pass *pass,
 /* Of two paths that look from each surface, about as long as two that do not. */
 static double pair_rays(const transport_plan *plan)
 {
-    return 4.0 * fmax(plan->sample_rays, 1.0);
+    return 2.0 * 2.0 * fmax(plan->sample_rays, 1.0);
 }
 
 bool spots_fit(const transport_plan *plan)

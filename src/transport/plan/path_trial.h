@@ -15,9 +15,9 @@ typedef struct path_effort {
 } path_effort;
 
 /** @brief Measures with a few paths. Deterministic.
- *  @param lit gets the places that are lit and light others, as far as room has been
- *  reserved; NULL: not asked for */
-path_effort path_effort_measure(transport_plan *plan, photon_store *lit);
+ * Where bright spots are asked for, plan->lit gets the places that are lit and light
+ * others. */
+path_effort path_effort_measure(transport_plan *plan);
 
 /** @brief Whether a trial of looks fits into the work; if not, nobody looks. */
 bool spots_fit(const transport_plan *plan);

@@ -61,17 +61,10 @@ static void put_cache(const radius_cache *cache, GByteArray *to)
     }
 }
 
-static void put_lit(const photon_store *lit, GByteArray *to)
+static void put_lit(const transport_plan *plan, GByteArray *to)
 {
-    bytes_put_bool(to, lit->oriented);
-    bytes_put_count(to, lit->n);
-    bytes_put(to, lit->x, lit->n, sizeof *lit->x);
-    bytes_put(to, lit->y, lit->n, sizeof *lit->y);
-    bytes_put(to, lit->z, lit->n, sizeof *lit->z);
-    bytes_put(to, lit->wi, lit->n, sizeof *lit->wi);
-    bytes_put(to, lit->flux, lit->n, sizeof *lit->flux);
-    if (lit->oriented)
-        bytes_put(to, lit->normal, lit->n, sizeof *lit->normal);
+    bytes_put_count(to, plan->n_lit);
+    bytes_put(to, plan->lit, plan->n_lit, sizeof *plan->lit);
 }
 
 static void put_shares(const transport_plan *plan, GByteArray *to)
@@ -98,7 +91,7 @@ void plan_put(const transport_plan *plan, GByteArray *to)
         put_cache(plan->radius_cache_in_media[c], to);
     }
     put_cache(plan->vertex_radii, to);
-    put_lit(&plan->lit, to);
+    put_lit(plan, to);
     put_shares(plan, to);
     emission_guide_put(plan->guide, to);
 }
@@ -154,23 +147,14 @@ static bool get_cache(radius_cache **cache, bytes_reader *from, GError **error)
     return ok;
 }
 
-static bool get_lit(photon_store *lit, bytes_reader *from, GError **error)
+static void get_lit(transport_plan *plan, bytes_reader *from)
 {
-    lit->oriented = bytes_get_bool(from);
-    size_t n = bytes_get_count(from, sizeof *lit->flux);
+    size_t n = bytes_get_count(from, sizeof *plan->lit);
     if (n == 0)
-        return true;
-    if (!photon_store_reserve(lit, n, error))
-        return false;
-    bytes_get(from, lit->x, n, sizeof *lit->x);
-    bytes_get(from, lit->y, n, sizeof *lit->y);
-    bytes_get(from, lit->z, n, sizeof *lit->z);
-    bytes_get(from, lit->wi, n, sizeof *lit->wi);
-    bytes_get(from, lit->flux, n, sizeof *lit->flux);
-    if (lit->oriented)
-        bytes_get(from, lit->normal, n, sizeof *lit->normal);
-    lit->n = from->failed ? 0 : n;
-    return true;
+        return;
+    plan->lit = g_new0(lit_place, n);
+    bytes_get(from, plan->lit, n, sizeof *plan->lit);
+    plan->n_lit = from->failed ? 0 : n;
 }
 
 static bool get_shares(transport_plan *plan, bytes_reader *from, GError **error)
@@ -204,8 +188,10 @@ static bool get_all(transport_plan *plan, bytes_reader *from, GError **error)
     for (int c = 0; c < N_PHOTON_CLASSES && ok; c++)
         ok = get_cache(&plan->radius_cache[c], from, error) &&
              get_cache(&plan->radius_cache_in_media[c], from, error);
-    ok = ok && get_cache(&plan->vertex_radii, from, error) &&
-         get_lit(&plan->lit, from, error) && get_shares(plan, from, error);
+    ok = ok && get_cache(&plan->vertex_radii, from, error);
+    if (ok)
+        get_lit(plan, from);
+    ok = ok && get_shares(plan, from, error);
     if (ok)
         plan->guide = emission_guide_get(from);
     return ok;

@@ -28,7 +28,9 @@
 #define PHOTON_RAYS 2.0
 
 /** What is tried must be better than what is there by so much: variances are known within
- * a factor of two, and noise that is even disturbs least. */
+ * a factor of two, and noise that is even disturbs least. With 1 in its place time x
+ * relMSE is 1.3 to 1.7 times as much in a Cornell box and 1.1 to 1.2 in one with glass
+ * and in water, alike in three other scenes (64 x 64, 4 to 64 passes, five seeds). */
 #define CLEARLY_BETTER 0.65
 
 /** Fewer trials of anything tell nothing, as fewer photons do of how close they lie: then
@@ -42,6 +44,17 @@ enum { MOST_PILOTS = RADIUS_NEAREST * MOST_PLACES / 2 };
 /** Pairs of samples of a trial, at every fourth of the places: a variance is then known
  * within a tenth where no sample stands out. */
 enum { MOST_PAIRS = MOST_PLACES / 4 };
+
+/** What traces photons, or light subpaths, before the first pass; the guide does more
+ * than once. */
+enum { TRIAL_RADII, TRIAL_VERTICES, TRIAL_GUIDE };
+
+/** @brief The pass that they are of: one that no render reaches, so that they are not
+ * those of pass 0. */
+static inline uint32_t plan_trial_pass(uint32_t trial)
+{
+    return UINT32_MAX - trial;
+}
 
 /** @brief Camera samples of all passes that are planned. */
 double plan_samples(const transport_plan *plan);

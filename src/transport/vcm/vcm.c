@@ -8,8 +8,8 @@
 #include "transport/visible.h"
 
 /* The automatic radius over that of photon mapping's indirect light: merging is for what
-   connections do not find, and that is sharp. With all of it a furnace is off by 0.1 %.
- */
+   connections do not find, and that is sharp. With all of it a furnace is off by 0.1 %,
+   with that of light with edges a pass through glass takes 1.4 times the work. */
 #define RADIUS_SHARE 0.25
 
 vcm_strategies vcm_strategies_of(int choice)
@@ -31,12 +31,11 @@ static bool choose_radius(transport_plan *plan, const cancel_flag *cancel, GErro
 {
     bool ok = photonmap_choose_radii(plan, cancel, error);
     double *radius = &plan->radius[PHOTON_INDIRECT];
-    double pixel = (double)visible_pixel(plan);
-    bool connects = vcm_strategies_of(plan->how.vcm_strategies).connect;
-    if (!(plan->how.radius > 0.0))
-        *radius *= RADIUS_SHARE;
-    if (!(plan->how.radius > 0.0) && connects && pixel > 0.0)
-        *radius = fmin(*radius, SHARP_PIXELS * pixel);
+    if (plan->how.radius > 0.0)
+        return ok;
+    *radius *= RADIUS_SHARE;
+    if (vcm_strategies_of(plan->how.vcm_strategies).connect)
+        *radius = fmin(*radius, sharp_radius(plan));
     return ok;
 }
 
@@ -103,9 +102,6 @@ photon vcm_photon(const vcm_pass *pass, const light_vertex *v)
     return p;
 }
 
-/* size: vertices per parallel piece of work */
-enum { VERTEX_CHUNK = 4096 };
-
 typedef struct vertex_loop {
     vcm_pass *pass;
     photon_store *store;
@@ -146,8 +142,8 @@ static bool fill_store(vcm_pass *pass, photon_store *store, GError **error)
         return false;
     vertex_loop loop = {pass, store};
     store->n = n;
-    parallel_for(n, VERTEX_CHUNK, (unsigned)pass->plan->how.threads, NULL, store_vertices,
-                 &loop);
+    parallel_for(n, ITEMS_AT_ONCE, (unsigned)pass->plan->how.threads, NULL,
+                 store_vertices, &loop);
     return true;
 }
 
@@ -166,7 +162,7 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
         pass->merged = big_alloc(n, sizeof *pass->merged, "light vertices", error);
     if (!pass->merged)
         return false;
-    if (!parallel_for(n, VERTEX_CHUNK, (unsigned)how->threads, pass->plan->cancel,
+    if (!parallel_for(n, ITEMS_AT_ONCE, (unsigned)how->threads, pass->plan->cancel,
                       merge_some, pass)) {
         error_set(error, ERROR_CANCELLED, "cancelled");
         return false;

@@ -123,12 +123,11 @@ static float light_weight(const camera_walk *c, const vcm_vertex *v, int index,
 
 static void connect_to_light(camera_walk *c, const vcm_vertex *v)
 {
-    float u_light = sampler_1d(c->random), u_primitive = sampler_1d(c->random);
-    vec2 u = sampler_2d(c->random);
+    const light_numbers u = sampler_light(c->random);
     int index;
     light_sample to_light;
-    if (!scene_sample_light(c->pass->scene, &c->pass->w, v->hit->p, u_light, u_primitive,
-                            u, &index, &to_light))
+    if (!scene_sample_light(c->pass->scene, &c->pass->w, v->hit->p, u.light, u.primitive,
+                            u.place, &index, &to_light))
         return;
     lobe_pair f = vcm_scatter(v, to_light.wi, TRANSPORT_RADIANCE);
     if (lobe_pair_is_black(&f))

@@ -7,9 +7,6 @@
 #include "transport/plan/work.h"
 #include "transport/vcm/vcm.h"
 
-/* id: a pass that no render reaches. */
-#define PILOT_PASS 0xfffffffeu
-
 static bool nearest(const void *vertices, vec3 p, point_hits *hits)
 {
     return point_set_nearest(vertices, p, RADIUS_NEAREST, INFINITY, hits);
@@ -60,7 +57,7 @@ bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **
         .plan = plan,
         .scene = plan->scene,
         .w = scene_trial_wavelengths(plan->scene, 0),
-        .index = PILOT_PASS,
+        .index = plan_trial_pass(TRIAL_VERTICES),
         .strategies.merge = true,
         .n_slices = 1,
         .light.n = MIN(plan->n_photons[PHOTON_INDIRECT],

@@ -8,9 +8,6 @@
 
 #include <string.h>
 
-/* size: light subpaths per parallel piece of work */
-enum { CHUNK = 1024 };
-
 /* What one chunk found, until the chunks are joined. */
 typedef struct light_chunk {
     light_vertex *vertices;
@@ -61,7 +58,7 @@ static void *grown(void *array, size_t n, size_t *capacity, size_t size, GError 
 {
     if (n < *capacity)
         return array;
-    size_t room = MAX(2 * *capacity, CHUNK);
+    size_t room = MAX(2 * *capacity, RAYS_AT_ONCE);
     void *grown_array = big_grow(array, n, room, size, "light vertices", error);
     if (grown_array)
         *capacity = room;
@@ -201,14 +198,14 @@ static bool emit(light_walk *l)
 {
     const vcm_pass *pass = l->pass;
     const distribution *power = &pass->scene->light_power;
-    float u_light = sampler_1d(&l->random), u_primitive = sampler_1d(&l->random);
-    vec2 u_position = sampler_2d(&l->random), u_direction = sampler_2d(&l->random);
+    light_numbers u = sampler_light(&l->random);
+    vec2 u_direction = sampler_2d(&l->random);
     if (!scene_is_lit(pass->scene))
         return false;
-    size_t index = distribution_sample(power, &u_light);
+    size_t index = distribution_sample(power, &u.light);
     const light *from = scene_light(pass->scene, (int)index);
     light_emission e = {.primitive = 0};
-    if (!from->kind->emit(from->self, &pass->w, u_primitive, u_position, u_direction, &e))
+    if (!from->kind->emit(from->self, &pass->w, u.primitive, u.place, u_direction, &e))
         return false;
     float p_light = distribution_pdf(power, index);
     l->light = (int)index;
@@ -337,7 +334,7 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     light_loop *loop = data;
-    light_chunk *out = &loop->chunks[begin / CHUNK];
+    light_chunk *out = &loop->chunks[begin / RAYS_AT_ONCE];
     const cancel_flag *cancel = loop->pass->plan->cancel;
     for (size_t i = begin; i < end && !out->error && !cancelled(cancel); i++) {
         light_walk l = walk_of(loop->pass, i);
@@ -372,7 +369,7 @@ static void join_chunk(size_t c, size_t end, unsigned thread, void *data)
     if (from->n_splats > 0)
         memcpy(to->splats + from->first_splat, from->splats,
                from->n_splats * sizeof *from->splats);
-    for (size_t i = c * CHUNK; i < MIN((c + 1) * CHUNK, to->n); i++)
+    for (size_t i = c * RAYS_AT_ONCE; i < MIN((c + 1) * RAYS_AT_ONCE, to->n); i++)
         to->end[i] += from->first_vertex;
     chunk_clear(from);
 }
@@ -422,7 +419,7 @@ bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts
                      GError **error)
 {
     light_paths *paths = &pass->light;
-    size_t n_chunks = (paths->n + CHUNK - 1) / CHUNK;
+    size_t n_chunks = (paths->n + RAYS_AT_ONCE - 1) / RAYS_AT_ONCE;
     light_chunk *chunks = big_alloc(n_chunks, sizeof *chunks, "light subpaths", error);
     paths->end =
         chunks ? big_alloc(paths->n, sizeof *paths->end, "light subpaths", error) : NULL;
@@ -431,8 +428,8 @@ bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts
         return false;
     }
     light_loop loop = {pass, chunks};
-    bool done = parallel_for(paths->n, CHUNK, (unsigned)pass->plan->how.threads, cancel,
-                             trace_chunk, &loop);
+    bool done = parallel_for(paths->n, RAYS_AT_ONCE, (unsigned)pass->plan->how.threads,
+                             cancel, trace_chunk, &loop);
     if (!done)
         error_set(error, ERROR_CANCELLED, "cancelled");
     bool joined = done && join(&loop, n_chunks, counts, error);

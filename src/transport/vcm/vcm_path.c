@@ -111,5 +111,5 @@ float vcm_alone_at(const vcm_pass *pass, const surface_hit *hit, point_hits *hit
         return 1.0f;
     vec3 p = scene_hit_place(pass->scene, hit);
     float within = pass->ratios.merge * density_at(pass->plan, p, hits);
-    return 1.0f / (1.0f + fminf(within, 1e6f));
+    return 1.0f / (1.0f + fminf(within, 1.0f / FLT_EPSILON));
 }
