@@ -52,10 +52,22 @@ static bool read_look(char *line, frame_look *out)
     return at[strspn(at, " \t\r")] == '\0';
 }
 
+/* Opening a pipe that nobody writes to would wait. */
+static bool is_no_file(const char *path)
+{
+    return g_file_test(path, G_FILE_TEST_EXISTS) &&
+           !g_file_test(path, G_FILE_TEST_IS_REGULAR);
+}
+
 static bool read_looks(frames *f, const char *path, GError **error)
 {
     g_autofree char *text = NULL;
     g_autoptr(GError) inner = NULL;
+    if (is_no_file(path)) {
+        g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_INPUT,
+                    "--camera: expected a file, found '%s', which is none", path);
+        return false;
+    }
     if (!g_file_get_contents(path, &text, NULL, &inner)) {
         g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_INPUT, "--camera: %s",
                     inner->message);

@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const char path[] = "# three views\n"
                            "LookAt 0 0 -2  0 0 0  0 1 0\n\n"
@@ -95,9 +96,12 @@ static void test_refused(folder *f, gconstpointer data)
         {"--fps 25 -o a.exr", "--fps: expected --frame or --camera too", 2},
         {"--frame 1 -o a.exr --grain no", "--grain: expected fixed or varying", 2},
         {"--camera none -o a.exr", "--camera: ", 1},
+        {"--camera pipe -o a.exr", "expected a file, found 'pipe', which is none", 1},
         {"--camera path --frame 2-9 -o a.exr", "expected frames 1 to 3", 2},
         {"--camera wrong -o a.exr", "wrong:2: error: expected LookAt and nine", 1},
     };
+    g_autofree char *pipe = g_build_filename(f->path, "pipe", NULL);
+    g_assert_cmpint(mkfifo(pipe, 0600), ==, 0);
     folder_write(f, "path", path);
     folder_write(f, "wrong", "LookAt 0 0 -2 0 0 0 0 1 0\nLookAt 0 0 -2 0 0 0 0 1\n");
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
@@ -107,7 +111,7 @@ static void test_refused(folder *f, gconstpointer data)
         g_assert_cmpint(r.code, ==, cases[i].code);
         contains(r.err, cases[i].part);
     }
-    g_assert_cmpuint(folder_count(f), ==, 3);
+    g_assert_cmpuint(folder_count(f), ==, 4);
 }
 
 int main(int argc, char **argv)
