@@ -9,11 +9,13 @@ static void report_photons(const NephStatistics *s)
     uint64_t sent = 0;
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
         sent += s->emitted[c];
+    const char *why =
+        s->short_of_memory ? "fit into memory (--memory)" : "be worth their time here";
     if (s->photons_wanted > 0 && s->passes > 0)
         tell("note",
              "of photons = %" G_GINT64_FORMAT " a pass %" G_GUINT64_FORMAT
-             " were sent: more would not be worth their time here",
-             s->photons_wanted, sent / (uint64_t)s->passes);
+             " were sent: more would not %s",
+             s->photons_wanted, sent / (uint64_t)s->passes, why);
 }
 
 static void report_noise(const NephStatistics *s)

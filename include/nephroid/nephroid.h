@@ -76,6 +76,9 @@ NEPH_API void neph_file_abandon_all(void);
  * @param size a number of bytes, with K, M, G or T of 1024, 1024², ...: "2G", "500M";
  * NULL: as at first, 80 % of what the machine, the process's cgroup and ulimit -v have,
  * whichever is least
+ * A render whose photons would not fit sends fewer (NephStatistics.short_of_memory), and
+ * one of which the fewest do not fails before its first pass, saying what it takes and
+ * what the limit is: there all memory of the process counts.
  * @return false with NEPH_ERROR_USAGE; the limit is as it was. From any thread. */
 NEPH_API bool neph_memory_set_limit(const char *size, GError **error);
 /** @brief The limit in bytes. */
@@ -389,13 +392,15 @@ typedef struct NephStatistics {
                      passes; INFINITY while there are too few. While rendering it is only
                      kept if the setting `noise` asks for it. */
     int64_t photons_wanted; /**< a pass by the settings, if fewer are sent since that is
-                               worth more; else 0 */
+                               worth more, or short_of_memory; else 0 */
     bool left_noisy; /**< noise was to be taken out (`denoise`), but for that there was no
                         time: there is no layer "denoised" */
     bool can_look;   /**< neph_render_image may be called now */
     double part; /**< so many of the pixels, 0..1, have samples of one pass more: of the
                     first while it is under way, and of the last if time ended it */
     NephStop stopped_by;
+    bool short_of_memory; /**< fewer photons are sent a pass than wanted, since more would
+                             not fit into the limit of memory */
 } NephStatistics;
 
 /** @brief Told after every pass and some times within one, on the thread that called

@@ -59,6 +59,7 @@ static char *statistics_json(const NephStatistics *s)
     json_object_end(&j);
     json_count(&j, "not_finite", s->n_not_finite);
     json_bool(&j, "left_noisy", s->left_noisy);
+    json_bool(&j, "short_of_memory", s->short_of_memory);
     json_object_end(&j);
     return json_finish(&j);
 }

@@ -66,24 +66,23 @@ size_t memory_left(void)
     return all - MIN(atomic_load(&used), all);
 }
 
-/* "3.5 GiB" */
-static void write_size(size_t bytes, char *out, size_t size)
+void memory_write_size(size_t bytes, char out[MEMORY_SIZE_TEXT])
 {
     static const char *const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
     double x = (double)bytes;
     size_t unit = 0;
     for (; x >= 1024.0 && unit + 1 < G_N_ELEMENTS(units); unit++)
         x /= 1024.0;
-    g_snprintf(out, (gulong)size, unit ? "%.1f %s" : "%.0f %s", x, units[unit]);
+    g_snprintf(out, MEMORY_SIZE_TEXT, unit ? "%.1f %s" : "%.0f %s", x, units[unit]);
 }
 
 static void refuse_beside(size_t in_use, size_t bytes, const char *what, GError **error)
 {
-    char wanted[32], left[32], most[32];
+    char wanted[MEMORY_SIZE_TEXT], left[MEMORY_SIZE_TEXT], most[MEMORY_SIZE_TEXT];
     size_t all = memory_limit();
-    write_size(bytes, wanted, sizeof wanted);
-    write_size(all - MIN(in_use, all), left, sizeof left);
-    write_size(all, most, sizeof most);
+    memory_write_size(bytes, wanted);
+    memory_write_size(all - MIN(in_use, all), left);
+    memory_write_size(all, most);
     error_set(error, ERROR_FAILED,
               "out of memory: %s for %s, where %s are left of the limit of %s", wanted,
               what, left, most);
@@ -207,6 +206,35 @@ typedef struct array_head {
     void *base;
 } array_head;
 
+/* From the system where an array is large: of what malloc is given back it keeps pieces,
+   which do not fit what comes next. A sanitizer watches what comes from malloc only. */
+static bool is_mapped(size_t bytes)
+{
+#ifdef SANITIZED
+    return false && bytes;
+#else
+    enum { MAPPED_ARRAY = 1 << 20 };
+    return bytes >= MAPPED_ARRAY;
+#endif
+}
+
+static void *take(size_t bytes)
+{
+    if (!is_mapped(bytes))
+        return calloc(1, bytes);
+    void *base =
+        mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return base == MAP_FAILED ? NULL : base;
+}
+
+static void give_back(const array_head *head)
+{
+    if (is_mapped(head->bytes))
+        munmap(head->base, head->bytes);
+    else
+        free(head->base);
+}
+
 void *big_alloc(size_t n, size_t size, const char *what, GError **error)
 {
     const size_t alignment = 64;
@@ -216,7 +244,7 @@ void *big_alloc(size_t n, size_t size, const char *what, GError **error)
     size_t total = rounded + alignment;
     if (!memory_reserve(total, what, error))
         return NULL;
-    char *base = must_fail() ? NULL : calloc(1, total);
+    char *base = must_fail() ? NULL : take(total);
     if (!base) {
         memory_release(total);
         refuse(total, what, error);
@@ -224,7 +252,7 @@ void *big_alloc(size_t n, size_t size, const char *what, GError **error)
     }
     if (rounded >= HUGE_ARRAY)
         use_huge_pages(base, rounded);
-    atomic_fetch_add(&in_arrays, total);
+    atomic_fetch_add(&in_arrays, is_mapped(total) ? 0 : total);
     uintptr_t array = ((uintptr_t)base + alignment) & ~(uintptr_t)(alignment - 1);
     ((array_head *)array)[-1] = (array_head){total, base};
     return (void *)array;
@@ -247,8 +275,8 @@ void big_free(void *array)
         return;
     const array_head head = ((array_head *)array)[-1];
     memory_release(head.bytes);
-    atomic_fetch_sub(&in_arrays, head.bytes);
-    free(head.base);
+    atomic_fetch_sub(&in_arrays, is_mapped(head.bytes) ? 0 : head.bytes);
+    give_back(&head);
 }
 
 size_t memory_peak(void)

@@ -50,6 +50,9 @@ bool memory_ask(size_t bytes, const char *what, GError **error);
  * what the machine, the process's cgroup and ulimit -v have, whichever is least */
 void memory_set_limit(size_t bytes);
 size_t memory_limit(void);
+enum { MEMORY_SIZE_TEXT = 32 };
+/** @brief As "3.5 GiB". */
+void memory_write_size(size_t bytes, char out[MEMORY_SIZE_TEXT]);
 /** @brief What of the limit is neither reserved nor in arrays. */
 size_t memory_left(void);
 

@@ -3,6 +3,7 @@
 #include "image/exr.h"
 #include "render/film_halves.h"
 
+#include <math.h>
 #include <string.h>
 
 size_t film_planes(const film *f, film_plane out[FILM_MOST_PLANES])
@@ -129,6 +130,11 @@ size_t film_bytes(const film *f)
     return bytes;
 }
 
+size_t film_bytes_in_all(const film *f)
+{
+    return film_bytes(f) + f->image_size + f->denoise_size;
+}
+
 static size_t scaled(size_t bytes, double by)
 {
     return (size_t)((double)bytes * by);
@@ -139,8 +145,8 @@ film_size film_size_for(const view *v, bool denoise)
 {
     enum { SIDE = 16 };
     const float *crop = v->film.crop;
-    int width = (int)((crop[1] - crop[0]) * (float)v->film.width);
-    int height = (int)((crop[3] - crop[2]) * (float)v->film.height);
+    int width = (int)(fmaxf(crop[1] - crop[0], 0.0f) * (float)v->film.width);
+    int height = (int)(fmaxf(crop[3] - crop[2], 0.0f) * (float)v->film.height);
     double more = (double)width * (double)height / (SIDE * SIDE);
     view small = *v;
     film f;

@@ -31,6 +31,8 @@ void film_reset(film *f);
 /** @brief An open film's sums, those of the pass under way with them; what is reserved
  * for later (image_size, denoise_size) is not there yet. */
 size_t film_bytes(const film *f);
+/** @brief With what is reserved. */
+size_t film_bytes_in_all(const film *f);
 
 /** @brief What a film takes, bytes. */
 typedef struct film_size {

@@ -3,10 +3,19 @@
 #include "base/memory.h"
 #include "render/film_halves.h"
 #include "render/film_planes.h"
+#include "render/photon_share.h"
 
 #include <math.h>
 
-enum { PROBE = 1 << 16 /* size: so many photons tell what one takes */ };
+enum {
+    PROBE = 1 << 16,       /* size: so many photons tell what one takes */
+    PHOTON_MOST = 4 << 10, /* bytes: what one takes, in all places where it is stored */
+    TRIES = 8,             /* to choose photons: each time a tenth fewer at least */
+    DIGITS_KEPT = 100,     /* of a number of photons, so that it is the same again */
+};
+
+/* Passes differ in what their photons take, and are planned for so much more. */
+#define MARGIN 1.1
 
 static uint64_t n_photons(const transport_plan *plan)
 {
@@ -17,25 +26,27 @@ static uint64_t n_photons(const transport_plan *plan)
 }
 
 /* The most that arrays had at once while a pass of this plan was begun. */
-static size_t begin_and_end(const transport_plan *plan)
+static size_t begin_and_end(const transport_plan *plan, const cancel_flag *cancel)
 {
     const transport_kind *kind = transport_find((int)plan->how.integrator);
     transport_counts counts = {0};
     size_t before = memory_forget_most();
-    void *pass = kind->begin_pass(plan, 0, NULL, &counts, NULL);
+    void *pass = kind->begin_pass(plan, 0, cancel, &counts, NULL);
     size_t most = memory_most();
     if (pass)
         kind->end_pass(pass);
     return most - MIN(most, before);
 }
 
-static size_t photon_bytes(const transport_plan *plan)
+/* What the photons of a pass take, as so many of them tell. */
+static size_t photon_bytes(const transport_plan *plan, double probe,
+                           const cancel_flag *cancel)
 {
     transport_plan small = *plan;
-    double share = fmin((double)PROBE / (double)MAX(n_photons(plan), 1), 1.0);
+    double share = fmin(probe / (double)MAX(n_photons(plan), 1), 1.0);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         small.n_photons[c] = (uint64_t)ceil((double)plan->n_photons[c] * share);
-    return (size_t)((double)begin_and_end(&small) / share);
+    return (size_t)((double)begin_and_end(&small, cancel) / share);
 }
 
 static size_t plan_bytes(const view *v, const settings *how)
@@ -43,7 +54,7 @@ static size_t plan_bytes(const view *v, const settings *how)
     transport_plan plan = transport_plan_of(v, how);
     size_t bytes = 0;
     if (transport_plan_prepare(&plan, NULL, NULL) && n_photons(&plan) > 0)
-        bytes = photon_bytes(&plan);
+        bytes = photon_bytes(&plan, PROBE, NULL);
     transport_plan_clear(&plan);
     return bytes;
 }
@@ -57,4 +68,83 @@ size_t footprint_of(const view *v, const settings *how)
     size_t written = size.sums + MAX(denoising, size.image + size.writing);
     size_t rendered = (several ? size.sums : size.pass) + plan_bytes(v, how);
     return MAX(before, now + MAX(written, rendered));
+}
+
+/* ---- Photons that fit ---- */
+
+bool footprint_check(size_t beside, GError **error)
+{
+    char all[MEMORY_SIZE_TEXT], limit[MEMORY_SIZE_TEXT];
+    if (beside <= memory_limit())
+        return true;
+    memory_write_size(beside, all);
+    memory_write_size(memory_limit(), limit);
+    error_set(error, ERROR_FAILED,
+              "out of memory: %s at least for rendering, beyond the limit of %s", all,
+              limit);
+    return false;
+}
+
+static bool refuse_photons(size_t beside, size_t need, const transport_plan *plan,
+                           GError **error)
+{
+    char all[MEMORY_SIZE_TEXT], theirs[MEMORY_SIZE_TEXT], limit[MEMORY_SIZE_TEXT];
+    memory_write_size(beside + need, all);
+    memory_write_size(need, theirs);
+    memory_write_size(memory_limit(), limit);
+    error_set(error, ERROR_FAILED,
+              "out of memory: %s at least for rendering, %s of it for %" G_GUINT64_FORMAT
+              " photons a pass, beyond the limit of %s",
+              all, theirs, n_photons(plan), limit);
+    return false;
+}
+
+/* 123456 as 120000. */
+static int64_t rounded(int64_t n)
+{
+    int64_t unit = 1;
+    while (n / unit >= DIGITS_KEPT)
+        unit *= 10;
+    return n / unit * unit;
+}
+
+/* @return false: there are as few as there may be */
+static bool send_fewer(transport_plan *plan, double share)
+{
+    settings *how = &plan->how;
+    const settings before = *how;
+    uint64_t times = how->photons_per_light ? MAX(plan->scene->lights->len, 1) : 1;
+    how->photons = MIN(settings_photons(how), (int64_t)MAX(n_photons(plan) / times, 1));
+    photon_share_take(how, share);
+    bool fewer = how->photons < settings_photons(&before);
+    how->photons = rounded(how->photons);
+    for (int c = 0; c < N_CLASSES; c++) {
+        how->class_photons[c] = rounded(how->class_photons[c]);
+        fewer |= how->class_photons[c] < before.class_photons[c];
+    }
+    return fewer;
+}
+
+/* What they take that are planned, and a margin. */
+static size_t photons_need(const transport_plan *plan, size_t room,
+                           const cancel_flag *cancel)
+{
+    double probe = CLAMP((double)room / PHOTON_MOST, PHOTON_SHARE_LEAST, PROBE);
+    return (size_t)(MARGIN * (double)photon_bytes(plan, probe, cancel));
+}
+
+bool footprint_fit(transport_plan *plan, size_t beside, bool may_choose,
+                   const cancel_flag *cancel, GError **error)
+{
+    size_t limit = memory_limit(), room = limit - MIN(beside, limit), need = 0;
+    for (int i = 0; i < TRIES && !cancelled(cancel); i++) {
+        if (n_photons(plan) <= room / PHOTON_MOST ||
+            (need = photons_need(plan, room, cancel)) <= room)
+            return true;
+        if (!may_choose || !send_fewer(plan, fmin((double)room / (double)need, 0.9)))
+            break;
+        if (!transport_plan_prepare(plan, cancel, error))
+            return false;
+    }
+    return cancelled(cancel) || refuse_photons(beside, need, plan, error);
 }

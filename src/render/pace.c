@@ -1,11 +1,12 @@
 #include "render/pace.h"
+
 #include "base/clock.h"
+#include "render/photon_share.h"
 
 #include <math.h>
 
 enum {
     PASSES_WANTED = 20,   /* so that the last one ends close to the time asked for */
-    LEAST_PHOTONS = 1000, /* of a pass */
     PARTS = 64,           /* of a pass are planned for at least */
     TRIAL_PHOTONS = 4096, /* a thread */
     MOST_TRIAL_THREADS = 16,
@@ -27,21 +28,6 @@ enum {
 
 /* Time is never as short as that: a picture there must be. */
 #define LEAST_LEFT 0.05
-
-static int64_t scaled(int64_t n, double share)
-{
-    return MAX((int64_t)((double)n * share), MIN(n, LEAST_PHOTONS));
-}
-
-static void scale_photons(settings *how, double share)
-{
-    if (share >= 1.0)
-        return;
-    how->photons = scaled(settings_photons(how), share);
-    for (int c = 0; c < N_CLASSES; c++)
-        if (how->class_photons[c] > 0)
-            how->class_photons[c] = scaled(how->class_photons[c], share);
-}
 
 /* ---- Measuring ---- */
 
@@ -113,7 +99,7 @@ static double shrink(transport_plan *trial, double n_pixels)
     double before = (double)settings_photons(how);
     how->spp = 1;
     how->planned_passes = TRIAL_PLANNED / n_pixels;
-    scale_photons(how, TRIAL_PHOTONS * threads / before);
+    photon_share_take(how, TRIAL_PHOTONS * threads / before);
     return (double)settings_photons(how) / before;
 }
 
@@ -190,7 +176,7 @@ settings pace_choose(const settings *how, const pace_costs *costs, double n_pixe
         double time_for_photons = fmax(most, fmin(look, PHOTON_SHARE * left));
         photons = fmin((double)out.spp / (double)how->spp,
                        costs->photons > 0.0 ? time_for_photons / costs->photons : 1.0);
-        scale_photons(&out, photons);
+        photon_share_take(&out, photons);
         whole = costs->pass + photons * costs->photons + look;
     }
     if (out.spp > 1 && how->first_spp == 0)

@@ -2,6 +2,8 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "render/film_planes.h"
+#include "render/footprint.h"
 #include "render/pace.h"
 #include "render/render_state.h"
 #include "render/stop.h"
@@ -18,7 +20,9 @@ render *render_new(const view *v, const settings *how, GError **error)
     r->statistics.noise = (double)INFINITY;
     bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
     r->statistics.passes_wanted = open_end ? 0 : (int64_t)ceil(settings_most_passes(how));
-    if (film_open(&r->film, v, how->denoise, error))
+    size_t before = memory_resident();
+    if (film_open(&r->film, v, how->denoise, error) &&
+        footprint_check(r->beside = before + film_bytes_in_all(&r->film), error))
         return r;
     render_free(r);
     return NULL;
@@ -59,16 +63,35 @@ static bool set_pace(render *r, GError **error)
     return r->paced = true;
 }
 
+static uint64_t photons_planned(const render *r)
+{
+    uint64_t n = 0;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        n += r->plan.n_photons[c];
+    return n;
+}
+
 /* Says so where the plan has clearly fewer photons than were asked for. */
 static void note_photons(render *r)
 {
     const settings *how = &r->asked;
-    double planned = 0.0;
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        planned += (double)r->plan.n_photons[c];
-    bool fewer = planned + N_PHOTON_CLASSES < (double)how->photons;
-    r->statistics.photons_wanted =
-        fewer && settings_reads(how, settings_find("photons")) ? how->photons : 0;
+    bool fewer = photons_planned(r) + N_PHOTON_CLASSES < (uint64_t)how->photons;
+    if (!r->statistics.short_of_memory)
+        r->statistics.photons_wanted =
+            fewer && settings_reads(how, settings_find("photons")) ? how->photons : 0;
+}
+
+/* A plan that others have too is taken as it is. */
+static bool fit_memory(render *r, GError **error)
+{
+    uint64_t wanted = photons_planned(r);
+    if (r->photons)
+        return true;
+    bool ok = footprint_fit(&r->plan, r->beside, !r->expected, &r->cancel, error);
+    r->statistics.short_of_memory = ok && photons_planned(r) < wanted;
+    if (r->statistics.short_of_memory)
+        r->statistics.photons_wanted = (int64_t)wanted;
+    return ok;
 }
 
 /* What goes on from a checkpoint must be planned as that was. */
@@ -91,7 +114,7 @@ bool render_prepare(render *r, GError **error)
     r->prepared = (r->photons ? render_plan_by_file(r, error)
                               : set_pace(r, error) && transport_plan_prepare(
                                                           &r->plan, &r->cancel, error)) &&
-                  plan_is_expected(r, error);
+                  fit_memory(r, error) && plan_is_expected(r, error);
     if (r->prepared && cancelled(&r->cancel)) { /* what was measured is worth nothing */
         error_set(error, ERROR_CANCELLED, "cancelled");
         r->prepared = false;

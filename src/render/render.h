@@ -31,6 +31,7 @@ typedef struct render_statistics {
     uint64_t n_not_finite;
     double noise; /**< relative error of the picture (film_noise), INFINITY if unknown */
     int64_t photons_wanted; /**< a pass by the settings, if the plan has fewer; else 0 */
+    bool short_of_memory;   /**< more would not fit into the memory limit */
     bool left_noisy; /**< noise was to be taken out, but for that there was no time */
     bool can_look;   /**< render_image may be called now */
     double part; /**< of the pixels of the pass under way are in the picture, if it ended

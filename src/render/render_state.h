@@ -31,6 +31,7 @@ struct render {
     render_statistics statistics;
     cancel_flag cancel;
     unsigned n_threads;
+    size_t beside; /* bytes of the process, the film's with them, without photons */
 
     /* Of the call under way. */
     render_progress progress;

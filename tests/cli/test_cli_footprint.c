@@ -3,9 +3,12 @@
  * renders, as the system counts it: within a tenth of it, and 4 MiB. These are the
  * process' own, which no scene tells of: code and tables that only rendering touches,
  * stacks of threads, and what malloc keeps of pieces that were freed.
+ *
+ * And a limit of memory is kept: by fewer photons, or no render.
  */
 #include "cli_run.h"
 
+#include <math.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -103,9 +106,101 @@ static void test_info_tells(folder *f, gconstpointer data)
         check(f, &all[i]);
 }
 
+/* ---- A limit ---- */
+
+#define PHOTONS "\"integer photons\" 1500000"
+
+/* Renders that take more than the limits below, most of it for photons. */
+static const example greedy[] = {
+    {SPPM, "2 \"integer photonsperiteration\" 1500000", 64, 64, 0},
+    {AUTO, "2 \"integer caustic_photons\" 1500000", 64, 64, 0},
+    {VCM, "2 " PHOTONS, 64, 64, 0},
+    {"Integrator \"photonmap\" " SAID, "2 " PHOTONS " \"bool final_gather\" true", 64, 64,
+     0},
+};
+
+static void check_kept(const folder *f, double mebibytes, bool fits)
+{
+    struct rusage used;
+    g_autofree char *limit = g_strdup_printf("%.0fM", mebibytes);
+    const char *argv[] = {run_program(), "render", "sized.pbrt", "-o",     "a.exr",
+                          "--memory",    limit,    "--stats",    "s.json", NULL};
+    GPid child;
+    int status = 0;
+    g_assert_true(g_spawn_async(f->path, (char **)argv, NULL,
+                                G_SPAWN_DO_NOT_REAP_CHILD | G_SPAWN_STDOUT_TO_DEV_NULL |
+                                    G_SPAWN_STDERR_TO_DEV_NULL,
+                                NULL, NULL, &child, NULL));
+    g_assert_cmpint(wait4(child, &status, 0, &used), ==, child);
+    g_assert_cmpint(status, ==, 0);
+    double peak = (double)used.ru_maxrss / 1024.0;
+    g_autofree char *stats = folder_read(f, "s.json");
+    g_test_message("limit %.0f MiB, measured %.1f", mebibytes, peak);
+    g_assert_cmpfloat(peak, <=, mebibytes * (1.0 + SHARE));
+    g_assert_true(fits == !strstr(stats, "\"short_of_memory\": true"));
+    if (!fits) /* nor is much of it left unused */
+        g_assert_cmpfloat(peak, >=, 0.7 * mebibytes);
+}
+
+static void test_limit_is_kept(folder *f, gconstpointer data)
+{
+    (void)data;
+    for (size_t i = 0; i < G_N_ELEMENTS(greedy); i++) {
+        write_scene(f, &greedy[i]);
+        double all = told(f) / 0x1p20;
+        g_test_message("%s%s: told %.1f MiB", greedy[i].integrator, greedy[i].passes,
+                       all);
+        g_assert_cmpfloat(all, >, 55.0);
+        check_kept(f, ceil(1.3 * all), true);
+        check_kept(f, ceil(0.6 * all), false);
+    }
+}
+
+/* Before the first pass, with what it takes and what there is; nothing is written. */
+static void test_too_much_is_refused(folder *f, gconstpointer data)
+{
+    (void)data;
+    static const example all[] = {
+        {PATH, "2", 256, 256, 1}, {AUTO, "2", 256, 256, 0}, {SPPM, "2", 256, 256, 0}};
+    for (size_t i = 0; i < G_N_ELEMENTS(all); i++) {
+        write_scene(f, &all[i]);
+        g_auto(result) r = run(f, "render sized.pbrt -o none.png --memory 76M");
+        g_assert_cmpint(r.code, ==, 3);
+        const char *at = strstr(r.err, "out of memory: ");
+        g_assert_nonnull(at);
+        g_assert_nonnull(strstr(at, "MiB at least for rendering"));
+        double needs = g_ascii_strtod(at + strlen("out of memory: "), NULL);
+        g_assert_cmpfloat(needs, >, 76.0);
+        g_assert_nonnull(strstr(r.err, "limit of 76.0 MiB"));
+        g_assert_null(strstr(r.err, "1 of 2"));
+        g_assert_false(folder_has(f, "none.png"));
+        /* What it is said to take is enough. */
+        g_autofree char *enough = g_strdup_printf(
+            "render sized.pbrt -q -o a.png --memory %.0fM", ceil(needs) + 2.0);
+        run_well(f, enough);
+    }
+}
+
+/* Fewer photons are a setting like any other: who has more memory goes on as before. */
+static void test_limit_is_of_one_process(folder *f, gconstpointer data)
+{
+    (void)data;
+    write_scene(f, &greedy[0]);
+    run_well(f, "render sized.pbrt -q -o a.exr --memory 60M");
+    run_well(f, "render sized.pbrt -q -o b.exr --memory 60M --passes 1 --set "
+                "planned_passes=2 --checkpoint kept");
+    run_well(f, "render sized.pbrt -q -o b.exr --resume kept --passes 2");
+    g_auto(result) same = run(f, "compare a.exr b.exr --json");
+    g_assert_cmpint(same.code, ==, 0);
+    g_assert_nonnull(strstr(same.out, "\"rmse\": 0,"));
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     folder_add_test("/cli/footprint", test_info_tells);
+    folder_add_test("/cli/footprint/kept", test_limit_is_kept);
+    folder_add_test("/cli/footprint/refused", test_too_much_is_refused);
+    folder_add_test("/cli/footprint/goes-on", test_limit_is_of_one_process);
     return g_test_run();
 }

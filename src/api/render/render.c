@@ -28,6 +28,7 @@ NephStatistics statistics_export(const render_statistics *from)
                           .n_not_finite = from->n_not_finite,
                           .noise = from->noise,
                           .photons_wanted = from->photons_wanted,
+                          .short_of_memory = from->short_of_memory,
                           .left_noisy = from->left_noisy,
                           .can_look = from->can_look,
                           .part = from->part,
