@@ -105,7 +105,7 @@ struct light {
     source_place place;
     char *group;            /**< light group's name, NULL: the default one */
     int group_index;        /**< in scene->light_groups, if there are any */
-    medium_stack solids;    /**< that it shines in; no participating medium */
+    medium_stack inside;    /**< that it shines in; no participating medium */
     medium_interface media; /**< around it */
     bool is_delta;          /**< no ray can meet it: without an extent, or of alpha 0 */
 };

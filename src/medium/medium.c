@@ -26,7 +26,7 @@ spectrum medium_transmittance(const medium *m, float t, const wavelengths *w)
     if (!m)
         return out;
     if (m->absorption || m->scattering)
-        out = left_after(medium_extinction(m, w), t);
+        out = transmittance_after(medium_extinction(m, w), t);
     if (m->color) {
         spectrum color = curve_eval(m->color, w);
         for (int i = 0; i < N_WAVELENGTHS; i++)

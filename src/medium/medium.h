@@ -58,7 +58,7 @@ spectrum medium_extinction(const medium *m, const wavelengths *w);
 
 /** @brief e^(-σt t). Over an endless way what is extinguished at all is gone: t is taken
  * as FLT_MAX, of which none is 0. */
-static inline spectrum left_after(spectrum sigma_t, float t)
+static inline spectrum transmittance_after(spectrum sigma_t, float t)
 {
     return spectrum_exp(sigma_t * -minf(t, FLT_MAX));
 }

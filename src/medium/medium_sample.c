@@ -17,20 +17,20 @@ typedef struct free_paths {
     float t_max;
 } free_paths;
 
-static spectrum shares(spectrum carried)
+static spectrum shares(spectrum throughput)
 {
-    float sum = spectrum_sum(carried);
-    return sum > 0.0f && isfinite(sum) ? carried / sum
+    float sum = spectrum_sum(throughput);
+    return sum > 0.0f && isfinite(sum) ? throughput / sum
                                        : spectrum_fill(1.0f / N_WAVELENGTHS);
 }
 
-static free_paths free_paths_of(const medium *m, const wavelengths *w, spectrum carried,
-                                float t_max)
+static free_paths free_paths_of(const medium *m, const wavelengths *w,
+                                spectrum throughput, float t_max)
 {
     free_paths f = {
         .sigma_s = medium_scattering(m, w),
         .sigma_t = medium_extinction(m, w),
-        .p = shares(carried),
+        .p = shares(throughput),
         .t_max = t_max,
     };
     for (int i = 0; i < N_WAVELENGTHS; i++)
@@ -71,53 +71,57 @@ static void leave_clear_wavelengths_out(free_paths *f)
 }
 
 /* The density at t; from t_max on the probability of getting there. */
-static float density_free(const free_paths *f, spectrum left, float t)
+static float density_free(const free_paths *f, spectrum transmittance, float t)
 {
-    return spectrum_sum(f->p * (t < f->t_max ? f->sigma_t * left : left));
+    return spectrum_sum(f->p *
+                        (t < f->t_max ? f->sigma_t * transmittance : transmittance));
 }
 
-static float density_within(const free_paths *f, spectrum left)
+static float density_within(const free_paths *f, spectrum transmittance)
 {
     spectrum density;
     for (int i = 0; i < N_WAVELENGTHS; i++)
-        density[i] = f->ends[i] > 0.0f ? f->sigma_t[i] * left[i] / f->ends[i] : 0.0f;
+        density[i] =
+            f->ends[i] > 0.0f ? f->sigma_t[i] * transmittance[i] / f->ends[i] : 0.0f;
     return spectrum_sum(f->p * density);
 }
 
 /* What a point at t, or getting to t_max, counts with this density. */
-static medium_sample weigh(const free_paths *f, spectrum left, float t, float density)
+static medium_sample weigh(const free_paths *f, spectrum transmittance, float t,
+                           float density)
 {
     bool scatters = t < f->t_max && density > 0.0f;
     medium_sample out = {.scatters = scatters, .t = scatters ? t : f->t_max};
     if (density > 0.0f)
-        out.weight = (scatters ? f->sigma_s * left : left) / density;
+        out.weight = (scatters ? f->sigma_s * transmittance : transmittance) / density;
     return out;
 }
 
-medium_sample medium_sample_free(const medium *m, const wavelengths *w, spectrum carried,
-                                 float t_max, float u)
+medium_sample medium_sample_free(const medium *m, const wavelengths *w,
+                                 spectrum throughput, float t_max, float u)
 {
-    const free_paths f = free_paths_of(m, w, carried, t_max);
+    const free_paths f = free_paths_of(m, w, throughput, t_max);
     float t = minf(draw_free(&f, u), t_max);
-    spectrum left = left_after(f.sigma_t, t);
-    return weigh(&f, left, t, density_free(&f, left, t));
+    spectrum transmittance = transmittance_after(f.sigma_t, t);
+    return weigh(&f, transmittance, t, density_free(&f, transmittance, t));
 }
 
 /* A point that is drawn within but rounded to t_max counts nothing. */
-static medium_sample only_within(const free_paths *f, spectrum left, float t,
+static medium_sample only_within(const free_paths *f, spectrum transmittance, float t,
                                  float density)
 {
-    return t < f->t_max ? weigh(f, left, t, density) : (medium_sample){.t = f->t_max};
+    return t < f->t_max ? weigh(f, transmittance, t, density)
+                        : (medium_sample){.t = f->t_max};
 }
 
 medium_sample medium_sample_within(const medium *m, const wavelengths *w,
-                                   spectrum carried, float t_max, float u)
+                                   spectrum throughput, float t_max, float u)
 {
-    free_paths f = free_paths_of(m, w, carried, t_max);
+    free_paths f = free_paths_of(m, w, throughput, t_max);
     leave_clear_wavelengths_out(&f);
     float t = draw_within(&f, u);
-    spectrum left = left_after(f.sigma_t, t);
-    return only_within(&f, left, t, density_within(&f, left));
+    spectrum transmittance = transmittance_after(f.sigma_t, t);
+    return only_within(&f, transmittance, t, density_within(&f, transmittance));
 }
 
 /* ---- Near a pivot ---- */
@@ -157,31 +161,31 @@ static float density_near(const medium_pivot *pivot, float t_max, float t)
 }
 
 medium_sample medium_sample_free_near(const medium *m, const wavelengths *w,
-                                      spectrum carried, float t_max,
+                                      spectrum throughput, float t_max,
                                       const medium_pivot *pivot, float u)
 {
-    const free_paths f = free_paths_of(m, w, carried, t_max);
+    const free_paths f = free_paths_of(m, w, throughput, t_max);
     float near = NEAR_SHARE * spectrum_sum(f.p * f.ends);
     float t = u < near ? draw_near(pivot, t_max, u / near)
                        : minf(draw_free(&f, (u - near) / (1.0f - near)), t_max);
-    spectrum left = left_after(f.sigma_t, t);
-    float density = (1.0f - near) * density_free(&f, left, t);
+    spectrum transmittance = transmittance_after(f.sigma_t, t);
+    float density = (1.0f - near) * density_free(&f, transmittance, t);
     if (t < t_max)
         density += near * density_near(pivot, t_max, t);
-    return weigh(&f, left, t, density);
+    return weigh(&f, transmittance, t, density);
 }
 
 medium_sample medium_sample_within_near(const medium *m, const wavelengths *w,
-                                        spectrum carried, float t_max,
+                                        spectrum throughput, float t_max,
                                         const medium_pivot *pivot, float u)
 {
     const float near = NEAR_SHARE;
-    free_paths f = free_paths_of(m, w, carried, t_max);
+    free_paths f = free_paths_of(m, w, throughput, t_max);
     leave_clear_wavelengths_out(&f);
     float t = u < near ? draw_near(pivot, t_max, u / near)
                        : draw_within(&f, (u - near) / (1.0f - near));
-    spectrum left = left_after(f.sigma_t, t);
-    float density =
-        (1.0f - near) * density_within(&f, left) + near * density_near(pivot, t_max, t);
-    return only_within(&f, left, t, density);
+    spectrum transmittance = transmittance_after(f.sigma_t, t);
+    float density = (1.0f - near) * density_within(&f, transmittance) +
+                    near * density_near(pivot, t_max, t);
+    return only_within(&f, transmittance, t, density);
 }

@@ -24,13 +24,13 @@ typedef struct medium_sample {
 } medium_sample;
 
 /** @brief Draws a free path in a medium that scatters.
- *  @param carried throughput by wavelength
+ *  @param throughput of the path, by wavelength
  *  @param u uniform in [0,1) */
-medium_sample medium_sample_free(const medium *m, const wavelengths *w, spectrum carried,
-                                 float t_max, float u);
+medium_sample medium_sample_free(const medium *m, const wavelengths *w,
+                                 spectrum throughput, float t_max, float u);
 /** @brief The same, but always before t_max: weight is σs T(t) over that density. */
 medium_sample medium_sample_within(const medium *m, const wavelengths *w,
-                                   spectrum carried, float t_max, float u);
+                                   spectrum throughput, float t_max, float u);
 
 /** @brief A point that light comes from, as a ray passes it. */
 typedef struct medium_pivot {
@@ -44,9 +44,9 @@ medium_pivot medium_pivot_at(const ray *r, vec3 p);
 /** @brief medium_sample_free with points near the pivot drawn more often; the more so the
  * more is scattered at all. */
 medium_sample medium_sample_free_near(const medium *m, const wavelengths *w,
-                                      spectrum carried, float t_max,
+                                      spectrum throughput, float t_max,
                                       const medium_pivot *pivot, float u);
 /** @brief The same of medium_sample_within. */
 medium_sample medium_sample_within_near(const medium *m, const wavelengths *w,
-                                        spectrum carried, float t_max,
+                                        spectrum throughput, float t_max,
                                         const medium_pivot *pivot, float u);

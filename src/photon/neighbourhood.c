@@ -87,11 +87,11 @@ static float surface_height(const neighbourhood *hood, vec3 q)
    may be. */
 static ray along_surface(const neighbourhood *hood, vec3 d)
 {
-    vec3 way = d * hood->radius - hood->n * slab(hood);
-    float length = length3(way);
+    vec3 to = d * hood->radius - hood->n * slab(hood);
+    float length = length3(to);
     return (ray){.origin = lifted(hood, hood->p),
                  .time = hood->time,
-                 .direction = way / length,
+                 .direction = to / length,
                  .t_max = 2.0f * length};
 }
 
@@ -158,8 +158,8 @@ static void find_horizon(neighbourhood *hood)
                      .direction = direction_at(hood, a),
                      .t_max = reach};
         surface_hit hit;
-        float way = scene_intersect(hood->scene, &along, &hit) ? hit.t : reach;
-        corner[i] = (vec2){way * a.c, way * a.s};
+        float free = scene_intersect(hood->scene, &along, &hit) ? hit.t : reach;
+        corner[i] = (vec2){free * a.c, free * a.s};
     }
     for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++) {
         vec2 p = corner[i], q = corner[(i + 1) % NEIGHBOURHOOD_SECTORS];

@@ -195,9 +195,9 @@ bool photon_spots_sample(const photon_spots *spots, vec3 from, float u_choice, v
     const disc *d = &spots->discs[*spot];
     frame plane = frame_from_normal(d->n);
     vec2 on = warp_disk(u);
-    vec3 way = d->p + d->radius * (on.x * plane.s + on.y * plane.t) - from;
-    *wi = normalize3(way);
-    return length3_2(way) > 0.0f;
+    vec3 to = d->p + d->radius * (on.x * plane.s + on.y * plane.t) - from;
+    *wi = normalize3(to);
+    return length3_2(to) > 0.0f;
 }
 
 bool photon_spots_landed(const photon_spots *spots, int spot, vec3 from, vec3 wi,

@@ -50,7 +50,8 @@ size_t volume_map_bytes(const volume_map *map)
 /* e^(-σt t), in one go where all wavelengths have the same σt. */
 static spectrum transmittance_over(spectrum sigma_t, bool is_grey, float t)
 {
-    return is_grey ? spectrum_fill(expf(-sigma_t[0] * t)) : left_after(sigma_t, t);
+    return is_grey ? spectrum_fill(expf(-sigma_t[0] * t))
+                   : transmittance_after(sigma_t, t);
 }
 
 static bool all_alike(spectrum s)

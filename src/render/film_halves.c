@@ -50,7 +50,7 @@ void guide_add(guide_sum *sum, const film_pass *pass, const radiance_sample *sam
                float weight)
 {
     const light_guide *guide = &sample->guide;
-    add_xyz(sum->lamps, pass->w, guide->lamps, weight);
+    add_xyz(sum->lights, pass->w, guide->lights, weight);
     if (!(guide->weight > 0.0f))
         return;
     float share = weight / guide->weight;
@@ -230,7 +230,7 @@ static void seen_depth(const film *f, size_t i, int half, float *out)
 static void lamps_in_mirrors(const film *f, size_t i, int half, float *out)
 {
     guide_sum sum = guides_of(f, i, half);
-    guide_color(f, sum.lamps, (float)half_of(f, i, half).weight, out);
+    guide_color(f, sum.lights, (float)half_of(f, i, half).weight, out);
 }
 
 typedef struct feature {

@@ -20,7 +20,7 @@ enum {
 
 /** @brief Sums of the guides of one pixel in one pass. Zero to begin. */
 typedef struct guide_sum {
-    float albedo[3], lamps[3]; /**< XYZ */
+    float albedo[3], lights[3]; /**< XYZ */
     float normal[3], depth;
     float weight; /**< of the samples that ended at a surface */
 } guide_sum;

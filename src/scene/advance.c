@@ -79,13 +79,14 @@ static spectrum participating_transmittance(const scene *s, ray r, const wavelen
     spectrum out = spectrum_fill(1.0f);
     bool met = scene_has_media(s);
     for (int i = 0; i < MOST_CROSSINGS && met && !spectrum_is_black(out); i++) {
-        const ray way = r;
-        const medium *through = scene_medium(s, way.media.participating);
+        const ray segment = r;
+        const medium *through = scene_medium(s, segment.media.participating);
         surface_hit hit;
         met = scene_cross(s, &r, &hit);
         if (through) {
-            float length = minf(met ? hit.t : INFINITY, way.t_max);
-            out *= medium_transmittance(through, scene_medium_end(s, &way, length), w);
+            float length = minf(met ? hit.t : INFINITY, segment.t_max);
+            out *=
+                medium_transmittance(through, scene_medium_end(s, &segment, length), w);
         }
     }
     return out;
@@ -131,7 +132,7 @@ void scene_leave_light(const scene *s, int i, vec3 n, ray *r)
 {
     const light *from = scene_light(s, i);
     float enters;
-    r->media = from->solids;
+    r->media = from->inside;
     if (!from->kind->is_environment && !from->kind->is_parallel) {
         r->media.participating = scene_light_medium(s, i, n, r->direction);
         return;

@@ -20,11 +20,11 @@ void scene_find_outer_medium(scene *s, vec3 from, uint32_t there)
 {
     vec3 away = from - s->center;
     float distance = length3(away);
-    const ray way = {.origin = from,
-                     .direction =
-                         distance > 0.0f ? away / distance : (vec3){0.0f, 0.0f, 1.0f},
-                     .t_max = INFINITY,
-                     .media.participating = there};
-    s->outer_medium = scene_medium_behind(s, way);
+    const ray segment = {.origin = from,
+                         .direction =
+                             distance > 0.0f ? away / distance : (vec3){0.0f, 0.0f, 1.0f},
+                         .t_max = INFINITY,
+                         .media.participating = there};
+    s->outer_medium = scene_medium_behind(s, segment);
     s->media_radius = MEDIA_REACH * maxf(s->radius, distance);
 }

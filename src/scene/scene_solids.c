@@ -161,6 +161,6 @@ void scene_find_solids(scene *s)
     rank_solids(s);
     for (guint i = 0; i < s->lights->len; i++) {
         light *l = s->lights->pdata[i];
-        l->solids = solids_of_light(s, l);
+        l->inside = solids_of_light(s, l);
     }
 }

@@ -36,17 +36,17 @@ static void find_pixel_width(view *v)
 }
 
 /* The participating medium is the one where the file put the camera, as changed by the
-   interfaces on the straight way. */
+   interfaces on the straight line. */
 static uint32_t medium_at_eye(const view *v)
 {
     const camera *c = &v->camera;
     vec3 from = c->medium_at, to = transform_point(&c->to_world, (vec3){0}) - from;
-    ray way = {
+    ray segment = {
         .origin = from, .t_max = length3(to), .media.participating = c->medium_there};
-    if (!scene_has_media(v->scene) || !(way.t_max > 0.0f) || !isfinite(way.t_max))
+    if (!scene_has_media(v->scene) || !(segment.t_max > 0.0f) || !isfinite(segment.t_max))
         return c->medium_there;
-    way.direction = to / way.t_max;
-    return scene_medium_behind(v->scene, way);
+    segment.direction = to / segment.t_max;
+    return scene_medium_behind(v->scene, segment);
 }
 
 void view_resize(view *v, int width, int height)

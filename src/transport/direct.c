@@ -46,8 +46,8 @@ static spectrum weighed_lobe(const direct_query *query, const light_sample *to_l
 }
 
 /* What photons leave of the light that a glossy lobe sends. */
-static float glossy_share(const direct_query *query, const light_sample *to_light,
-                          int source, bool each)
+static float glossy_mis_weight(const direct_query *query, const light_sample *to_light,
+                               int source, bool each)
 {
     const scene *s = query->scene;
     const bool far = isinf(to_light->distance);
@@ -76,7 +76,7 @@ static bool radiance_of(const direct_query *query, const light_sample *to_light,
     spectrum diffuse = weighed_lobe(query, to_light, delta, LOBE_DIFFUSE, &pdf);
     spectrum glossy = weighed_lobe(query, to_light, delta, LOBE_GLOSSY, &pdf);
     if (query->mis && !spectrum_is_black(glossy))
-        glossy *= glossy_share(query, to_light, found->light, each);
+        glossy *= glossy_mis_weight(query, to_light, found->light, each);
     if (spectrum_is_black(diffuse + glossy))
         return false;
     spectrum transmittance;
@@ -123,9 +123,9 @@ bool direct_pivot(const scene *s, const wavelengths *w, const ray *r, float leng
     light_sample to_light;
     int source;
     const light_numbers u = sampler_light(random);
-    float u_way = sampler_1d(random);
+    float u_segment = sampler_1d(random);
     medium_sample any = medium_sample_within(scene_medium(s, r->media.participating), w,
-                                             spectrum_fill(1.0f), length, u_way);
+                                             spectrum_fill(1.0f), length, u_segment);
     vec3 from = r->origin + any.t * r->direction;
     if (!any.scatters ||
         !scene_sample_light(s, w, from, u.light, u.primitive, u.place, &source,

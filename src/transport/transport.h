@@ -34,11 +34,11 @@ typedef enum radiance_layer {
  * Sums, where there are several, weighed by how much of their light arrives. */
 typedef struct light_guide {
     spectrum albedo;
-    spectrum lamps; /**< light that arrives from lights by mirrors and glass alone:
+    spectrum lights; /**< light that arrives from lights by mirrors and glass alone:
                        radiance, whatever the weight */
-    vec3 normal;    /**< shading normal, toward where it is seen from */
-    float depth;    /**< distance from the eye as the crow flies, m */
-    float weight;   /**< 0: nothing is seen yet */
+    vec3 normal;     /**< shading normal, toward where it is seen from */
+    float depth;     /**< distance from the eye as the crow flies, m */
+    float weight;    /**< 0: nothing is seen yet */
 } light_guide;
 
 /** @brief What one camera ray found. */

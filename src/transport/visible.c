@@ -18,7 +18,7 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
     uint64_t untold = 0;
     const scene_traveller who = {.scene = from->scene, .w = &from->w, .n_rays = &untold};
     path_segment path = path_segment_from_eye(from->view, r);
-    float way = 0.0f;
+    float length = 0.0f;
     int64_t bounces = 0;
     do {
         surface_hit hit;
@@ -27,10 +27,10 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
         vec3 start = path.ray.origin;
         if (scene_advance(&who, &path, &hit) != EVENT_SURFACE)
             return false;
-        way += length3(hit.p - start);
+        length += length3(hit.p - start);
         scene_bsdf(from->scene, &hit, &from->w, ALL_WAVELENGTHS, &from->options, &b);
         if (b.lobes & LOBE_DIFFUSE) {
-            float area = camera_pixel_area(&from->view->camera, way);
+            float area = camera_pixel_area(&from->view->camera, length);
             spectrum albedo = bsdf_albedo(&b, -path.ray.direction, LOBE_ALL);
             *out = (visible_point){hit.p, sqrtf(area), spectrum_mean(albedo)};
             return true;

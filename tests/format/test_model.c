@@ -250,7 +250,7 @@ static void refuse_record(stream_kind kind, const void *payload, size_t size)
 static void test_lying_records(void)
 {
     stream_instance nowhere = {.mesh = 0, .to_world = {NAN}}, of_none = {.mesh = 1};
-    stream_light odd = {.lamp = N_STREAM_LAMPS}, dark = {.color = {INFINITY}};
+    stream_light odd = {.kind = N_STREAM_LIGHT_KINDS}, dark = {.color = {INFINITY}};
     stream_camera second = {.fov = 1.0f};
     const stream_image long_image = {.n_bytes = 1000};
     const stream_note no_end = {.level = STREAM_WARNING}, no_level = {.level = 7};

@@ -71,13 +71,13 @@ static void release(medium *m)
 }
 
 typedef medium_sample (*draw_path)(const medium *m, const wavelengths *w,
-                                   spectrum carried, float t_max, float u);
+                                   spectrum throughput, float t_max, float u);
 
 /* What is checked in one place. */
 typedef struct subject {
     const fog *fog;
     draw_path draw;
-    spectrum carried;
+    spectrum throughput;
     float t_max;
     double edge[N_BINS + 1]; /* of the bins of t; the last is t_max */
 } subject;
@@ -98,18 +98,18 @@ static medium_pivot pivot_within(float t_max)
     return (medium_pivot){pivot_now[0] * unit, pivot_now[1] * unit};
 }
 
-static medium_sample free_near(const medium *m, const wavelengths *w, spectrum carried,
+static medium_sample free_near(const medium *m, const wavelengths *w, spectrum throughput,
                                float t_max, float u)
 {
     const medium_pivot pivot = pivot_within(t_max);
-    return medium_sample_free_near(m, w, carried, t_max, &pivot, u);
+    return medium_sample_free_near(m, w, throughput, t_max, &pivot, u);
 }
 
-static medium_sample within_near(const medium *m, const wavelengths *w, spectrum carried,
-                                 float t_max, float u)
+static medium_sample within_near(const medium *m, const wavelengths *w,
+                                 spectrum throughput, float t_max, float u)
 {
     const medium_pivot pivot = pivot_within(t_max);
-    return medium_sample_within_near(m, w, carried, t_max, &pivot, u);
+    return medium_sample_within_near(m, w, throughput, t_max, &pivot, u);
 }
 
 static bool is_within(draw_path draw)
@@ -124,11 +124,11 @@ static double most_growth(draw_path draw)
     return draw == free_near || draw == within_near ? 2 : 1;
 }
 
-static double carried_sum(spectrum carried)
+static double throughput_sum(spectrum throughput)
 {
     double sum = 0;
     for (int i = 0; i < N_WAVELENGTHS; i++)
-        sum += (double)carried[i];
+        sum += (double)throughput[i];
     return sum;
 }
 
@@ -142,9 +142,9 @@ static int bin_of(const subject *is, double t)
 
 static void check_draw(const subject *is, const medium_sample *d, float u)
 {
-    double after = 0, before = carried_sum(is->carried);
+    double after = 0, before = throughput_sum(is->throughput);
     for (int i = 0; i < N_WAVELENGTHS; i++)
-        after += (double)(is->carried[i] * d->weight[i]);
+        after += (double)(is->throughput[i] * d->weight[i]);
     bool at_end = !d->scatters && d->t == is->t_max;
     bool never = is_within(is->draw) && spectrum_is_black(d->weight);
     if (!spectrum_is_finite(d->weight) ||
@@ -158,14 +158,14 @@ static void check_draw(const subject *is, const medium_sample *d, float u)
 static means mean_over_u(const subject *is, const medium *m, const wavelengths *w)
 {
     means out = {0};
-    double sum = carried_sum(is->carried);
+    double sum = throughput_sum(is->throughput);
     for (int k = 0; k < N_DRAWS; k++) {
         float u = ((float)k + 0.5f) / N_DRAWS;
-        medium_sample d = is->draw(m, w, is->carried, is->t_max, u);
+        medium_sample d = is->draw(m, w, is->throughput, is->t_max, u);
         check_draw(is, &d, u);
         double *to = d.scatters ? out.bin[bin_of(is, (double)d.t)] : out.on;
         for (int i = 0; i < N_WAVELENGTHS; i++) {
-            double value = (double)d.weight[i] * (double)is->carried[i] / sum;
+            double value = (double)d.weight[i] * (double)is->throughput[i] / sum;
             to[i] += value / N_DRAWS;
             out.most[i] = fmax(out.most[i], value);
         }
@@ -192,13 +192,14 @@ static void check(const subject *is, const means *found, int wavelength, int bin
 {
     /* A weight falls smoothly in u but for eight seams, where the mixture goes on to the
        next lane, and the bins' edges in each. */
-    double share = (double)is->carried[wavelength] / carried_sum(is->carried);
+    double share = (double)is->throughput[wavelength] / throughput_sum(is->throughput);
     double allowed = 32.0 / N_DRAWS * found->most[wavelength] + share * 1e-5;
     double mean = bin < N_BINS ? found->bin[bin][wavelength] : found->on[wavelength];
     if (!(fabs(mean - expected * share) <= allowed))
         g_error("%s, carried %g of %g, t_max %g, lane %d, bin %d: %.6f, expected %.6f",
-                is->fog->name, (double)is->carried[wavelength], carried_sum(is->carried),
-                (double)is->t_max, wavelength, bin, mean, expected * share);
+                is->fog->name, (double)is->throughput[wavelength],
+                throughput_sum(is->throughput), (double)is->t_max, wavelength, bin, mean,
+                expected * share);
 }
 
 static void check_means(const subject *is)
@@ -271,7 +272,7 @@ static void check_corner(const subject *is, const medium *m, const wavelengths *
 {
     static const float us[] = {0, 0x1p-24f, 0.5f, 0.999999f, 0x1.fffffep-1f};
     for (size_t i = 0; i < G_N_ELEMENTS(us); i++) {
-        medium_sample d = is->draw(m, w, is->carried, is->t_max, us[i]);
+        medium_sample d = is->draw(m, w, is->throughput, is->t_max, us[i]);
         check_draw(is, &d, us[i]);
     }
 }
@@ -280,12 +281,12 @@ static void test_corners(void)
 {
     static const float ends[] = {0,    1e-20f, 1e-12f, 1e-3f,   0.7f,
                                  1e3f, 1e12f,  1e30f,  FLT_MAX, INFINITY};
-    const spectrum carried[] = {ALIKE(1),
-                                ALIKE(0),
-                                ALIKE(1e30f),
-                                ALIKE(1e-36f),
-                                {0, 0, 0, 1, 0, 0, 0, 0},
-                                {1e10f, 1, 1e-10f, 1e-20f, 0, 0, 0, 1e-30f}};
+    const spectrum throughput[] = {ALIKE(1),
+                                   ALIKE(0),
+                                   ALIKE(1e30f),
+                                   ALIKE(1e-36f),
+                                   {0, 0, 0, 1, 0, 0, 0, 0},
+                                   {1e10f, 1, 1e-10f, 1e-20f, 0, 0, 0, 1e-30f}};
     const wavelengths w = wavelengths_at(0.5f);
     for (int i = 0; i < 36; i++) {
         fog f = {"corner", ALIKE(0), ALIKE(0)};
@@ -295,10 +296,10 @@ static void test_corners(void)
                 sizes[i % 6] > 0 ? sizes[(i % 6 + wavelength) % 6] : sizes[2];
         }
         medium m = medium_of(&f, &w);
-        for (size_t k = 0; k < G_N_ELEMENTS(ends) * G_N_ELEMENTS(carried); k++) {
+        for (size_t k = 0; k < G_N_ELEMENTS(ends) * G_N_ELEMENTS(throughput); k++) {
             subject is = {&f,
                           medium_sample_free,
-                          carried[k / G_N_ELEMENTS(ends)],
+                          throughput[k / G_N_ELEMENTS(ends)],
                           ends[k % G_N_ELEMENTS(ends)],
                           {0}};
             check_corner(&is, &m, &w);
@@ -318,9 +319,9 @@ static void test_broken(void)
     const draw_path draws[] = {medium_sample_free, medium_sample_within};
     for (size_t i = 0; i < 3; i++)
         for (int k = 0; k < 2 * 2; k++) {
-            spectrum carried = spectrum_fill(k & 1 ? bad[i] : 1.0f);
-            carried[3] = bad[i];
-            medium_sample d = draws[k / 2](&m, &w, carried, 1.0f, 0.4f);
+            spectrum throughput = spectrum_fill(k & 1 ? bad[i] : 1.0f);
+            throughput[3] = bad[i];
+            medium_sample d = draws[k / 2](&m, &w, throughput, 1.0f, 0.4f);
             g_assert_true(spectrum_is_finite(d.weight));
             g_assert_true(d.t >= 0 && d.t <= 1);
         }

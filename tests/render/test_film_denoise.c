@@ -82,7 +82,7 @@ static void test_lamp_in_mirror(void)
         float most = 0.0f;
         for (int i = 0; i < 16 * 16; i++) {
             float shown = (float)r->film.pixels[i].sum.color[LAYER_SPECULAR][1];
-            g_assert_cmpfloat_with_epsilon(r->film.halves[i].guides.lamps[1], shown,
+            g_assert_cmpfloat_with_epsilon(r->film.halves[i].guides.lights[1], shown,
                                            1e-4f * (1.0f + shown));
             most = fmaxf(most, shown);
         }

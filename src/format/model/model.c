@@ -161,7 +161,7 @@ static bool read_light(model *m, cursor *c, GError **error)
     if (!is || !is_place(is->to_world) || !all_finite(is->position, 3) ||
         !all_finite(is->direction, 3) || !all_finite(is->color, 3) ||
         !isfinite(is->inner_angle) || !isfinite(is->outer_angle) ||
-        is->lamp >= N_STREAM_LAMPS)
+        is->kind >= N_STREAM_LIGHT_KINDS)
         return false;
     g_ptr_array_add(m->lights, (gpointer)is);
     return true;

@@ -40,23 +40,23 @@ static void give_cone(params *p, const stream_light *l)
 /* A spot that points nowhere shines everywhere. */
 static bool add_light(model_builder *b, const stream_light *l, GError **error)
 {
-    static const char *const kinds[N_STREAM_LAMPS] = {"point", "spot", "distant"};
+    static const char *const kinds[N_STREAM_LIGHT_KINDS] = {"point", "spot", "distant"};
     vec3 from = vector_of(l->position), to = from + vector_of(l->direction);
     g_autoptr(params) p = model_params(b);
     transform to_world;
     bool directed = length3(to - from) > 0.0f && finite3(to);
-    bool distant = l->lamp == STREAM_DISTANT;
-    stream_lamp lamp = l->lamp == STREAM_SPOT && !directed ? STREAM_POINT : l->lamp;
+    bool distant = l->kind == STREAM_DISTANT;
+    stream_light_kind kind = l->kind == STREAM_SPOT && !directed ? STREAM_POINT : l->kind;
     if (!give_light_color(p, distant ? "L" : "I", l->color) || (distant && !directed) ||
         !model_transform(l->to_world, &to_world))
         return true;
-    if (lamp == STREAM_SPOT)
+    if (kind == STREAM_SPOT)
         give_cone(p, l);
     give_point(p, "from", from);
-    if (lamp != STREAM_POINT)
+    if (kind != STREAM_POINT)
         give_point(p, "to", to);
     model_tell(b, "lamps are taken to shine in W/sr and W/m²");
-    return builder_add_light(b->builder, kinds[lamp], p, &to_world, error);
+    return builder_add_light(b->builder, kinds[kind], p, &to_world, error);
 }
 
 bool model_add_lights(model_builder *b, GError **error)

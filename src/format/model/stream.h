@@ -80,18 +80,18 @@ typedef struct stream_instance {
     uint32_t mesh, zero;
 } stream_instance;
 
-typedef enum stream_lamp {
+typedef enum stream_light_kind {
     STREAM_POINT,
     STREAM_SPOT,
     STREAM_DISTANT,
-    N_STREAM_LAMPS
-} stream_lamp;
+    N_STREAM_LIGHT_KINDS
+} stream_light_kind;
 
 typedef struct stream_light {
     double to_world[16];
     float position[3], direction[3], color[3];
     float inner_angle, outer_angle; /**< of a spot's whole cones, radians */
-    uint32_t lamp;
+    uint32_t kind;
 } stream_light;
 
 typedef struct stream_camera {

@@ -37,9 +37,9 @@ static bool meets_caster(const caustic_casters *c, const wavelengths *w, ray r)
 {
     uint64_t untold = 0;
     const scene_traveller who = {.scene = c->scene, .w = w, .n_rays = &untold};
-    path_segment way = {.ray = r};
+    path_segment segment = {.ray = r};
     surface_hit hit;
-    return scene_advance(&who, &way, &hit) == EVENT_SURFACE &&
+    return scene_advance(&who, &segment, &hit) == EVENT_SURFACE &&
            caustic_casters_include(c, &hit);
 }
 

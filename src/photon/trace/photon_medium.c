@@ -9,7 +9,7 @@ static float chance_to_land(const photon_path *path)
 
 /* Each way through a medium leaves one photon on it, if its class is the one traced: for
    all that is scattered there, whether this photon itself is or goes through. */
-static void land_on_way(photon_path *path, float length)
+static void land_on_segment(photon_path *path, float length)
 {
     const trace_task *task = path->task;
     const medium *m = scene_medium(task->scene, path->at.ray.media.participating);
@@ -43,7 +43,7 @@ scene_event photon_path_cross_medium(void *data, float length, const surface_hit
     const trace_task *task = path->task;
     const medium *m = scene_medium(task->scene, path->at.ray.media.participating);
     medium_sample next = {.t = length};
-    land_on_way(path, length);
+    land_on_segment(path, length);
     if (medium_scatters(m) && (photon_path_lobes(path) & LOBE_DIFFUSE))
         next = medium_sample_free(m, &task->w, path->at.throughput, length,
                                   sampler_1d(&path->random));

@@ -32,7 +32,7 @@ static void meet_light(void *data, const met_light *met)
         left_by_photons(walk, path, met);
     path_add_from(walk, path, met->radiance * weight, met->light);
     if (!path->at.eye && !(walk->out->guide.weight > 0.0f))
-        walk->out->guide.lamps += path->at.throughput * met->radiance;
+        walk->out->guide.lights += path->at.throughput * met->radiance;
 }
 
 static void meet_surface(void *data, const surface_hit *hit)

@@ -87,7 +87,7 @@ static void meet_light(void *data, const met_light *met)
         direct_met_weight(pass->scene, pass->how, &from, branch->at.ray.direction, met);
     add_from(step->tree, branch, LAYER_EMISSION, met->radiance * weight, met->light);
     if (!branch->at.eye && !branch->guided)
-        step->tree->out->guide.lamps += branch->at.throughput * met->radiance;
+        step->tree->out->guide.lights += branch->at.throughput * met->radiance;
 }
 
 static void meet_surface(void *data, const surface_hit *hit)

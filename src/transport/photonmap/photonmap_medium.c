@@ -96,33 +96,33 @@ static void sample_lights(const medium_look *look, const surface_hit *at, const 
 }
 
 /* A direction of the phase function, until it meets a surface that is seen. */
-typedef struct scattered_way {
+typedef struct scattered_path {
     scattered_from from;
     path_segment at;
     direct_sum *sum;
-} scattered_way;
+} scattered_path;
 
 static void meet_light(void *data, const met_light *met)
 {
-    const scattered_way *way = data;
-    const photonmap_pass *pass = way->sum->pass;
-    float weight =
-        direct_met_weight(pass->scene, pass->how, &way->from, way->at.ray.direction, met);
-    add(way->sum, met->light, way->at.throughput * met->radiance * weight);
+    const scattered_path *path = data;
+    const photonmap_pass *pass = path->sum->pass;
+    float weight = direct_met_weight(pass->scene, pass->how, &path->from,
+                                     path->at.ray.direction, met);
+    add(path->sum, met->light, path->at.throughput * met->radiance * weight);
 }
 
 static void meet_surface(void *data, const surface_hit *hit)
 {
-    const scattered_way *way = data;
-    const photonmap_pass *pass = way->sum->pass;
-    direct_meet(pass->scene, &pass->w, &way->at.ray, hit, meet_light, data);
+    const scattered_path *path = data;
+    const photonmap_pass *pass = path->sum->pass;
+    direct_meet(pass->scene, &pass->w, &path->at.ray, hit, meet_light, data);
 }
 
 static void meet_lights(const medium_look *look, const surface_hit *at,
                         const bsdf_sample *next, transport_scratch *scratch,
                         direct_sum *sum)
 {
-    scattered_way way = {
+    scattered_path path = {
         .from = {at->p, next->pdf, look->every_light},
         .at = {.ray = hit_ray(at, next->wi), .throughput = next->weight},
         .sum = sum,
@@ -130,11 +130,11 @@ static void meet_lights(const medium_look *look, const surface_hit *at,
     const scene_traveller who = {.scene = sum->pass->scene,
                                  .w = &sum->pass->w,
                                  .n_rays = &scratch->shadow_rays,
-                                 .path = &way,
+                                 .path = &path,
                                  .meet_light = meet_surface};
     surface_hit hit;
-    if (scene_advance(&who, &way.at, &hit) == EVENT_ESCAPE)
-        meet_surface(&way, NULL);
+    if (scene_advance(&who, &path.at, &hit) == EVENT_ESCAPE)
+        meet_surface(&path, NULL);
 }
 
 static medium_sample point_on(const photonmap_pass *pass, const medium_look *look,
@@ -167,13 +167,13 @@ spectrum photonmap_direct_in_medium(const photonmap_pass *pass, const medium_loo
         return sum.radiance;
     const surface_hit hit = hit_in_medium(r, at.t);
     bsdf b;
-    bsdf_sample way;
+    bsdf_sample drawn;
     bsdf_make_phase(&b, m->g, look->wavelength);
     sample_lights(look, &hit, &b, random, scratch, &sum);
     if (pass->how->shadow_rays &&
         bsdf_sample_direction(&b, -r->direction, 0.0f, sampler_2d(random), LOBE_ALL,
-                              TRANSPORT_RADIANCE, &way))
-        meet_lights(look, &hit, &way, scratch, &sum);
+                              TRANSPORT_RADIANCE, &drawn))
+        meet_lights(look, &hit, &drawn, scratch, &sum);
     at.weight *= scene_solid_transmittance(pass->scene, &r->media, at.t, &pass->w);
     for (size_t i = 0; i < sum.n_groups; i++)
         sum.groups[i] *= at.weight;

@@ -80,7 +80,7 @@ static void meet_light(void *data, const met_light *met)
     add(c, c->walk.counts, met->light,
         alone ? met->radiance : met->radiance * met_weight(c, met->light, met->hit));
     if (!c->walk.at.eye && !(c->out->guide.weight > 0.0f))
-        c->out->guide.lamps += c->walk.at.throughput * met->radiance;
+        c->out->guide.lights += c->walk.at.throughput * met->radiance;
 }
 
 static void meet_surface(void *data, const surface_hit *hit)

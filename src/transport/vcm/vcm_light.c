@@ -117,14 +117,14 @@ static bool seen(const vcm_pass *pass, const surface_hit *hit,
         return false;
     uint64_t untold = 0;
     const scene_traveller who = {.scene = pass->scene, .w = &pass->w, .n_rays = &untold};
-    path_segment way = {.ray = {.origin = hit_offset(hit, eye->direction) +
-                                          eye->direction * eye->distance,
-                                .direction = -eye->direction,
-                                .t_max = distance_short_of(eye->distance),
-                                .time = hit->time},
-                        .eye = pass->plan->view};
+    path_segment segment = {.ray = {.origin = hit_offset(hit, eye->direction) +
+                                              eye->direction * eye->distance,
+                                    .direction = -eye->direction,
+                                    .t_max = distance_short_of(eye->distance),
+                                    .time = hit->time},
+                            .eye = pass->plan->view};
     surface_hit between;
-    return scene_advance(&who, &way, &between) == EVENT_ESCAPE;
+    return scene_advance(&who, &segment, &between) == EVENT_ESCAPE;
 }
 
 /* The weight of this connection among all ways to find the path. */
@@ -157,15 +157,15 @@ static void connect_to_eye(light_walk *l, const vcm_vertex *v)
     l->out->n_shadow_rays++;
     if (!seen(pass, v->hit, &eye))
         return;
-    spectrum left = scene_transmittance_to(pass->scene, v->hit, eye.direction,
-                                           eye.distance, &pass->w);
+    spectrum transmittance = scene_transmittance_to(pass->scene, v->hit, eye.direction,
+                                                    eye.distance, &pass->w);
     float density = eye.pdf / square(eye.distance);
     float cosine = hit_cosine(v->hit, eye.direction);
     float weight = weight_to_eye(l, v, &eye, density * cosine);
     for (int i = 0; i < 2; i++) {
         scattering_counts scattered = vcm_count((scattering_counts){0}, i == 0);
         splat s = {
-            .value = l->walk.at.throughput * left * f.value[i] *
+            .value = l->walk.at.throughput * transmittance * f.value[i] *
                      (weight * density / (float)pass->light.n),
             .raster = eye.raster,
             .layer = vcm_layer(vcm_join(scattered, l->walk.counts)),

@@ -162,17 +162,17 @@ static bool find_place(const struct aiScene *scene, const char *name, double to_
     return each_node(scene, find_name, &f) && is_place(to_world);
 }
 
-static bool lamp_of(const struct aiLight *l, uint32_t *lamp)
+static bool kind_of_light(const struct aiLight *l, uint32_t *kind)
 {
     switch (l->mType) {
     case aiLightSource_POINT:
-        *lamp = STREAM_POINT;
+        *kind = STREAM_POINT;
         return true;
     case aiLightSource_SPOT:
-        *lamp = STREAM_SPOT;
+        *kind = STREAM_SPOT;
         return true;
     case aiLightSource_DIRECTIONAL:
-        *lamp = STREAM_DISTANT;
+        *kind = STREAM_DISTANT;
         return true;
     default:
         return false;
@@ -189,7 +189,7 @@ static void tell_light(out *o, const struct aiScene *scene, const struct aiLight
         .outer_angle = l->mAngleOuterCone};
     if (s.color[0] + s.color[1] + s.color[2] <= 0.0f)
         return; /* dark ones are no loss */
-    if (!lamp_of(l, &s.lamp))
+    if (!kind_of_light(l, &s.kind))
         out_note(o, STREAM_WARNING,
                  "a light that is neither point, spot nor directional is left out");
     else if (!find_place(scene, l->mName.data, s.to_world) ||
