@@ -28,6 +28,14 @@ extern "C" {
 
 #define NEPH_API __attribute__((visibility("default")))
 
+/* What takes a plain struct is compiled into the program, and tells the library the
+   struct's size (sized.h): programs go on with a library whose structs have grown. */
+#ifdef NEPHROID_INSIDE
+#define NEPH_SIZED
+#else
+#define NEPH_SIZED static inline
+#endif
+
 /** @brief Why a call failed; the first three are also exit codes of the command line,
  * which ends with 3 if it was stopped. */
 typedef enum {
@@ -108,7 +116,7 @@ typedef struct NephSettingInfo {
 } NephSettingInfo;
 
 /** @brief The table of all settings, *n rows, static. */
-NEPH_API const NephSettingInfo *neph_settings_table(size_t *n);
+NEPH_SIZED const NephSettingInfo *neph_settings_table(size_t *n);
 
 /** @brief A full set of values. */
 typedef struct NephSettings NephSettings;
@@ -191,8 +199,8 @@ typedef struct NephLoadOptions {
 } NephLoadOptions;
 
 /** @brief The same by options. */
-NEPH_API NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options,
-                                         GError **error);
+NEPH_SIZED NephScene *
+neph_scene_load_with(const char *path, const NephLoadOptions *options, GError **error);
 NEPH_API void neph_scene_free(NephScene *scene);
 /** @brief The same scene with a size and a camera of its own, so that what renders it
  * need not wait for who looks at it otherwise. Cheap: all else is the given scene's,
@@ -226,8 +234,8 @@ NEPH_API bool neph_scene_says_exposure(const NephScene *scene);
 NEPH_API bool neph_scene_convert(const char *in, const char *out, NephLogFunc log,
                                  void *log_data, GError **error);
 /** @brief The same by options; threads have no effect. */
-NEPH_API bool neph_scene_convert_with(const char *in, const char *out,
-                                      const NephLoadOptions *options, GError **error);
+NEPH_SIZED bool neph_scene_convert_with(const char *in, const char *out,
+                                        const NephLoadOptions *options, GError **error);
 /** @brief What is in the scene, for people (json false) or programs. Owned by caller. */
 NEPH_API char *neph_scene_describe(const NephScene *scene, bool json);
 
@@ -250,31 +258,31 @@ typedef struct NephCamera {
 } NephCamera;
 
 /** @brief The present view. */
-NEPH_API void neph_scene_camera(const NephScene *scene, NephCamera *out);
+NEPH_SIZED void neph_scene_camera(const NephScene *scene, NephCamera *out);
 /** @brief Looks from elsewhere; while nothing renders the scene. Everything but screen
  * and kind is taken over, and what moved stands still; NEPH_ERROR_USAGE if it is no view
  * (not finite, direction zero or parallel to up, fov or lens out of range), and the scene
  * is as it was. */
-NEPH_API bool neph_scene_set_camera(NephScene *scene, const NephCamera *camera,
-                                    GError **error);
+NEPH_SIZED bool neph_scene_set_camera(NephScene *scene, const NephCamera *camera,
+                                      GError **error);
 /** @brief Changes fov and with it screen. */
-NEPH_API void neph_camera_set_fov(NephCamera *camera, double degrees);
+NEPH_SIZED void neph_camera_set_fov(NephCamera *camera, double degrees);
 /** @brief What the middle of the lens sees at a place of the picture: x to the right and
  * y down, both 0..1. direction is unit. A spherical camera is taken as one of latitude
  * and longitude. */
-NEPH_API void neph_camera_ray(const NephCamera *camera, double x, double y,
-                              double origin[3], double direction[3]);
+NEPH_SIZED void neph_camera_ray(const NephCamera *camera, double x, double y,
+                                double origin[3], double direction[3]);
 /** @brief Where a point is in the picture, as above, also outside of it; false if it is
  * behind the camera. Of a spherical camera: where a perspective one would see it. */
-NEPH_API bool neph_camera_project(const NephCamera *camera, const double point[3],
-                                  double *x, double *y);
+NEPH_SIZED bool neph_camera_project(const NephCamera *camera, const double point[3],
+                                    double *x, double *y);
 /** @brief The view as pbrt directives: LookAt, after Scale if mirrored, and Camera if it
  * is a perspective one. Owned by caller. */
-NEPH_API char *neph_camera_text(const NephCamera *camera);
+NEPH_SIZED char *neph_camera_text(const NephCamera *camera);
 /** @brief Writes the view into a scene file: where its LookAt or Camera stands, the rest
  * as it was. The file is replaced only when whole. */
-NEPH_API bool neph_camera_save(const NephCamera *camera, const char *scene_path,
-                               GError **error);
+NEPH_SIZED bool neph_camera_save(const NephCamera *camera, const char *scene_path,
+                                 GError **error);
 
 /** @brief The box around all shapes; false if there are none. */
 NEPH_API bool neph_scene_bounds(const NephScene *scene, double low[3], double high[3]);
@@ -347,8 +355,8 @@ typedef struct NephImageDifference {
 } NephImageDifference;
 /** @brief Compares image with reference. NEPH_ERROR_INPUT if their sizes differ, R, G or
  * B is missing, or no pixel is finite in both. */
-NEPH_API bool neph_image_compare(const NephImage *image, const NephImage *reference,
-                                 NephImageDifference *out, GError **error);
+NEPH_SIZED bool neph_image_compare(const NephImage *image, const NephImage *reference,
+                                   NephImageDifference *out, GError **error);
 /** @brief Where the image is brighter (red, then white) or darker (blue, then white) than
  * the reference; the end of the scale is half of its luminance, or, in the dark, of a
  * tenth of its mean. Black: alike; green: not finite. Owned by caller. */
@@ -356,8 +364,8 @@ NEPH_API NephImage *neph_image_difference_map(const NephImage *image,
                                               const NephImage *reference, GError **error);
 /** @brief A comparison as a table for people (json false) or for programs. Owned by
  * caller. */
-NEPH_API char *neph_image_difference_text(const NephImageDifference *difference,
-                                          bool json);
+NEPH_SIZED char *neph_image_difference_text(const NephImageDifference *difference,
+                                            bool json);
 
 /* ---- Rendering ---- */
 
@@ -452,7 +460,7 @@ NEPH_API void neph_render_cancel(NephRender *render);
 /** @brief The mean of the passes so far, with layers; owned by the caller.
  * NEPH_ERROR_FAILED if memory is refused. */
 NEPH_API NephImage *neph_render_image(const NephRender *render, GError **error);
-NEPH_API void neph_render_statistics(const NephRender *render, NephStatistics *out);
+NEPH_SIZED void neph_render_statistics(const NephRender *render, NephStatistics *out);
 /** @brief The relative error of the image, as in NephStatistics, found now: also from the
  * progress function of a render that is not asked to keep it. */
 NEPH_API double neph_render_noise(const NephRender *render);
@@ -492,11 +500,11 @@ typedef struct NephPlan {
  * neph_render_run runs, but from its progress function.
  * @return false: there is no plan yet, in a progress function called before there is, or
  * with an error, NEPH_ERROR_CANCELLED or NEPH_ERROR_FAILED */
-NEPH_API bool neph_render_plan(NephRender *render, NephPlan *out, GError **error);
+NEPH_SIZED bool neph_render_plan(NephRender *render, NephPlan *out, GError **error);
 /** @brief The plan in words, a table for people; owned by caller. */
-NEPH_API char *neph_plan_text(const NephPlan *plan);
+NEPH_SIZED char *neph_plan_text(const NephPlan *plan);
 /** @brief Statistics as JSON (json true) or a table for people; owned by caller. */
-NEPH_API char *neph_statistics_text(const NephStatistics *statistics, bool json);
+NEPH_SIZED char *neph_statistics_text(const NephStatistics *statistics, bool json);
 
 /* ---- One picture by many processes ---- */
 
@@ -520,7 +528,8 @@ NEPH_API void neph_render_add_sums(NephRender *render, size_t first, size_t n,
                                    const double *more);
 /** @brief ... and, when all are added, its passes, rays and seconds. The sums are those
  * of passes 0 to their number again before neph_render_save_checkpoint. */
-NEPH_API void neph_render_add_statistics(NephRender *render, const NephStatistics *more);
+NEPH_SIZED void neph_render_add_statistics(NephRender *render,
+                                           const NephStatistics *more);
 /** @brief Forgets sums and counts, which another process has; what is planned stays. */
 NEPH_API void neph_render_forget(NephRender *render);
 /** @brief The settings that passes are rendered by: those asked for, or after
@@ -547,8 +556,8 @@ typedef struct NephSurfacePoint {
 } NephSurfacePoint;
 
 /** @brief The first surface that the eye sees along a ray; direction is unit. */
-NEPH_API bool neph_scene_pick(const NephScene *scene, const double origin[3],
-                              const double direction[3], NephSurfacePoint *out);
+NEPH_SIZED bool neph_scene_pick(const NephScene *scene, const double origin[3],
+                                const double direction[3], NephSurfacePoint *out);
 /** @brief The edges of the scene's shapes as *n line segments, six floats each; edges
  * within a plane are left out, and if there are more than `most` an even choice is made.
  * Curved shapes show lines on their surface, and meshes for whose edges memory is short

@@ -41,7 +41,7 @@ NEPH_API bool neph_photons_follow(NephPhotons *photons, NephGoOnFunc go_on, void
 NEPH_API void neph_photons_free(NephPhotons *photons);
 NEPH_API size_t neph_photons_count(const NephPhotons *photons);
 /** @brief @return false if there are fewer; out is then zero */
-NEPH_API bool neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out);
+NEPH_SIZED bool neph_photons_get(const NephPhotons *photons, size_t i, NephPhoton *out);
 /** @brief The medium in which photon i was scattered, "" if it landed on a surface or is
  * none; the scene's. Those count for no estimate on a surface. */
 NEPH_API const char *neph_photons_medium(const NephPhotons *photons, size_t i);
@@ -57,9 +57,9 @@ typedef struct NephSaveOptions {
  * than a few of them are in memory at a time. The file is whole or not there.
  * NEPH_ERROR_USAGE where none are sent (integrator path) or they are of no use to another
  * render (vcm). */
-NEPH_API bool neph_photons_save(const NephScene *scene, const NephSettings *settings,
-                                const char *path, const NephSaveOptions *options,
-                                GError **error);
+NEPH_SIZED bool neph_photons_save(const NephScene *scene, const NephSettings *settings,
+                                  const char *path, const NephSaveOptions *options,
+                                  GError **error);
 /** @brief Before the run, and before neph_render_resume: passes have the photons of such
  * a file in place of their own, pass i those of its pass i modulo their number, with
  * their wavelengths and radii. Size, camera and film may be others than those of the
@@ -74,7 +74,7 @@ NEPH_API bool neph_render_use_photons(NephRender *render, const char *path,
  * may be NULL. Owned by the caller; NULL with NEPH_ERROR_INPUT. */
 NEPH_API NephSettings *neph_photons_settings(const char *path, int64_t *passes,
                                              GError **error);
-NEPH_API void neph_photons_statistics(const NephPhotons *photons, NephStatistics *out);
+NEPH_SIZED void neph_photons_statistics(const NephPhotons *photons, NephStatistics *out);
 /** @brief Binary PLY: x y z, nx ny nz (direction), red green blue (flux), all float, and
  * class. */
 NEPH_API bool neph_photons_write_ply(const NephPhotons *photons, const char *path,
@@ -109,8 +109,8 @@ typedef struct NephPhotonEvent {
 
 /** @brief The life of the emitted photon that left photon i: at most capacity events go
  * to events. @return how many there are; 0 until neph_photons_follow, and of no photon */
-NEPH_API size_t neph_photons_path(const NephPhotons *photons, size_t i,
-                                  NephPhotonEvent *events, size_t capacity);
+NEPH_SIZED size_t neph_photons_path(const NephPhotons *photons, size_t i,
+                                    NephPhotonEvent *events, size_t capacity);
 
 /** @brief What an estimate of irradiance at a point is made of, map by map. */
 typedef struct NephEstimate {
@@ -123,9 +123,9 @@ typedef struct NephEstimate {
 /** @brief The estimate of irradiance on a surface at a point, with the kernels of the
  * settings, without probing edges. radius: m; 0: as a render would gather, within those
  * of the statistics or nearer than the last of so many nearest. */
-NEPH_API void neph_photons_estimate(const NephPhotons *photons, const double point[3],
-                                    const double normal[3], double radius,
-                                    NephEstimate *out);
+NEPH_SIZED void neph_photons_estimate(const NephPhotons *photons, const double point[3],
+                                      const double normal[3], double radius,
+                                      NephEstimate *out);
 /** @brief The photons that the estimate counts, none of them in a medium, nearest first:
  * at most capacity go to index. @return how many there are */
 NEPH_API size_t neph_photons_near(const NephPhotons *photons, const double point[3],
@@ -137,5 +137,7 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(NephPhotons, neph_photons_free)
 #ifdef __cplusplus
 }
 #endif
+
+#include <nephroid/sized.h>
 
 #endif

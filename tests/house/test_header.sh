@@ -5,7 +5,7 @@ header=$1
 work=$(mktemp -d) || exit 99
 trap 'rm -rf "$work"' EXIT
 flags="$(pkg-config --cflags glib-2.0) -I$(dirname "$(dirname "$header")")"
-for part in "$(dirname "$header")"/p*.h "$header" "$header"; do # a part first, too
+for part in "$(dirname "$header")"/[ps]*.h "$header" "$header"; do # a part first, too
     printf '#include "%s"\n' "$part" >>"$work/twice.c"
 done
 cp "$work/twice.c" "$work/twice.cpp"
