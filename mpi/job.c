@@ -1,5 +1,5 @@
 /*
- * Each rank reads the scene and plans; the root says by which settings, deals out passes
+ * Each rank reads the scene; the root says by which settings and plan, deals out passes
  * and joins their sums, at checkpoints and in the end.
  */
 #include "job.h"
@@ -278,17 +278,15 @@ static NephSettings *share_settings(const job *j)
     return out;
 }
 
-/* The same plan everywhere, made by each: it is a function of scene and settings. */
-static bool same_plan(const job *j, GError **error)
+/* The root plans, and the others have its plan. */
+static bool share_plan(const job *j, GError **error)
 {
-    g_autofree char *plan = neph_render_fingerprint(j->render, error);
-    if (!ranks_agree(plan != NULL))
+    bool is_root = ranks_me() == ROOT;
+    g_autoptr(GBytes) made = is_root ? neph_render_plan_bytes(j->render, error) : NULL;
+    if (!ranks_agree(!is_root || made))
         return false;
-    if (ranks_same_text(plan))
-        return true;
-    g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_FAILED,
-                "the ranks differ in program, scene or kind of processor");
-    return false;
+    g_autoptr(GBytes) plan = ranks_share_bytes(made);
+    return ranks_agree(is_root || neph_render_take_plan(j->render, plan, error));
 }
 
 static bool resume(job *j, GError **error)
@@ -343,7 +341,7 @@ static bool prepare(job *j, GError **error)
     g_autoptr(NephSettings) settings = share_settings(j);
     if (ranks_me() != ROOT)
         j->render = neph_render_new(j->scene, settings, error);
-    return ranks_agree(j->render != NULL) && same_plan(j, error);
+    return ranks_agree(j->render != NULL) && share_plan(j, error);
 }
 
 /* ---- After ---- */
@@ -364,6 +362,9 @@ static int write_all(const job *j)
     neph_render_statistics(j->render, &s);
     s.time_total = now() - j->start;
     s.stopped_by = j->stopped_by;
+    if (s.short_of_memory && !j->options->quiet)
+        tell("note", "fewer photons a pass were sent than asked for: more would not fit "
+                     "into memory (--memory)");
     g_autofree char *table = neph_statistics_text(&s, false);
     g_autofree char *json = neph_statistics_text(&s, true);
     if (!j->options->quiet)

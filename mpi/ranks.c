@@ -28,15 +28,33 @@ int ranks_threads(void)
     return MAX(processors / n, 1);
 }
 
+/* In pieces whose sizes MPI can say. */
+static void share(char *data, uint64_t size)
+{
+    const uint64_t piece = 1 << 30;
+    for (uint64_t done = 0; done < size; done += piece)
+        MPI_Bcast(data + done, (int)MIN(size - done, piece), MPI_CHAR, ROOT,
+                  MPI_COMM_WORLD);
+}
+
+GBytes *ranks_share_bytes(GBytes *bytes)
+{
+    gsize size = 0;
+    const void *mine = bytes ? g_bytes_get_data(bytes, &size) : NULL;
+    uint64_t all = size;
+    MPI_Bcast(&all, 1, MPI_UINT64_T, ROOT, MPI_COMM_WORLD);
+    char *out = g_malloc0(all + 1);
+    if (mine)
+        memcpy(out, mine, all);
+    share(out, all);
+    return g_bytes_new_take(out, all);
+}
+
 char *ranks_share_text(const char *text)
 {
-    int size = text ? (int)strlen(text) : 0;
-    MPI_Bcast(&size, 1, MPI_INT, ROOT, MPI_COMM_WORLD);
-    char *out = g_malloc0((size_t)size + 1);
-    if (text)
-        memcpy(out, text, (size_t)size);
-    MPI_Bcast(out, size, MPI_CHAR, ROOT, MPI_COMM_WORLD);
-    return out;
+    g_autoptr(GBytes) mine = text ? g_bytes_new(text, strlen(text) + 1) : NULL;
+    g_autoptr(GBytes) all = ranks_share_bytes(mine);
+    return g_strdup(g_bytes_get_data(all, NULL));
 }
 
 bool ranks_agree(bool well)
@@ -44,12 +62,6 @@ bool ranks_agree(bool well)
     int mine = well, all;
     MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
     return all;
-}
-
-bool ranks_same_text(const char *text)
-{
-    g_autofree char *of_root = ranks_share_text(ranks_me() == ROOT ? text : NULL);
-    return ranks_agree(strcmp(of_root, text) == 0);
 }
 
 _Noreturn void ranks_abort(const GError *error)

@@ -17,9 +17,10 @@ int ranks_threads(void);
 /** @brief The root's text, in all ranks; owned by the caller. text: the root's, else
  * NULL */
 char *ranks_share_text(const char *text);
+/** @brief The root's bytes, in all ranks; owned by the caller. bytes: the root's, else
+ * NULL */
+GBytes *ranks_share_bytes(GBytes *bytes);
 /** @brief Whether all ranks say true. */
 bool ranks_agree(bool well);
-/** @brief Whether the text is the root's, in all ranks. */
-bool ranks_same_text(const char *text);
 /** @brief Tells of the error, by rank, and ends all ranks with its exit code. */
 _Noreturn void ranks_abort(const GError *error);

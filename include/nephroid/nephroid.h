@@ -508,10 +508,20 @@ NEPH_SIZED char *neph_statistics_text(const NephStatistics *statistics, bool jso
 
 /* ---- One picture by many processes ---- */
 
-/* Each process loads the scene, makes a render of the same settings (`time` 0) and
-   renders passes that one of them deals out, each number once. Their sums are added up in
-   that one. The picture is that of one process, but for the order in which sums are
-   rounded. */
+/* Each process loads the scene and makes a render of the same settings (`time` 0). One of
+   them plans, the others take its plan, and all render passes that it deals out, each
+   number once. Their sums are added up in that one. The picture is that of one process,
+   but for the order in which sums are rounded. */
+
+/** @brief The plan, made now if it was not, for neph_render_take_plan in other processes;
+ * g_bytes_unref. NULL with an error, as neph_render_plan. */
+NEPH_API GBytes *neph_render_plan_bytes(NephRender *render, GError **error);
+/** @brief Before the first pass: takes over the plan of another process, and settings
+ * that it chose, in place of making one. NEPH_ERROR_INPUT with the reason if it is
+ * damaged or of another program, scene or integrator, NEPH_ERROR_FAILED if its photons do
+ * not fit into memory, NEPH_ERROR_USAGE if there is a plan; the render is then as it was.
+ */
+NEPH_API bool neph_render_take_plan(NephRender *render, GBytes *plan, GError **error);
 
 /** @brief Renders pass number index (from 0) onto the sums, whole, whatever `passes`,
  * `time` and `noise` say. Not to be mixed with neph_render_run. progress may be NULL; its

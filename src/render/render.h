@@ -95,6 +95,15 @@ bool render_resume(render *r, const render_identity *who, const char *path,
  * whose photons they are begins. */
 bool render_use_photons(render *r, const render_identity *who, const char *path,
                         GError **error);
+/** @brief The plan, made now if it was not, for render_take_plan in another process.
+ * Owned by the caller. */
+GBytes *render_plan_bytes(render *r, const render_identity *who, GError **error);
+/** @brief Before the first run: has the plan of another process, and by it settings, in
+ * place of one of its own. ERROR_INPUT with the reason if it is damaged or of another
+ * program, scene or integrator, ERROR_FAILED where its photons do not fit into memory;
+ * then the render is as new. */
+bool render_take_plan(render *r, const render_identity *who, GBytes *bytes,
+                      GError **error);
 /** @brief Renders one pass by its number, which comes once, as part of a render whose
  * passes are dealt out to many; `time` and `noise` mean nothing then. After it progress
  * is told no more. Not to be mixed with render_run. */

@@ -54,7 +54,7 @@ Shape "sphere" "float radius" 0.5
 AttributeEnd
 TEXT
 
-echo 1..12
+echo 1..14
 for how in auto/1 auto/2 auto/4 vcm/3 sppm/2; do
     integrator=${how%/*} n=${how#*/}
     rm -f many.exr
@@ -95,6 +95,22 @@ report time $?
 
 ranks 2 --noise 0.2 -o noise.exr && grep -q 'stopped by noise' log
 report noise $?
+
+# The root's plan is that of all: its memory is short, and the others send as few photons as it.
+timeout 200 "$mpirun" -n 1 "$many" render box.pbrt -j1 --integrator sppm --set photons=2000000 --passes 2 \
+    --memory 60M -o few.exr --stats few.json : \
+    -n 1 "$many" render box.pbrt -j1 --integrator sppm --set photons=2000000 --passes 2 >log 2>&1 &&
+    grep -q 'fit into memory' log &&
+    awk '/"indirect"/ { on = 1 } on && /"emitted"/ { n = $2 + 0; on = 0 }
+         END { exit !(n > 1000 && n < 1800000) }' few.json
+report plan-of-root $?
+
+# Nor does one begin into whose memory they do not fit.
+timeout 200 "$mpirun" -n 1 "$many" render box.pbrt -j1 --integrator sppm --set photons=2000000 --passes 2 \
+    -o few.exr : \
+    -n 1 "$many" render box.pbrt -j1 --integrator sppm --set photons=2000000 --passes 2 --memory 60M >log 2>&1
+[ $? != 0 ] && [ "$(grep -c 'for rendering.*photons a pass, beyond the limit of 60.0 MiB' log)" = 1 ]
+report memory-of-others $?
 
 ranks 2 --resume box.pbrt
 [ $? != 0 ] && [ "$(grep -c 'found another file' log)" = 1 ]

@@ -119,6 +119,76 @@ static void test_dealt(const void *data)
     }
 }
 
+/* ---- Plans of another process ---- */
+
+/* Passes by a plan that was taken over are those of who made it, and it is not made
+ * again. */
+static void test_plan_taken(const void *data)
+{
+    g_autoptr(view) v = subject();
+    g_autofree char *words =
+        g_strdup_printf("%s passes=3 spp=2 first_spp=1 photons=3000", (char *)data);
+    g_autoptr(render) a = render_of(v, words), b = render_of(v, words);
+    g_autoptr(GBytes) plan = render_plan_bytes(a, &me, NULL);
+    g_assert_nonnull(plan);
+    g_assert_true(render_take_plan(b, &me, plan, NULL));
+    g_assert_cmpfloat(render_get_statistics(a).time_prepare, >, 0.0);
+    g_autoptr(GBytes) again = render_plan_bytes(b, &me, NULL);
+    g_assert_true(g_bytes_equal(plan, again));
+    for (uint32_t i = 0; i < 3; i++)
+        g_assert_true(render_dealt_pass(b, i, NULL, NULL, NULL));
+    g_assert_cmpfloat(render_get_statistics(b).time_prepare, <=, 0.0);
+    g_autoptr(image) whole = render_with(v, words), picture = image_of(b);
+    assert_same_bits(whole, picture);
+}
+
+static void refuse_plan(render *r, const render_identity *who, GBytes *plan,
+                        const char *part)
+{
+    g_autoptr(GError) error = NULL;
+    g_assert_false(render_take_plan(r, who, plan, &error));
+    g_assert_true(error->domain == NEPH_ERROR);
+    if (!strstr(error->message, part))
+        g_error("'%s' lacks '%s'", error->message, part);
+}
+
+static GBytes *with_bit_turned(GBytes *bytes, gsize bit)
+{
+    gsize size;
+    const guint8 *data = g_bytes_get_data(bytes, &size);
+    guint8 *copy = g_memdup2(data, size);
+    copy[bit / 8 % size] ^= (guint8)(1 << bit % 8);
+    return g_bytes_new_take(copy, size);
+}
+
+static void test_plan_refused(void)
+{
+    const char *words = "integrator=auto passes=3 spp=1 photons=1000";
+    g_autoptr(view) v = subject();
+    g_autoptr(render) a = render_of(v, words), b = render_of(v, words),
+                      c = render_of(v, "integrator=vcm passes=3 spp=1");
+    g_autoptr(GBytes) plan = render_plan_bytes(a, &me, NULL);
+    const render_identity other = {(char *)"test 2", me.scene},
+                          elsewhere = {me.program, (char *)"hall"};
+    refuse_plan(b, &other, plan, "another version");
+    refuse_plan(b, &elsewhere, plan, "another scene");
+    refuse_plan(c, &me, plan, "no plan of this render");
+    refuse_plan(a, &me, plan, "there is one");
+    g_autoptr(GRand) random = g_rand_new_with_seed(5);
+    for (int i = 0; i < 200; i++) {
+        gsize at = g_rand_int(random);
+        g_autoptr(GBytes) turned = with_bit_turned(plan, at);
+        g_autoptr(GBytes) cut =
+            g_bytes_new_from_bytes(plan, 0, at % g_bytes_get_size(plan));
+        refuse_plan(b, &me, turned, "damaged");
+        refuse_plan(b, &me, cut, "damaged");
+    }
+    g_assert_true(render_take_plan(b, &me, plan, NULL)); /* still as new */
+    g_assert_true(render_run(b, NULL, NULL, NULL));
+    g_autoptr(image) whole = render_with(v, words), picture = image_of(b);
+    assert_same_bits(whole, picture);
+}
+
 /* Of a film all is kept: each plane, as it was. */
 static void test_planes(void)
 {
@@ -268,6 +338,14 @@ int main(int argc, char **argv)
     g_test_add_data_func("/checkpoint/dealt/auto", "integrator=auto", test_dealt);
     g_test_add_data_func("/checkpoint/dealt/vcm", "integrator=vcm", test_dealt);
     g_test_add_data_func("/checkpoint/dealt/sppm", "integrator=sppm", test_dealt);
+    g_test_add_data_func("/checkpoint/plan/auto", "integrator=auto", test_plan_taken);
+    g_test_add_data_func("/checkpoint/plan/path", "integrator=path", test_plan_taken);
+    g_test_add_data_func("/checkpoint/plan/vcm", "integrator=vcm", test_plan_taken);
+    g_test_add_data_func("/checkpoint/plan/sppm", "integrator=sppm", test_plan_taken);
+    g_test_add_data_func("/checkpoint/plan/final-gather",
+                         "integrator=photonmap final_gather=on gather_rays=4",
+                         test_plan_taken);
+    g_test_add_func("/checkpoint/plan/refused", test_plan_refused);
     g_test_add_func("/checkpoint/goes-further", test_goes_further);
     g_test_add_func("/checkpoint/planes", test_planes);
     g_test_add_func("/checkpoint/all-is-listed", test_all_is_listed);

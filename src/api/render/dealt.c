@@ -2,6 +2,25 @@
 #include "api/render/render.h"
 #include "api/statistics.h"
 
+static render_identity identity_of(NephRender *r)
+{
+    if (!r->fingerprint)
+        r->fingerprint = scene_fingerprint(r->scene);
+    return (render_identity){(char *)neph_version(), r->fingerprint};
+}
+
+GBytes *neph_render_plan_bytes(NephRender *r, GError **error)
+{
+    const render_identity who = identity_of(r);
+    return render_plan_bytes(r->render, &who, error);
+}
+
+bool neph_render_take_plan(NephRender *r, GBytes *plan, GError **error)
+{
+    const render_identity who = identity_of(r);
+    return render_take_plan(r->render, &who, plan, error);
+}
+
 bool neph_render_pass(NephRender *r, uint32_t index, NephProgressFunc progress,
                       void *data, GError **error)
 {
