@@ -25,8 +25,8 @@ import pathlib
 import re
 import sys
 
-MOST = 34
-MOST_OF_ALL = 71
+MOST = 30
+MOST_OF_ALL = 67
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ["src/photon", "src/transport"]

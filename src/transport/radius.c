@@ -25,9 +25,13 @@
    decides between noise and blur. Caustics are to be sharp, the rest is smooth by nature.
  */
 static const double photons_wanted[N_PHOTON_CLASSES] = {600.0, 12000.0, 300.0};
-/* ... but in each pass at least so many; as many as of caustics in the ball around a
-   photon in a medium. */
-static const double photons_wanted_least[N_PHOTON_CLASSES] = {12.0, 40.0, 8.0};
+/* ... but in each pass at least half of what chance alone adds to these or takes from
+   them: fewer would end as noise. As many as of caustics are in the ball around a photon
+   in a medium. */
+static double wanted_least(photon_class c)
+{
+    return 0.5 * sqrt(photons_wanted[c]);
+}
 
 /* Beside a bright spot, radii are as wide as it takes to reach the wanted photons in it:
    this is light that is not there, in proportion to their share of all. So of a caustic's
@@ -173,7 +177,7 @@ static double wanted_in_reach(const transport_plan *plan, photon_class c, double
     double passes = fmax(settings_planned_passes(&plan->how), 1.0);
     bool has_edges = settings_one_map(&plan->how); /* not of indirect light alone */
     photon_class like = has_edges ? PHOTON_DIRECT : c;
-    double wanted = fmax(photons_wanted[like] / passes, photons_wanted_least[like]);
+    double wanted = fmax(photons_wanted[like] / passes, wanted_least(like));
     return c == PHOTON_CAUSTIC ? fmin(wanted, fmax(MOST_SHARE * n, 1.0)) : wanted;
 }
 
@@ -215,7 +219,7 @@ static bool choose_in_media(pilot *p, photon_class c, const pilot_maps *maps,
     const photon_map *map = maps->in_media;
     double density = density_over_pilot(p, c, maps);
     const radius_rule rule = {
-        .scale = cbrt(photons_wanted_least[PHOTON_CAUSTIC] / RADIUS_NEAREST / density),
+        .scale = cbrt(wanted_least(PHOTON_CAUSTIC) / RADIUS_NEAREST / density),
         .largest = widest_radius(plan),
         .pilot = p,
         .map = map,

@@ -71,7 +71,7 @@ void plan_look(transport_plan *plan)
 {
     if (plan->sight)
         return;
-    uint32_t n = plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_PLACES);
+    uint32_t n = MIN(plan_trials_for(plan, 0.5, PHOTON_RAYS, UINT32_MAX), MOST_PLACES);
     plan->sight = g_aligned_alloc0(n, sizeof *plan->sight, 16);
     plan->n_sight = find_visible_points(plan, n, plan->sight);
     plan->planning += n * PHOTON_RAYS;

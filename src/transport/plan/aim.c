@@ -300,7 +300,7 @@ static bool guide_pays(const trials *all)
 static trials trials_of(transport_plan *plan, const emission_guide *guide,
                         const cancel_flag *cancel)
 {
-    size_t each = plan_trials_for(plan, 2.0, ROUNDS * PHOTON_RAYS, MOST_PILOTS);
+    size_t each = plan_trials_for(plan, 2.0, ROUNDS * PHOTON_RAYS, MOST_PILOTS / ROUNDS);
     return (trials){
         .plan = plan,
         .pixels_each = pixels_each(plan),

@@ -2,10 +2,15 @@
 
 #include "transport/plan/work.h"
 
-/* Photons of a pass that it is tried with at most: so many for each of the camera's
-   samples, and in the smallest picture one for each place that is asked about. With no
-   bound a render took 1.25 times as long to its error. */
-enum { PHOTONS_PER_SAMPLE = 8 };
+/* Photons of a pass that it is tried with at most: so many that with the middle one of
+   the shares that are compared they cost what the camera's samples do, and in the
+   smallest picture one for each place that is asked about. With no bound a render
+   took 1.25 times as long to its error. */
+static int64_t most_of_all(int64_t samples)
+{
+    double middle = plan_share(N_SHARES / 2) * PHOTON_RAYS;
+    return MAX((int64_t)((double)samples * SAMPLE_RAYS / middle), MOST_PLACES);
+}
 
 /* No fewer photons than this share of all, if there must be any; and no fewer blurred
    gathers than this share: what is weighed by more stands out in the picture. */
@@ -20,10 +25,9 @@ uint64_t caustics_most(const transport_plan *plan)
     const film_settings *film = &plan->view->film;
     int64_t own = how->class_photons[PHOTON_CAUSTIC];
     int64_t samples = (int64_t)film->width * film->height * how->spp;
-    int64_t most = MAX(PHOTONS_PER_SAMPLE * samples, MOST_PLACES);
     if (!caustic_casters_are_lit(plan->casters))
         return 0;
-    return (uint64_t)(own > 0 ? own : MIN(settings_photons(how), most));
+    return (uint64_t)(own > 0 ? own : MIN(settings_photons(how), most_of_all(samples)));
 }
 
 /* Rays that a camera sample costs more where photons are gathered, however few: at the

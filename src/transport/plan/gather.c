@@ -212,7 +212,7 @@ static void run_places(gather_trial *t, transport_plan *plan, const path_pass *p
 {
     transport_scratch by_maps = {0}, by_paths = {0};
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x706c61636573u);
-    t->n = plan_trials_for(plan, 1.0, place_rays(plan->sample_rays), MOST_PAIRS);
+    t->n = plan_trials_for(plan, 1.0, place_rays(plan->sample_rays), MOST_PLACES);
     t->places = g_new0(gather_place, t->n);
     ask_maps(t, plan, key, false, &by_maps);
     t->sample_rays = rays_of(&t->plan, &by_maps) / (N_NARROW * t->n);

@@ -43,7 +43,7 @@ path_effort path_effort_measure(transport_plan *plan)
                             .w = scene_trial_wavelengths(plan->scene, 0),
                             .options.deterministic = !plan->how.multiple_samples};
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x627564676574u);
-    uint32_t n = plan_trials_for(plan, 1.0, 2.0 * SAMPLE_RAYS, MOST_PAIRS);
+    uint32_t n = plan_trials_for(plan, 1.0, 2.0 * SAMPLE_RAYS, MOST_PLACES);
     path_effort out = {.noise = variance_of_pairs(&pass, key, n, &scratch)};
     double rays = (double)(scratch.camera_rays + scratch.shadow_rays);
     plan->planning += rays;
@@ -86,7 +86,7 @@ bool spots_fit(const transport_plan *plan)
    of paths that do not look would hang on the few that do not. */
 void spots_decide(transport_plan *plan, const path_pass *pass)
 {
-    uint32_t n = plan_trials_for(plan, 1.0, pair_rays(plan), MOST_PAIRS);
+    uint32_t n = plan_trials_for(plan, 1.0, pair_rays(plan), MOST_PLACES);
     spot_trial trial = {0};
     double noise = run_spot_trial(plan, pass, &trial, n), each = 1.0 / (2.0 * n);
     double rest = fmax(noise - trial.with[0] * each, 0.0);

@@ -22,7 +22,7 @@ uint32_t plan_trials_for(const transport_plan *plan, double shares, double rays_
                          uint32_t most)
 {
     double n = plan_grant(plan, shares) / rays_each;
-    return (uint32_t)CLAMP(n, (double)LEAST_TRIALS, (double)most);
+    return (uint32_t)CLAMP(n, (double)LEAST_TRIALS, shares * (double)most);
 }
 
 bool plan_is_tiny(const transport_plan *plan)

@@ -37,13 +37,9 @@
  * the decision is the cheap one. */
 enum { LEAST_TRIALS = RADIUS_NEAREST };
 
-/** Photons, or light subpaths, that tell how dense they lie: those that a distance is
- * measured by, for every second of the places. */
-enum { MOST_PILOTS = RADIUS_NEAREST * MOST_PLACES / 2 };
-
-/** Pairs of samples of a trial, at every fourth of the places: a variance is then known
- * within a tenth where no sample stands out. */
-enum { MOST_PAIRS = MOST_PLACES / 4 };
+/** Photons, or light subpaths, of a share that tell how dense they lie: those that a
+ * distance is measured by, for each of the places. */
+enum { MOST_PILOTS = RADIUS_NEAREST * MOST_PLACES };
 
 /** What traces photons, or light subpaths, before the first pass; the guide does more
  * than once. */
@@ -66,7 +62,7 @@ void plan_ask(transport_plan *plan, double n_photons);
 double plan_grant(const transport_plan *plan, double shares);
 
 /** @brief So many trials that cost that many rays each: few if the work is, LEAST_TRIALS
- * at least, and never more than most. */
+ * at least, and never more than most a share. */
 uint32_t plan_trials_for(const transport_plan *plan, double shares, double rays_each,
                          uint32_t most);
 
