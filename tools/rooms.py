@@ -2,7 +2,8 @@
 """What the house is to keep to, counted: files in a folder (of any kind), and the places in which a
 kind of things has to be named beside its own file and its line of a .def.
 
-Prints both; exits with 1 above MOST_FILES or if a kind is named anywhere else.
+Prints both; exits with 1 above MOST_FILES or if a kind is named anywhere else, be it in a text
+that lists kinds.
 """
 import os
 import re
@@ -69,6 +70,18 @@ def find_places(registry, symbol, own, texts):
                 yield kind, path
 
 
+def find_lists(own, texts):
+    """Files with a text that lists kinds by name, which is to be made from the .def."""
+    name = re.compile(own.format(r'\w+', r'\w+'))
+    names = {n for path, text in texts if name.match(path)
+             for n in re.findall(r'\.name = "(\w+)"', text)}
+    for path, text in texts:
+        for said in re.findall(r'"[^"\n]*"(?:\s+"[^"\n]*")*', text):
+            listed = set(re.findall(r'\w+(?=,)', said)) & names
+            if len(listed) > 2:
+                yield ' '.join(sorted(listed)), path
+
+
 def main():
     wrong = 0
     for folder, n in sorted(count_files().items(), key=lambda c: (-c[1], c[0]))[:8]:
@@ -77,7 +90,7 @@ def main():
         print(f'{n:4} files in {folder}' + (f', more than {MOST_FILES}' if too_many else ''))
     texts = list(sources('src', 'gui', 'cli'))
     for registry, symbol, own in REGISTRIES:
-        places = list(find_places(registry, symbol, own, texts))
+        places = list(find_places(registry, symbol, own, texts)) + list(find_lists(own, texts))
         print(f'{len(list(kinds(registry))):4} kinds in {registry}, '
               f'{len(places)} named elsewhere')
         for kind, path in places:

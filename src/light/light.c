@@ -6,6 +6,7 @@
 #include "light/light_kinds.h"
 #include "math/frame.h"
 #include "math/warp.h"
+#include "params/kinds.h"
 
 #include <glib.h>
 #include <string.h>
@@ -21,14 +22,30 @@ const light_kind *light_kind_at(size_t i)
     return i < G_N_ELEMENTS(kinds) ? kinds[i] : NULL;
 }
 
+/* Area lights are asked for by another directive than all others. */
+static const char *name_of(size_t i, bool on_shape)
+{
+    if (i >= G_N_ELEMENTS(kinds))
+        return NULL;
+    return (kinds[i] == &light_area) == on_shape ? kinds[i]->name : "";
+}
+
+static const char *name_on_shape(size_t i)
+{
+    return name_of(i, true);
+}
+
+static const char *name_of_source(size_t i)
+{
+    return name_of(i, false);
+}
+
 static const light_kind *find_kind(const char *name, const params *p, bool on_shape)
 {
-    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {
-        bool is_area = kinds[i] == &light_area;
-        if (is_area == on_shape && strcmp(kinds[i]->name, name) == 0 &&
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
+        if (strcmp(name_of(i, on_shape), name) == 0 &&
             (!kinds[i]->is_meant || kinds[i]->is_meant(p)))
             return kinds[i];
-    }
     return NULL;
 }
 
@@ -52,11 +69,8 @@ light *light_new(const build_context *context, const char *name, const params *p
 {
     const light_kind *kind = find_kind(name, p, on != NULL);
     if (!kind) {
-        error_at(error, p->place, "%s \"%s\" is not supported; known %s",
-                 on ? "area light" : "light source", name,
-                 on ? "is diffuse"
-                    : "are point, spot, distant, goniometric, projection and "
-                      "infinite");
+        kind_unknown(on ? name_on_shape : name_of_source,
+                     on ? "an area light" : "a light source", name, p->place, error);
         return NULL;
     }
     g_autofree char *what = g_strdup_printf("light \"%s\"", name);

@@ -1,7 +1,7 @@
 /* Making materials by kind, and their bsdfs at a hit. */
 #include "material/material_kinds.h"
 
-#include <string.h>
+#include "params/kinds.h"
 
 static const material_kind *const kinds[] = {
 #define MATERIAL(kind, file) &material_##kind,
@@ -14,25 +14,20 @@ const material_kind *material_kind_at(size_t i)
     return i < G_N_ELEMENTS(kinds) ? kinds[i] : NULL;
 }
 
-static const material_kind *find_kind(const char *name, const params *p, GError **error)
+static const char *name_of(size_t i)
 {
-    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
-        if (strcmp(kinds[i]->name, name) == 0)
-            return kinds[i];
-    g_autoptr(GString) known = g_string_new(NULL);
-    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
-        g_string_append_printf(known, "%s%s", i ? ", " : "", kinds[i]->name);
-    error_at(error, p->place, "expected a material of kind %s, found '%s'", known->str,
-             name);
-    return NULL;
+    return i < G_N_ELEMENTS(kinds) ? kinds[i]->name : NULL;
 }
 
 material *material_new(const build_context *context, const char *kind, const params *p,
                        GError **error)
 {
-    const material_kind *k = find_kind(kind, p, error);
+    int i = kind_find(name_of, "a material", kind, p->place, error);
+    if (i < 0)
+        return NULL;
+    const material_kind *k = kinds[i];
     g_autofree char *what = g_strdup_printf("material '%s'", kind);
-    if (!k || !params_known(p, what, k->parameters, MATERIAL_PARAMETERS, error))
+    if (!params_known(p, what, k->parameters, MATERIAL_PARAMETERS, error))
         return NULL;
     void *self = k->create(context, p, error);
     if (!self)

@@ -5,6 +5,7 @@
 #include "shape/shape.h"
 
 #include "math/sampler.h"
+#include "params/kinds.h"
 #include "shape/shape_kinds.h"
 
 #include <string.h>
@@ -23,15 +24,6 @@ const char *shape_kind_name(size_t i)
 const char *shape_kind_parameters(size_t i)
 {
     return i < G_N_ELEMENTS(kinds) ? kinds[i]->parameters : NULL;
-}
-
-static const shape_kind *find_kind(const char *name)
-{
-    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {
-        if (strcmp(kinds[i]->name, name) == 0)
-            return kinds[i];
-    }
-    return NULL;
 }
 
 static bool hides_nothing(const float_input *alpha)
@@ -60,20 +52,16 @@ static shape *shape_wrap(const shape_kind *kind, void *self, const shape_place *
 
 bool shape_may_be_flat(const char *name)
 {
-    const shape_kind *kind = find_kind(name);
-    return kind && kind->may_be_flat;
+    int i = kind_find(shape_kind_name, "a shape", name, (source_place){0}, NULL);
+    return i >= 0 && kinds[i]->may_be_flat;
 }
 
 shape *shape_new(const char *name, const params *p, const shape_place *at, GError **error)
 {
-    const shape_kind *kind = find_kind(name);
-    if (!kind) {
-        error_at(error, p->place,
-                 "shape \"%s\" is not supported; known are trianglemesh, plymesh, "
-                 "bilinearmesh, loopsubdiv, curve, sphere, disk and cylinder",
-                 name);
+    int i = kind_find(shape_kind_name, "a shape", name, p->place, error);
+    if (i < 0)
         return NULL;
-    }
+    const shape_kind *kind = kinds[i];
     void *self = kind->create(p, at, error);
     if (kind->becomes)
         kind = kind->becomes;

@@ -4,8 +4,7 @@
 #include "texture/texture_kinds.h"
 
 #include "params/build_context.h"
-
-#include <string.h>
+#include "params/kinds.h"
 
 struct texture {
     const texture_kind *kind;
@@ -29,17 +28,9 @@ const texture_kind *texture_kind_at(size_t i)
     return i < G_N_ELEMENTS(kinds) ? kinds[i] : NULL;
 }
 
-static const texture_kind *find_kind(const char *name, const params *p, GError **error)
+static const char *name_of(size_t i)
 {
-    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
-        if (strcmp(kinds[i]->name, name) == 0)
-            return kinds[i];
-    g_autoptr(GString) known = g_string_new(NULL);
-    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
-        g_string_append_printf(known, "%s%s", i ? ", " : "", kinds[i]->name);
-    error_at(error, p->place, "expected a texture of kind %s, found '%s'", known->str,
-             name);
-    return NULL;
+    return i < G_N_ELEMENTS(kinds) ? kinds[i]->name : NULL;
 }
 
 static bool steps_possible(const texture *t, const params *p, GError **error)
@@ -56,9 +47,12 @@ static bool steps_possible(const texture *t, const params *p, GError **error)
 texture *texture_new(const build_context *context, const char *kind, bool is_spectrum,
                      const params *p, GError **error)
 {
-    const texture_kind *k = find_kind(kind, p, error);
+    int i = kind_find(name_of, "a texture", kind, p->place, error);
+    if (i < 0)
+        return NULL;
+    const texture_kind *k = kinds[i];
     g_autofree char *what = g_strdup_printf("texture '%s'", kind);
-    if (!k || !params_known(p, what, k->parameters, NULL, error))
+    if (!params_known(p, what, k->parameters, NULL, error))
         return NULL;
     void *self = k->create(context, is_spectrum, p, error);
     if (!self)

@@ -630,9 +630,12 @@ static void expect_error(const char *kind, params *p, shape *on, const char *tex
 static void test_bad_input_is_named(void)
 {
     shape_place at = {.to_world = transform_identity()};
-    expect_error("sun", numbers_of(NULL, NULL), NULL, "\"sun\" is not supported");
-    expect_error("diffuse", numbers_of(NULL, NULL), NULL, "is not supported");
-    expect_error("point", numbers_of(NULL, NULL), unit_square(&at), "is not supported");
+    expect_error("sun", numbers_of(NULL, NULL), NULL,
+                 "expected a light source of kind point, spot, distant, goniometric, "
+                 "projection, infinite, found 'sun'");
+    expect_error("diffuse", numbers_of(NULL, NULL), NULL, "expected a light source");
+    expect_error("point", numbers_of(NULL, NULL), unit_square(&at),
+                 "expected an area light of kind diffuse, found 'point'");
     expect_error("point", numbers_of("scale", -1.0, NULL), NULL, "scale");
     expect_error("point", numbers_of("power", 0.0, NULL), NULL, "power");
     expect_error("point", numbers_of("intensity", 1.0, NULL), NULL, "intensity");

@@ -534,7 +534,9 @@ static void test_bad_input_is_named(void)
     expect_bad_number("sphere", "raduis", 1, "raduis");
     expect_bad_number("cylinder", "radius", 0, "radius must be positive");
     expect_bad_number("disk", "innerradius", 2, "innerradius");
-    expect_bad_number("cone", "radius", 2, "not supported");
+    expect_bad_number("cone", "radius", 2,
+                      "expected a shape of kind trianglemesh, sphere, disk, cylinder, "
+                      "bilinearmesh, loopsubdiv, curve, found 'cone'");
     const int indices[] = {0, 1, 3, 0, -1};
     expect_bad_mesh(9, indices, 3, 0, "index 3 of triangle 0 is out of range");
     expect_bad_mesh(9, indices + 2, 3, 0, "out of range");
