@@ -397,18 +397,61 @@ static void take_nearest(nearest_set *set, size_t leaf, size_t n)
     }
 }
 
+/* A group on the way down to the nearest: how far its subtrees are, and which of them
+   are left. */
+typedef struct kd_step {
+    size_t node;
+    unsigned left;
+    float d2[WIDTH];
+} kd_step;
+
+static void open_step(const kdtree *tree, vec3 p, unsigned level, size_t node,
+                      kd_step *step)
+{
+    const kd_group *group = tree->groups + tree->offset[level] + node;
+    step->node = node;
+    step->left = (1u << WIDTH) - 1u;
+    for (int i = 0; i < WIDTH; i += LANES)
+        store_lanes(step->d2 + i, box_distances(group, i, p));
+}
+
+/* Takes the nearest subtree that is nearer than limit. @return false: none is left */
+static bool next_nearest(kd_step *step, float limit, size_t *node)
+{
+    float least = limit;
+    int lane = -1;
+    for (int i = 0; i < WIDTH; i++) {
+        bool nearer = (step->left >> i & 1u) && step->d2[i] < least;
+        least = nearer ? step->d2[i] : least;
+        lane = nearer ? i : lane;
+    }
+    if (lane < 0)
+        return false;
+    step->left &= ~(1u << lane);
+    *node = step->node * WIDTH + (size_t)lane;
+    return true;
+}
+
+/* Down to the nearest leaf first; few of the others are ever looked at. */
 void kdtree_nearest_one(const kdtree *tree, nearest_set *set)
 {
-    kd_entry stack[MAX_STACK];
-    stack[0] = (kd_entry){0.0f, tree->n_levels, 0};
-    for (size_t top = 1; top > 0;) {
-        kd_entry node = stack[--top];
-        if (!(node.distance2 < set->limit))
-            continue;
-        if (node.level > 0)
-            top = push_sorted(tree, set->query->p, node, set->limit, stack, top);
-        else
-            take_nearest(set, node.node, tree->n);
+    kd_step steps[MAX_LEVELS + 1];
+    unsigned level = tree->n_levels;
+    if (level == 0) {
+        take_nearest(set, 0, tree->n);
+        return;
+    }
+    open_step(tree, set->query->p, level, 0, &steps[level]);
+    while (level <= tree->n_levels) {
+        size_t node;
+        if (!next_nearest(&steps[level], set->limit, &node)) {
+            level++;
+        } else if (level == 1) {
+            take_nearest(set, node, tree->n);
+        } else {
+            level--;
+            open_step(tree, set->query->p, level, node, &steps[level]);
+        }
     }
 }
 
