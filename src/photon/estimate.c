@@ -336,15 +336,14 @@ static bool gather_once(gather *g, const photon_map *map, estimate_scratch *scra
     return done;
 }
 
-/* The photons again, of the part of the disc that is surface in sight, and its area. */
-static bool gather_part(gather *g, const photon_map *map, neighbourhood *hood,
-                        estimate_scratch *scratch, float *area)
+/* The photons again, of the part of the disc that is surface in sight. */
+static bool gather_part(gather *g, const photon_map *map, const neighbourhood *hood,
+                        estimate_scratch *scratch)
 {
     const estimate_options *options = g->options;
     estimate_options within = *options;
     within.nearest = 0;
     within.radius = hood->radius;
-    *area *= neighbourhood_coverage(hood, &within.kernel);
     g->options = &within;
     g->hood = hood;
     g->query.at.flat = true;
@@ -353,6 +352,27 @@ static bool gather_part(gather *g, const photon_map *map, neighbourhood *hood,
     g->options = options;
     g->hood = NULL;
     return done;
+}
+
+/* The share of the disc's area that is surface in sight; of less than all of it, the
+   photons again. */
+static float gather_in_sight(gather *g, const photon_map *map, const neighbourhood *hood,
+                             estimate_scratch *scratch, bool *done)
+{
+    const kernel *k = &g->options->kernel;
+    looked_disc own;
+    const looked_disc *seen =
+        g->options->shares_looks ? looked_around_find(&scratch->looked, hood, k) : NULL;
+    if (!seen) {
+        own = disc_look(hood, k);
+        seen = &own;
+        scratch->n_looks += own.hood.n_looks;
+        if (g->options->shares_looks)
+            looked_around_put(&scratch->looked, &own);
+    }
+    if (!seen->whole)
+        *done = gather_part(g, map, &seen->hood, scratch) && *done;
+    return seen->coverage;
 }
 
 static void scale_groups(estimate_scratch *scratch, spectrum factor)
@@ -371,17 +391,18 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
     g->hood = NULL;
     bool done = gather_once(g, map, scratch);
     float area = kernel_area(&options->kernel, g->r2);
-    neighbourhood hood = {.scene = options->scene,
-                          .p = g->query.at.p,
-                          .n = g->query.at.n,
-                          .radius = root_within(g->r2),
-                          .time = options->time};
+    const neighbourhood hood = {.scene = options->scene,
+                                .p = g->query.at.p,
+                                .n = g->query.at.n,
+                                .radius = root_within(g->r2),
+                                .time = options->time};
     bool bounded = g->n > 0 && isfinite(hood.radius);
     if (options->curve && bounded)
         area =
             flat_curve_area(options->curve, g->query.at.p, hood.radius, &options->kernel);
-    else if (options->scene && bounded && !neighbourhood_is_whole(&hood))
-        done = gather_part(g, map, &hood, scratch, &area) && done;
+    else if (options->scene && bounded)
+        area *= gather_in_sight(g, map, &hood, scratch, &done);
+    scratch->n_queries++;
     scratch->failed |= !done;
     if (info)
         *info = (estimate_info){.n_photons = g->n, .radius = hood.radius};

@@ -20,6 +20,7 @@
 
 #include "photon/disc_set.h"
 #include "photon/flat_curve.h"
+#include "photon/looked_around.h"
 #include "photon/photon_map.h"
 
 /** @brief How to estimate. */
@@ -33,6 +34,7 @@ typedef struct estimate_options {
     const scene *scene;      /**< to find edges, corners and thin walls with (see
                                 neighbourhood.h); NULL: the disc is taken as whole */
     float time;              /**< of the shutter, at which they are looked for */
+    bool shares_looks;       /**< with queries nearby: scratch->looked is of the pixel */
     const flat_curve *curve; /**< that the point is on; NULL: on none */
     unsigned lobes;          /**< used for all photons, e.g. LOBE_GATHERED */
     unsigned
@@ -44,6 +46,8 @@ typedef struct estimate_options {
 typedef struct estimate_scratch {
     point_hits hits;
     disc_crossings crossings;
+    uint64_t n_queries, n_looks; /**< of maps so far, and short rays for edges */
+    looked_around looked;        /**< what queries that share their looks have seen */
     bool failed;      /**< memory was refused in a query, which then gave zero */
     spectrum *groups; /**< owned, big_alloc'ed; each query leaves there what the photons
                          of each tag gave of the result */

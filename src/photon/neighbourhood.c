@@ -63,6 +63,12 @@ static vec3 lifted(const neighbourhood *hood, vec3 p)
     return p + hood->n * slab(hood);
 }
 
+static bool look(neighbourhood *hood, const ray *r, surface_hit *hit)
+{
+    hood->n_looks++;
+    return scene_intersect(hood->scene, r, hit);
+}
+
 /* True if what a ray met is not turned away from the disc, as photons are told apart. */
 static bool is_alike(const neighbourhood *hood, const surface_hit *hit)
 {
@@ -72,14 +78,14 @@ static bool is_alike(const neighbourhood *hood, const surface_hit *hit)
 
 /* How far the surface of the disc lies off the point q of its plane, over what is
    allowed; 1 or more: there is none. */
-static float surface_height(const neighbourhood *hood, vec3 q)
+static float surface_height(neighbourhood *hood, vec3 q)
 {
     const ray down = {.origin = lifted(hood, q),
                       .direction = -hood->n,
                       .t_max = 2.0f * slab(hood),
                       .time = hood->time};
     surface_hit hit;
-    bool found = scene_intersect(hood->scene, &down, &hit) && is_alike(hood, &hit);
+    bool found = look(hood, &down, &hit) && is_alike(hood, &hit);
     return found ? fabsf(hit.t / slab(hood) - 1.0f) : 1.0f;
 }
 
@@ -116,20 +122,20 @@ static bool is_joined(const neighbourhood *hood, const ray *r, const surface_hit
 
 /* True if what a ray from the lifted centre meets near the rim, in direction d, is the
  * disc's own surface, flat or evenly bent. */
-static bool rim_is_surface(const neighbourhood *hood, vec3 d)
+static bool rim_is_surface(neighbourhood *hood, vec3 d)
 {
     surface_hit hit;
     ray along = along_surface(hood, d);
-    if (scene_intersect(hood->scene, &along, &hit)) {
+    if (look(hood, &along, &hit)) {
         bool joined = is_joined(hood, &along, &hit);
         if (joined || hit.t < hood->radius)
             return joined;
     }
     ray down = below_rim(hood, d);
-    return scene_intersect(hood->scene, &down, &hit) && is_joined(hood, &down, &hit);
+    return look(hood, &down, &hit) && is_joined(hood, &down, &hit);
 }
 
-static bool whole_rim(const neighbourhood *hood)
+static bool whole_rim(neighbourhood *hood)
 {
     vec3 s = hood->frame.s, t = hood->frame.t;
     return rim_is_surface(hood, s) && rim_is_surface(hood, t) &&
@@ -148,8 +154,8 @@ static void find_horizon(neighbourhood *hood)
 {
     const float half = PI_F / NEIGHBOURHOOD_SECTORS; /* of a sector */
     const turn sector = turn_by(2.0f * half);
-    float reach =
-        hood->radius / cosf(half); /* sides between open corners clear the disc */
+    /* Sides between open corners clear the disc, and those that share it. */
+    float reach = (1.0f + NEIGHBOURHOOD_SHARED) * hood->radius / cosf(half);
     turn a = {1.0f, 0.0f};
     vec2 corner[NEIGHBOURHOOD_SECTORS];
     for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++, a = turn_further(a, sector)) {
@@ -158,7 +164,7 @@ static void find_horizon(neighbourhood *hood)
                      .direction = direction_at(hood, a),
                      .t_max = reach};
         surface_hit hit;
-        float free = scene_intersect(hood->scene, &along, &hit) ? hit.t : reach;
+        float free = look(hood, &along, &hit) ? hit.t : reach;
         corner[i] = (vec2){free * a.c, free * a.s};
     }
     for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++) {

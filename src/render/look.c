@@ -126,6 +126,7 @@ static void render_pixel(look *l, int x, int y, unsigned thread)
     uint64_t key = hash_mix((uint64_t)how->seed, eye);
     pixel_sums sums = {0};
     group_sums groups = groups_of(l, thread);
+    looked_around_forget(&l->scratch[thread].estimate.looked);
     for (int64_t i = 0; i < how->spp; i++) {
         if (cancelled(l->task.cancel))
             return;

@@ -44,13 +44,19 @@ static void look_somewhere(size_t begin, size_t end, unsigned thread, void *data
 {
     const trial_look *all = data;
     const film *f = all->film;
+    size_t last = SIZE_MAX; /* pixel */
     for (size_t i = begin; i < end; i++) {
-        sampler random = sampler_make((uint64_t)all->plan->how.seed, all->first + i);
-        vec2 u = sampler_2d(&random);
-        vec2 raster = {(float)f->x0 + u.x * (float)f->width,
-                       (float)f->y0 + u.y * (float)f->height};
+        size_t pixel = (all->first + i) / (size_t)all->plan->how.spp;
+        sampler where = sampler_make((uint64_t)all->plan->how.seed, pixel);
+        sampler random = sampler_make(hash_mix(where.key, pixel), all->first + i);
+        vec2 u = sampler_2d(&where), within = sampler_2d(&random);
+        vec2 raster = {(float)f->x0 + floorf(u.x * (float)f->width) + within.x,
+                       (float)f->y0 + floorf(u.y * (float)f->height) + within.y};
         vec2 u_lens = sampler_2d(&random);
         radiance_sample out = {.groups = NULL};
+        if (pixel != last)
+            looked_around_forget(&all->scratch[thread].estimate.looked);
+        last = pixel;
         ray from_eye =
             camera_ray(&all->plan->view->camera, raster, u_lens, sampler_1d(&random));
         all->transport->radiance(all->pass, &from_eye, &random, &all->scratch[thread],

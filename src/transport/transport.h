@@ -85,6 +85,7 @@ typedef struct shading_point {
     const bsdf *bsdf;
     vec3 wo;      /**< to where the path came from */
     bool blurred; /**< seen by way of a diffuse bounce: edges need not be exact */
+    bool in_pixel; /**< others of the pixel lie beside it: looks for edges are shared */
 } shading_point;
 
 /** @brief What a pass did, summed over its threads. */

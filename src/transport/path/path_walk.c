@@ -169,7 +169,8 @@ void path_gather_caustics(path_walk *walk, const camera_path *path,
     if (!(b->lobes & (LOBE_DIFFUSE | delta)) || path_is_caustic(path) ||
         path_is_cut(walk, path, 2))
         return;
-    const shading_point at = {hit, b, -path->at.ray.direction, path->n_diffuse > 0};
+    const bool blurred = path->n_diffuse > 0;
+    const shading_point at = {hit, b, -path->at.ray.direction, blurred, !blurred};
     if (path_skips_gather(walk, &seen, walk->pass->plan->p_blurred))
         return;
     camera_path_count(&seen, LOBE_DIFFUSE);

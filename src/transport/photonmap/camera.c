@@ -174,7 +174,8 @@ static void shade(camera_tree *tree, const camera_branch *branch, const surface_
                   const bsdf *b, const float p_follow[2])
 {
     const photonmap_pass *pass = tree->pass;
-    const shading_point at = {.hit = hit, .bsdf = b, .wo = -branch->at.ray.direction};
+    const shading_point at = {
+        .hit = hit, .bsdf = b, .wo = -branch->at.ray.direction, .in_pixel = true};
     bool needs_glossy = pass->how->photon_lobes == PHOTON_LOBES_NEEDED;
     unsigned delta = needs_glossy && pass->has_delta_lights ? LOBE_GLOSSY : 0;
     bool gathers = has_lobes(b, pass->gathered | delta);

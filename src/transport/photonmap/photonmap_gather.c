@@ -108,6 +108,7 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
     estimate_options options =
         photonmap_options_at(pass, c, at->hit->p, &scratch->estimate.hits);
     options.scene = pass->how->edges && !at->blurred ? pass->scene : NULL;
+    options.shares_looks = at->in_pixel;
     options.time = photonmap_slice_time(pass, slice);
     options.delta_lobes = delta_lobes ? delta_lobes | LOBE_ANY_SIDE : 0;
     double start = scratch->timed ? clock_seconds() : 0.0;
