@@ -15,7 +15,7 @@ looked_disc disc_look(const neighbourhood *disc, const kernel *k)
 static bool is_beside(const neighbourhood *a, const neighbourhood *b)
 {
     vec3 off = b->p - a->p;
-    float reach = NEIGHBOURHOOD_SHARED * a->radius, cosine = dot3(a->n, b->n);
+    float reach = SHARED_REACH * a->radius, cosine = dot3(a->n, b->n);
     return length3_2(off) <= reach * reach &&
            fabsf(dot3(off, a->n)) <= NEIGHBOURHOOD_FLATTEN * a->radius && cosine > 0.0f &&
            cosine * cosine > SAME_SURFACE;

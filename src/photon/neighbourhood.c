@@ -155,7 +155,7 @@ static void find_horizon(neighbourhood *hood)
     const float half = PI_F / NEIGHBOURHOOD_SECTORS; /* of a sector */
     const turn sector = turn_by(2.0f * half);
     /* Sides between open corners clear the disc, and those that share it. */
-    float reach = (1.0f + NEIGHBOURHOOD_SHARED) * hood->radius / cosf(half);
+    float reach = (1.0f + SHARED_REACH) * hood->radius / cosf(half);
     turn a = {1.0f, 0.0f};
     vec2 corner[NEIGHBOURHOOD_SECTORS];
     for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++, a = turn_further(a, sector)) {

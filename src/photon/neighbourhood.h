@@ -52,10 +52,12 @@ typedef struct neighbourhood {
 /** Height over radius within which a surface counts as the disc's. */
 #define NEIGHBOURHOOD_FLATTEN 0.03f
 
-/** How far off a disc may lie, over its radius, that shares these looks: at a straight
- * edge coverage differs there by a sixth, one way as often as the other. With 0.5 it
- * is 1.6 % too dark beside one. */
-#define NEIGHBOURHOOD_SHARED 0.25f
+/** What was found at a place, looks or light, serves others that lie so far off, over the
+ * radius. At a straight edge coverage differs there by a sixth, one way as often as the
+ * other; with 0.5 it is 1.6 % too dark beside one. Light kept at twice that distance
+ * leaks
+ * (/transport, /flat-curves). */
+#define SHARED_REACH 0.25f
 
 /** @brief True if looks at the rim find nothing amiss; comes before the other calls. */
 bool neighbourhood_is_whole(neighbourhood *hood);

@@ -15,12 +15,9 @@
 
 #include "base/memory.h"
 #include "photon/direction.h"
+#include "photon/neighbourhood.h"
 
 /* ---- Irradiance kept at photon positions ---- */
-
-/* How far off a kept irradiance may be, over the radius it was estimated with: as far as
-   that /transport and /flat-curves show light that leaks. */
-#define KEPT_REACH 0.5f
 
 typedef struct irradiance_loop {
     const photonmap_pass *pass;
@@ -197,7 +194,7 @@ static float kept_reach(const map_place *at, point_hits *hits)
                 minf(least,
                      photonmap_options_at(at->pass, (photon_class)c, at->p, hits).radius);
     }
-    return KEPT_REACH * least;
+    return SHARED_REACH * least;
 }
 
 /* ---- Places that face a surface ---- */

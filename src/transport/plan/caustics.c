@@ -38,6 +38,12 @@ static double gather_rays(const path_effort *paths)
     return PHOTON_RAYS * (2.0 * fmin(paths->surfaces, 1.0) + later);
 }
 
+/* The photons of a pass: sending and storing one takes as long as a ray more. */
+static double photon_rays(const aim_result *found, double n)
+{
+    return n * (found->rays + 1.0);
+}
+
 static double samples_a_pass(const transport_plan *plan)
 {
     return plan_samples(plan) / settings_planned_passes(&plan->how);
@@ -50,7 +56,7 @@ static plan_cost cost_with(const transport_plan *plan, const aim_result *found,
     double photons = plan_share(i) * (double)plan->n_photons[PHOTON_CAUSTIC];
     return (plan_cost){paths->noise + found->left[i],
                        paths->rays + gather_rays(paths) +
-                           photons * found->rays / samples_a_pass(plan)};
+                           photon_rays(found, photons) / samples_a_pass(plan)};
 }
 
 static double product(plan_cost cost)
@@ -115,8 +121,8 @@ void caustics_decide(transport_plan *plan, const aim_result *found,
     set_share(plan, share_to_send(plan, found, paths));
     if (plan->n_photons[PHOTON_CAUSTIC] > 0)
         plan->sample_rays += gather_rays(paths);
-    plan->photon_rays =
-        (double)plan->n_photons[PHOTON_CAUSTIC] * found->rays / samples_a_pass(plan);
+    plan->photon_rays = photon_rays(found, (double)plan->n_photons[PHOTON_CAUSTIC]) /
+                        samples_a_pass(plan);
 }
 
 void caustics_settle(transport_plan *plan)

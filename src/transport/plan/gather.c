@@ -11,9 +11,11 @@
 
 /* Squared error that is alike in neighbouring pixels disturbs as much as so many times
    that of grain, of which the eye sees the mean over some pixels, and the picture without
-   noise shows little: there photons and paths had equal relMSE at 6 (glass and mirror
-   balls), 9 (Cornell box), 13 (glossy), 21 (papered, 24 lamps), 128 x 128, 16 passes. */
-#define BLOTCHES 8.0
+   noise shows little: there photons and paths had equal relMSE at 2 to 4 (glass and
+   mirror balls), 2 to 7 (Cornell box), 2 to 13 (papered), 3 to 50 (glossy), 8 to 19 (24
+   lamps), 96 x 96, 4 and 16 passes, two seeds; as rendered at 0 to 2, 5 where it is
+   glossy. */
+#define BLOTCHES 4.0
 
 /* What two maps, each with two radii, and two paths say of a place of the film. */
 typedef struct gather_place {
@@ -30,7 +32,8 @@ typedef struct gather_trial {
     photonmap_pass *maps[2];
     double fewer;       /* photons than the plan's, over them */
     double photon_rays; /* of a whole pass */
-    double sample_rays;
+    double first_rays;  /* of a pixel's first sample, sums over places */
+    double later_rays;  /* of another one, which shares the first one's looks */
     uint32_t n;
     gather_place *places;
 } gather_trial;
@@ -40,15 +43,9 @@ typedef struct gather_errors {
     double path, samples, photons, bias2;
 } gather_errors;
 
-/* Samples by maps of a place: map[] and other, then wider[]. */
-enum { N_NARROW = 2 + 1, N_BY_MAPS = N_NARROW + 2 }; /* math: as many */
-
-/* What a place costs: two paths, and samples by maps, each of which asks two classes
-   twice at the surface that it sees. */
-static double place_rays(double path_rays)
-{
-    return 2.0 * path_rays + N_BY_MAPS * 2.0 * 2.0 * PHOTON_RAYS;
-}
+/* Samples of a place: by maps map[], other, wider[] and a second one of the pixel, and
+   two by paths. */
+enum { N_BY_MAPS = 2 + 1 + 2 + 1, N_BY_PATHS = 2 }; /* math: as many */
 
 /* ---- Trial passes ---- */
 
@@ -60,7 +57,7 @@ static bool may_gather(const transport_plan *plan)
     return how->gather_indirect && how->direct_illumination &&
            !scene_has_media(plan->scene) && how->max_backward_bounces < 0 &&
            how->max_forward_bounces < 0 && scene_is_lit(plan->scene) &&
-           plan_grant(plan, 1.0) >= LEAST_TRIALS * place_rays(SAMPLE_RAYS);
+           plan_grant(plan, 1.0) >= LEAST_TRIALS * (N_BY_MAPS + N_BY_PATHS) * SAMPLE_RAYS;
 }
 
 /* Photons as of photon mapping, but all of them together take no longer than the camera.
@@ -134,8 +131,9 @@ static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError *
     if (!t->maps[i])
         return false;
     widen(t->maps[i], sqrt(t->fewer));
-    t->photon_rays += 0.5 * (double)counts.photon_rays * t->fewer;
-    t->plan.planning += (double)counts.photon_rays;
+    double rays = plan_rays_of_photons(&counts);
+    t->photon_rays += 0.5 * rays * t->fewer;
+    t->plan.planning += rays;
     return true;
 }
 
@@ -154,6 +152,7 @@ static double sample(radiance_function *radiance, const void *pass,
     spectrum sum = {0};
     vec2 u_lens = sampler_2d(&random);
     ray r = camera_ray(&plan->view->camera, raster, u_lens, sampler_1d(&random));
+    looked_around_forget(&scratch->estimate.looked);
     radiance(pass, &r, &random, scratch, &out);
     for (int i = 0; i < N_LAYERS; i++)
         if (i != LAYER_CAUSTIC || plan->n_photons[PHOTON_CAUSTIC] == 0)
@@ -162,68 +161,93 @@ static double sample(radiance_function *radiance, const void *pass,
     return isfinite(mean) ? mean : 0.0;
 }
 
-/* Asks both maps at all places. */
+/* A place of the film. */
+static vec2 raster_of(const transport_plan *plan, sampler *random)
+{
+    const film_settings *film = &plan->view->film;
+    vec2 u = sampler_2d(random);
+    return (vec2){u.x * (float)film->width, u.y * (float)film->height};
+}
+
+/* A second sample of the pixel: what it costs where looks for edges are shared. With
+   fewer photons radii are wider, and pixels with them. */
+static double later_rays(const gather_trial *t, const transport_plan *plan, vec2 raster,
+                         sampler random, transport_scratch *scratch)
+{
+    double before = plan_rays_of(scratch);
+    radiance_sample out = {.groups = NULL};
+    vec2 u = sampler_2d(&random), u_lens = sampler_2d(&random);
+    float wide = sqrtf((float)t->fewer);
+    vec2 beside = {raster.x + wide * (u.x - 0.5f), raster.y + wide * (u.y - 0.5f)};
+    ray r = camera_ray(&plan->view->camera, beside, u_lens, sampler_1d(&random));
+    photonmap_radiance(t->maps[0], &r, &random, scratch, &out);
+    return plan_rays_of(scratch) - before;
+}
+
+/* Asks both maps at a place. */
 static void ask_maps(gather_trial *t, const transport_plan *plan, uint64_t key,
-                     bool wider, transport_scratch *scratch)
+                     uint32_t i, transport_scratch *scratch)
 {
-    const film_settings *film = &plan->view->film;
-    for (uint32_t i = 0; i < t->n; i++) {
-        gather_place *at = &t->places[i];
-        sampler random = sampler_make(key, i);
-        vec2 u = sampler_2d(&random);
-        vec2 raster = {u.x * (float)film->width, u.y * (float)film->height};
-        for (unsigned k = 0; k < 2; k++)
-            (wider ? at->wider : at->map)[k] =
-                sample(photonmap_radiance, t->maps[k], plan, raster,
-                       sampler_split(&random, k), scratch);
-        if (!wider)
-            at->other = sample(photonmap_radiance, t->maps[1], plan, raster,
-                               sampler_split(&random, 0), scratch);
+    gather_place *at = &t->places[i];
+    sampler random = sampler_make(key, i);
+    vec2 raster = raster_of(plan, &random);
+    double before = plan_rays_of(scratch);
+    at->map[0] = sample(photonmap_radiance, t->maps[0], plan, raster,
+                        sampler_split(&random, 0), scratch);
+    t->first_rays += plan_rays_of(scratch) - before;
+    t->later_rays += later_rays(t, plan, raster, sampler_split(&random, 2), scratch);
+    at->map[1] = sample(photonmap_radiance, t->maps[1], plan, raster,
+                        sampler_split(&random, 1), scratch);
+    at->other = sample(photonmap_radiance, t->maps[1], plan, raster,
+                       sampler_split(&random, 0), scratch);
+}
+
+/* Both maps again, whose radii are wider now, and paths. */
+static void ask_wider(gather_trial *t, const transport_plan *plan, const path_pass *paths,
+                      uint64_t key, uint32_t i, transport_scratch *scratch)
+{
+    gather_place *at = &t->places[i];
+    sampler random = sampler_make(key, i);
+    vec2 raster = raster_of(plan, &random);
+    for (unsigned k = 0; k < 2; k++) {
+        sampler own = sampler_split(&random, k);
+        at->wider[k] = sample(photonmap_radiance, t->maps[k], plan, raster, own, scratch);
+        at->path[k] = sample(path_radiance, paths, plan, raster, own, scratch);
     }
 }
 
-static void ask_paths(gather_trial *t, const transport_plan *plan, const path_pass *paths,
-                      uint64_t key, transport_scratch *scratch)
+/* As many places as the grant allows, by what the first of them cost. */
+static uint32_t count_places(const gather_trial *t, const transport_plan *plan)
 {
-    const film_settings *film = &plan->view->film;
-    for (uint32_t i = 0; i < t->n; i++) {
-        sampler random = sampler_make(key, i);
-        vec2 u = sampler_2d(&random);
-        vec2 raster = {u.x * (float)film->width, u.y * (float)film->height};
-        for (unsigned k = 0; k < 2; k++)
-            t->places[i].path[k] = sample(path_radiance, paths, plan, raster,
-                                          sampler_split(&random, k), scratch);
-    }
-}
-
-/* Rays, and queries of the maps at each surface met, twice as many where edges are
- * probed.
- */
-static double rays_of(const transport_plan *plan, const transport_scratch *scratch)
-{
-    int n_maps = 0;
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        n_maps += plan->n_photons[c] > 0;
-    double queries = 2.0 * n_maps * (double)scratch->camera_rays;
-    return (double)(scratch->camera_rays + scratch->shadow_rays) + PHOTON_RAYS * queries;
+    double each = t->first_rays * (N_BY_MAPS - 1.0) + t->later_rays;
+    each = each / LEAST_TRIALS + N_BY_PATHS * plan->sample_rays;
+    return plan_trials_for(plan, 1.0, each, MOST_PLACES);
 }
 
 static void run_places(gather_trial *t, transport_plan *plan, const path_pass *paths)
 {
-    transport_scratch by_maps = {0}, by_paths = {0};
+    transport_scratch scratch = {0};
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x706c61636573u);
-    t->n = plan_trials_for(plan, 1.0, place_rays(plan->sample_rays), MOST_PLACES);
-    t->places = g_new0(gather_place, t->n);
-    ask_maps(t, plan, key, false, &by_maps);
-    t->sample_rays = rays_of(&t->plan, &by_maps) / (N_NARROW * t->n);
+    t->places = g_new0(gather_place, MOST_PLACES);
+    t->n = LEAST_TRIALS;
+    for (uint32_t i = 0; i < t->n; i++) {
+        ask_maps(t, plan, key, i, &scratch);
+        if (i + 1 == LEAST_TRIALS)
+            t->n = count_places(t, plan);
+    }
     for (int i = 0; i < 2; i++)
         widen(t->maps[i], WIDER);
-    ask_maps(t, plan, key, true, &by_maps);
-    ask_paths(t, plan, paths, key, &by_paths);
-    plan->planning += (double)(by_maps.camera_rays + by_maps.shadow_rays +
-                               by_paths.camera_rays + by_paths.shadow_rays);
-    transport_scratch_clear(&by_maps);
-    transport_scratch_clear(&by_paths);
+    for (uint32_t i = 0; i < t->n; i++)
+        ask_wider(t, plan, paths, key, i, &scratch);
+    plan->planning += plan_rays_of(&scratch);
+    transport_scratch_clear(&scratch);
+}
+
+/* Of a pixel's samples the first looks for edges. */
+static double rays_of_sample(const transport_plan *plan, const gather_trial *t)
+{
+    double spp = (double)plan->how.spp;
+    return (t->first_rays + (spp - 1.0) * t->later_rays) / (spp * t->n);
 }
 
 /* ---- What they say ---- */
@@ -284,7 +308,8 @@ static bool gathering_pays(transport_plan *plan, const gather_trial *t)
     double per_sample = settings_planned_passes(&plan->how) / plan_samples(plan);
     const gather_errors e = errors_of(t);
     plan_cost without = {e.path, plan->sample_rays + plan->photon_rays};
-    plan_cost with = {error_of(plan, &e), t->sample_rays + t->photon_rays * per_sample};
+    plan_cost with = {error_of(plan, &e),
+                      rays_of_sample(plan, t) + t->photon_rays * per_sample};
     bool pays = with.variance * with.rays < without.variance * without.rays;
     plan_note(plan, "gathered indirect light", without, with, pays);
     return pays;
@@ -316,7 +341,7 @@ static void take(transport_plan *plan, gather_trial *t)
     plan->uses_mis = false;
     plan->p_spots = 0.0f;
     plan->gathers = true;
-    plan->sample_rays = t->sample_rays;
+    plan->sample_rays = rays_of_sample(plan, t);
     plan->photon_rays = t->photon_rays * per_sample;
 }
 

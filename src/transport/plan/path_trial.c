@@ -10,6 +10,7 @@ static double path_sample(const path_pass *pass, vec2 raster, sampler random,
     spectrum sum = {0};
     vec2 u_lens = sampler_2d(&random);
     ray r = camera_ray(&pass->plan->view->camera, raster, u_lens, sampler_1d(&random));
+    looked_around_forget(&scratch->estimate.looked);
     path_radiance(pass, &r, &random, scratch, &out);
     for (int i = 0; i < N_LAYERS; i++)
         sum += out.layers[i];

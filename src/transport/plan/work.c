@@ -1,5 +1,20 @@
 #include "transport/plan/work.h"
 
+double plan_rays_of_photons(const transport_counts *counts)
+{
+    double rays = (double)counts->photon_rays;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        rays += (double)counts->emitted[c];
+    return rays;
+}
+
+double plan_rays_of(const transport_scratch *scratch)
+{
+    const estimate_scratch *maps = &scratch->estimate;
+    return (double)(scratch->camera_rays + scratch->shadow_rays) +
+           PHOTON_RAYS * (double)maps->n_queries + 0.5 * (double)maps->n_looks;
+}
+
 double plan_samples(const transport_plan *plan)
 {
     const film_settings *film = &plan->view->film;

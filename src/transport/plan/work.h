@@ -52,6 +52,14 @@ static inline uint32_t plan_trial_pass(uint32_t trial)
     return UINT32_MAX - trial;
 }
 
+/** @brief Rays that are worth the photons of a pass: sending and storing one takes as
+ * long as one more. */
+double plan_rays_of_photons(const transport_counts *counts);
+
+/** @brief Rays that are worth what has been done with scratch: a short one that looks for
+ * edges is half a ray. */
+double plan_rays_of(const transport_scratch *scratch);
+
 /** @brief Camera samples of all passes that are planned. */
 double plan_samples(const transport_plan *plan);
 
