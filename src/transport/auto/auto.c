@@ -133,11 +133,11 @@ static bool try_pass(transport_plan *plan, const cancel_flag *cancel, GError **e
 }
 
 /* Photons a pass that somebody wants, whatever the plan would send: work that was asked
-   for, as far as trials need it. */
+   for, as far as a trial of half a share can use it. */
 static double photons_wanted(const settings *how)
 {
     int64_t own = how->class_photons[PHOTON_CAUSTIC];
-    return (double)MIN(own > 0 ? own : MAX(how->photons, 0), MOST_PILOTS);
+    return (double)MIN(own > 0 ? own : MAX(how->photons, 0), MOST_PILOTS / 2);
 }
 
 /* In this order, since each trial asks what those before it have decided. */
