@@ -1,10 +1,6 @@
-#include "session.h"
-
-#include "preview.h"
+#include "session_parts.h"
 
 #include <math.h>
-#include <pthread.h>
-#include <stdatomic.h>
 #include <sys/resource.h>
 
 /* A quick look while the view moves takes about this long, s; those that follow when it
@@ -15,195 +11,9 @@ static const double looks_still[] = {0.25};
 /* Shares of its time that a render may spend on handing pictures over. */
 #define SNAPSHOT_SHARE 0.1
 
-/* What the window wants. `version` grows with each change of what is to be rendered. */
-typedef struct session_order {
-    guint version;
-    char *path; /* to be loaded; NULL: done */
-    NephSettings *settings;
-    NephCamera camera;
-    int width, height;
-    bool playing, moving;
-    bool keep; /* the changes not yet taken up leave what is rendered as it is */
-    bool quit;
-} session_order;
-
-struct session {
-    atomic_int holders;
-    pthread_t thread;
-    bool has_thread;
-    GMainContext *context;
-    session_listener listener; /* NULL once closed; main thread only */
-    void *listener_data;
-
-    /* POSIX's own, which the thread sanitizer sees. */
-    pthread_mutex_t lock; /* guards what follows, up to the next comment */
-    pthread_cond_t wake;
-    session_order wanted;
-    NephRender *running;    /* to be cancelled */
-    NephSettings *rendered; /* what the render was given; NULL: none yet */
-    session_news news;      /* owned fields; files: those of new_files, when told */
-    GPtrArray *new_files;   /* char* */
-    GError *news_error;
-    bool news_pending; /* an idle source is on its way */
-
-    /* The worker's own. */
-    session_order order; /* its copy of wanted */
-    held_scene *scene;
-    NephScene *seen;    /* it, in the size and from where it is rendered */
-    NephRender *render; /* of order.version; NULL: to be made */
-    double extent;      /* of the scene, m */
-    preview_pace pace;
-    bool look_was_whole; /* the last quick look had as many pixels as the picture */
-    int64_t passes_shown;
-    double last_snapshot, snapshot_cost; /* s */
-    bool complete, failed;
-};
-
 static double seconds(void)
 {
     return (double)g_get_monotonic_time() * 1e-6;
-}
-
-/* ---- News ---- */
-
-static void clear_news(session_news *news)
-{
-    g_clear_pointer(&news->files, g_strfreev);
-    g_clear_pointer(&news->loaded, held_scene_unref);
-    g_clear_pointer(&news->picture, held_picture_unref);
-    g_clear_pointer(&news->messages, g_ptr_array_unref);
-}
-
-static void session_unref(session *s);
-
-static gboolean tell_news(void *data)
-{
-    session *s = data;
-    pthread_mutex_lock(&s->lock);
-    session_news news = s->news;
-    if (s->new_files->len > 0) {
-        g_ptr_array_add(s->new_files, NULL);
-        news.files = (char **)g_ptr_array_steal(s->new_files, NULL);
-    }
-    GError *error = g_steal_pointer(&s->news_error);
-    s->news.loaded = NULL;
-    s->news.picture = NULL;
-    s->news.messages = NULL;
-    s->news_pending = false;
-    pthread_mutex_unlock(&s->lock);
-    news.error = error;
-    if (s->listener)
-        s->listener(&news, s->listener_data);
-    clear_news(&news);
-    g_clear_error(&error);
-    return G_SOURCE_REMOVE;
-}
-
-static void free_session(session *s)
-{
-    clear_news(&s->news);
-    g_ptr_array_unref(s->new_files);
-    g_clear_error(&s->news_error);
-    g_free(s->wanted.path);
-    neph_settings_free(s->wanted.settings);
-    neph_settings_free(s->order.settings);
-    neph_settings_free(s->rendered);
-    neph_scene_free(s->seen);
-    held_scene_unref(s->scene);
-    pthread_mutex_destroy(&s->lock);
-    pthread_cond_destroy(&s->wake);
-    g_main_context_unref(s->context);
-    g_free(s);
-}
-
-static void session_unref(session *s)
-{
-    if (atomic_fetch_sub(&s->holders, 1) == 1)
-        free_session(s);
-}
-
-/* With the lock held. */
-static void send_news(session *s)
-{
-    if (s->news_pending)
-        return;
-    s->news_pending = true;
-    g_autoptr(GSource) idle = g_idle_source_new();
-    g_source_set_priority(idle, G_PRIORITY_DEFAULT);
-    atomic_fetch_add(&s->holders, 1);
-    g_source_set_callback(idle, tell_news, s, (GDestroyNotify)session_unref);
-    g_source_attach(idle, s->context);
-}
-
-static void tell_state(session *s, session_state state)
-{
-    pthread_mutex_lock(&s->lock);
-    s->news.state = state;
-    send_news(s);
-    pthread_mutex_unlock(&s->lock);
-}
-
-/* At once, so that a file is watched while those after it are read. */
-static void tell_file(const char *path, void *data)
-{
-    session *s = data;
-    pthread_mutex_lock(&s->lock);
-    g_ptr_array_add(s->new_files, g_strdup(path));
-    send_news(s);
-    pthread_mutex_unlock(&s->lock);
-}
-
-/* Takes the error. */
-static void tell_error(session *s, GError *error, bool of_load)
-{
-    pthread_mutex_lock(&s->lock);
-    g_clear_error(&s->news_error);
-    s->news_error = error;
-    s->news.error_of_load = of_load;
-    send_news(s);
-    pthread_mutex_unlock(&s->lock);
-}
-
-/* Takes the list. */
-static void tell_messages(session *s, GPtrArray *messages)
-{
-    pthread_mutex_lock(&s->lock);
-    g_clear_pointer(&s->news.messages, g_ptr_array_unref);
-    s->news.messages = messages;
-    send_news(s);
-    pthread_mutex_unlock(&s->lock);
-}
-
-/* Takes the image. */
-static void tell_picture(session *s, NephImage *image, bool coarse)
-{
-    held_picture *picture =
-        held_picture_new(image, s->order.width, s->order.height, coarse);
-    pthread_mutex_lock(&s->lock);
-    held_picture_unref(s->news.picture);
-    s->news.picture = picture;
-    send_news(s);
-    pthread_mutex_unlock(&s->lock);
-}
-
-/* On the thread that renders, once it plans no more. */
-static void tell_plan(session *s)
-{
-    NephPlan plan;
-    if (!neph_render_plan(s->render, &plan, NULL))
-        return;
-    pthread_mutex_lock(&s->lock);
-    s->news.plan = plan;
-    pthread_mutex_unlock(&s->lock);
-}
-
-static void tell_progress(session *s, double fraction, const NephStatistics *statistics)
-{
-    pthread_mutex_lock(&s->lock);
-    s->news.fraction = fraction;
-    s->news.statistics = *statistics;
-    send_news(s);
-    pthread_mutex_unlock(&s->lock);
 }
 
 /* ---- Rendering, on the worker ---- */
@@ -260,7 +70,7 @@ static bool quick_look(session *s, double allowed)
     }
     if (image) {
         preview_note(&s->pace, size, seconds() - start);
-        tell_picture(s, image, true);
+        session_tell_picture(s, image, true);
     }
     return image != NULL;
 }
@@ -270,7 +80,7 @@ static void show_picture(session *s)
     double start = seconds();
     NephImage *image = neph_render_image(s->render, NULL);
     if (image)
-        tell_picture(s, image, false);
+        session_tell_picture(s, image, false);
     s->last_snapshot = seconds();
     s->snapshot_cost = s->last_snapshot - start;
 }
@@ -287,10 +97,11 @@ static bool on_progress(double fraction, const NephStatistics *statistics, void 
         s->passes_shown = statistics->passes;
         show_picture(s);
     }
+    session_keep(s, statistics);
     now.noise = statistics->passes > 1 ? neph_render_noise(s->render) : (double)INFINITY;
     if (!s->news.plan.integrator)
-        tell_plan(s);
-    tell_progress(s, fraction, &now);
+        session_tell_plan(s);
+    session_tell_progress(s, fraction, &now);
     return !is_outdated(s);
 }
 
@@ -316,7 +127,7 @@ static void run(session *s)
 {
     g_autoptr(GError) error = NULL;
     NephStatistics statistics;
-    tell_state(s, SESSION_RENDERING);
+    session_tell_state(s, SESSION_RENDERING);
     bool ok = s->render || begin_render(s, &error);
     if (ok) {
         set_running(s, s->render);
@@ -325,14 +136,14 @@ static void run(session *s)
         neph_render_statistics(s->render, &statistics);
         if (ok || statistics.passes > s->passes_shown)
             show_picture(s);
-        tell_progress(s, ok ? 1.0 : s->news.fraction, &statistics);
+        session_tell_progress(s, ok ? 1.0 : s->news.fraction, &statistics);
     }
     s->complete = ok;
     s->failed = error && !g_error_matches(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
     if (s->failed)
-        tell_error(s, g_steal_pointer(&error), false);
+        session_tell_error(s, g_steal_pointer(&error), false);
     if (s->complete || s->failed)
-        tell_state(s, SESSION_DONE);
+        session_tell_state(s, SESSION_DONE);
 }
 
 /* ---- Loading ---- */
@@ -362,7 +173,7 @@ static void take_over(session *s)
     s->wanted.version++;
     held_scene_unref(s->news.loaded);
     s->news.loaded = held_scene_ref(s->scene);
-    send_news(s);
+    session_send_news(s);
     pthread_mutex_unlock(&s->lock);
 }
 
@@ -380,23 +191,23 @@ static void load(session *s, const char *path)
 {
     g_autoptr(GError) error = NULL;
     scene_log *log = scene_log_new();
-    const NephLoadOptions options = {.file = tell_file,
+    const NephLoadOptions options = {.file = session_tell_file,
                                      .file_data = s,
                                      .go_on = still_wanted,
                                      .go_on_data = s,
                                      .log = scene_log_write,
                                      .log_data = log};
-    tell_state(s, SESSION_LOADING);
+    session_tell_state(s, SESSION_LOADING);
     NephScene *scene = neph_scene_load_with(path, &options, &error);
     if (g_error_matches(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED)) {
         scene_log_free(log);
         return;
     }
-    tell_messages(s, scene_log_close(log));
+    session_tell_messages(s, scene_log_close(log));
     if (!scene) {
         scene_log_free(log);
-        tell_state(s, s->scene ? SESSION_STOPPED : SESSION_EMPTY);
-        tell_error(s, g_steal_pointer(&error), true);
+        session_tell_state(s, s->scene ? SESSION_STOPPED : SESSION_EMPTY);
+        session_tell_error(s, g_steal_pointer(&error), true);
         return;
     }
     g_clear_pointer(&s->render, neph_render_free);
@@ -414,7 +225,9 @@ static void load(session *s, const char *path)
 
 static bool has_work(const session *s)
 {
-    if (s->wanted.quit || s->wanted.path || s->wanted.version != s->order.version)
+    const session_order *w = &s->wanted;
+    if (w->quit || w->path || w->checkpoint || w->resume ||
+        w->version != s->order.version)
         return true;
     return s->scene && s->wanted.playing && !s->wanted.moving && !s->complete &&
            !s->failed;
@@ -431,9 +244,11 @@ static char *next_order(session *s, bool *changed)
     *changed = s->wanted.version != s->order.version;
     bool keep = *changed && s->wanted.keep;
     neph_settings_free(s->order.settings);
+    g_free(s->order.resume);
     s->order = s->wanted;
     s->order.settings =
         s->wanted.settings ? neph_settings_copy(s->wanted.settings) : NULL;
+    s->wanted.resume = NULL;
     s->wanted.keep = true;
     pthread_mutex_unlock(&s->lock);
     *changed = *changed && !keep;
@@ -458,16 +273,22 @@ static void *work(void *data)
             break;
         if (path)
             load(s, path);
+        if (!s->scene)
+            session_keep_now(s);
         if (!s->scene || path)
             continue;
         if (changed)
             renew(s);
+        g_autofree char *resume = g_steal_pointer(&s->order.resume);
+        if (resume && session_go_on_from(s, resume))
+            s->complete = s->failed = false;
         if (s->order.moving)
             quick_look(s, LOOK_MOVING);
         else if (s->order.playing && !s->complete && !s->failed)
             run(s);
         else if (!s->complete && !s->failed)
-            tell_state(s, s->render ? SESSION_PAUSED : SESSION_STOPPED);
+            session_tell_state(s, s->render ? SESSION_PAUSED : SESSION_STOPPED);
+        session_keep_now(s);
     }
     g_clear_pointer(&s->render, neph_render_free);
     return NULL;
@@ -504,6 +325,8 @@ static void order_end(session *s, bool anew)
     s->wanted.version++;
     if (anew)
         s->wanted.keep = false;
+    if (anew && s->news.state == SESSION_DONE) /* that was of something else */
+        s->news.state = s->wanted.playing ? SESSION_RENDERING : SESSION_STOPPED;
     if (s->running && outdated(s))
         neph_render_cancel(s->running);
     pthread_cond_signal(&s->wake);
@@ -590,4 +413,21 @@ void session_stop(session *s)
 void session_restart(session *s)
 {
     set_playing(s, true, true);
+}
+
+void session_keep_in(session *s, const char *path)
+{
+    order_begin(s);
+    g_free(s->wanted.checkpoint);
+    s->wanted.checkpoint = g_strdup(path);
+    pthread_cond_signal(&s->wake);
+    pthread_mutex_unlock(&s->lock);
+}
+
+void session_resume(session *s, const char *path)
+{
+    order_begin(s);
+    g_free(s->wanted.resume);
+    s->wanted.resume = g_strdup(path);
+    order_end(s, false);
 }

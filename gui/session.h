@@ -36,7 +36,10 @@ typedef struct session_news {
     bool error_of_load; /**< the error is about the scene file; the old scene goes on */
     double fraction;    /**< 0..1 of the render */
     NephStatistics statistics;
-    NephPlan plan; /**< of the render, once it is made: integrator NULL before */
+    char *kept;            /**< what is rendered is kept in this file; else NULL */
+    NephSettings *resumed; /**< it goes on from a checkpoint, by these settings ... */
+    int resumed_size[2];   /**< ... in this size; else NULL */
+    NephPlan plan;         /**< of the render, once it is made: integrator NULL before */
 } session_news;
 
 typedef void (*session_listener)(const session_news *news, void *data);
@@ -65,3 +68,9 @@ void session_pause(session *s);
 void session_stop(session *s);
 /** @brief Begins the render anew. */
 void session_restart(session *s);
+/** @brief Keeps what is rendered in a checkpoint, as soon as a pass is done; the render
+ * goes on. News say that it is kept, or why not. */
+void session_keep_in(session *s, const char *path);
+/** @brief Goes on from a checkpoint of the scene, as it is seen now, with the settings
+ * and size of it. Where that can not be, the error is told, and all goes on as it was. */
+void session_resume(session *s, const char *path);

@@ -129,6 +129,59 @@ static void save_picture_as(GSimpleAction *action, GVariant *parameter, void *da
     save_to(g_variant_get_string(parameter, NULL), data);
 }
 
+/* ---- Checkpoints ---- */
+
+static const char *const checkpoints[] = {"*.checkpoint", NULL};
+
+static void keep_in(const char *path, void *data)
+{
+    window *w = data;
+    g_autoptr(GError) error = NULL;
+    const char *const *files = neph_scene_files(w->scene->scene);
+    if (neph_file_spares(path, files, &error))
+        session_keep_in(w->session, path);
+    else
+        window_toast(w, "%s", error->message);
+}
+
+static void save_checkpoint(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    window *w = data;
+    g_autofree char *name = name_with(w, ".checkpoint");
+    g_autofree char *folder = document_folder(w->document);
+    const file_question question = {"Save a checkpoint", true,       name, folder,
+                                    "Checkpoints",       checkpoints};
+    file_dialog_ask(w->gtk, &question, keep_in, w);
+}
+
+static void save_checkpoint_as(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action;
+    keep_in(g_variant_get_string(parameter, NULL), data);
+}
+
+static void go_on_from(const char *path, void *data)
+{
+    session_resume(((window *)data)->session, path);
+}
+
+static void resume(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action, (void)parameter;
+    window *w = data;
+    g_autofree char *folder = document_folder(w->document);
+    const file_question question = {
+        "Go on from a checkpoint", false, NULL, folder, "Checkpoints", checkpoints};
+    file_dialog_ask(w->gtk, &question, go_on_from, w);
+}
+
+static void resume_from(GSimpleAction *action, GVariant *parameter, void *data)
+{
+    (void)action;
+    go_on_from(g_variant_get_string(parameter, NULL), data);
+}
+
 /* ---- Rendering ---- */
 
 static void play(GSimpleAction *action, GVariant *parameter, void *data)
@@ -285,6 +338,10 @@ static const GActionEntry entries[] = {
     {.name = "save-picture", .activate = save_picture},
     {.name = "save-picture-as", .activate = save_picture_as, .parameter_type = "s"},
     {.name = "save-diagram", .activate = save_diagram},
+    {.name = "save-checkpoint", .activate = save_checkpoint},
+    {.name = "save-checkpoint-as", .activate = save_checkpoint_as, .parameter_type = "s"},
+    {.name = "resume", .activate = resume},
+    {.name = "resume-from", .activate = resume_from, .parameter_type = "s"},
     {.name = "play", .activate = play},
     {.name = "stop", .activate = stop},
     {.name = "restart", .activate = restart},
@@ -324,6 +381,8 @@ static void append_section(GMenu *menu, const char *title, const char *const ite
 GMenuModel *window_menu(void)
 {
     static const char *const file[][2] = {{"Save the picture…", "win.save-picture"},
+                                          {"Save a checkpoint…", "win.save-checkpoint"},
+                                          {"Go on from a checkpoint…", "win.resume"},
                                           {"Read the scene again", "win.reload"}};
     static const char *const view[][2] = {{"Fit to the window", "win.zoom-fit"},
                                           {"Pixel by pixel", "win.zoom-one"},

@@ -180,6 +180,17 @@ static void show_picture(window *w, held_picture *picture)
     judge_exposure(w, picture);
 }
 
+/* It goes on by the settings of a checkpoint. */
+static void resumed(window *w, const session_news *news)
+{
+    settings_panel_show(w->settings, news->resumed, w->of_scene);
+    settings_panel_show_size(w->settings, news->resumed_size[0], news->resumed_size[1]);
+    w->size[0] = news->resumed_size[0];
+    w->size[1] = news->resumed_size[1];
+    window_photons_settings_changed(w);
+    window_toast(w, "Going on from the checkpoint");
+}
+
 void window_on_news(const session_news *news, void *data)
 {
     window *w = data;
@@ -195,6 +206,10 @@ void window_on_news(const session_news *news, void *data)
         show_messages(w, news->messages);
     if (news->error)
         failed(w, news);
+    if (news->kept)
+        window_toast(w, "Saved %s", news->kept);
+    if (news->resumed)
+        resumed(w, news);
     if (news->picture)
         show_picture(w, news->picture);
     status_show(w->status, news);

@@ -46,10 +46,13 @@ static void enable(window *w, const char *name, bool enabled)
 void window_update_actions(window *w)
 {
     static const char *const of_scene[] = {
-        "play",       "restart",    "zoom-fit",        "zoom-one",
-        "zoom-in",    "zoom-out",   "search",          "save-picture",
-        "reset-view", "frame-view", "save-picture-as", "trace-photons",
-        "copy-view",  "save-view",  "save-view-as",    "focus-tool"};
+        "play",       "restart",         "zoom-fit",
+        "zoom-one",   "zoom-in",         "zoom-out",
+        "search",     "save-picture",    "reset-view",
+        "frame-view", "save-picture-as", "trace-photons",
+        "copy-view",  "save-view",       "save-view-as",
+        "focus-tool", "save-checkpoint", "save-checkpoint-as",
+        "resume",     "resume-from"};
     bool rendering = w->state == SESSION_RENDERING;
     for (size_t i = 0; i < G_N_ELEMENTS(of_scene); i++)
         enable(w, of_scene[i], w->scene != NULL);

@@ -23,7 +23,8 @@ static const char scene_text[] =
 /* What has been heard so far. */
 typedef struct heard {
     session_state state;
-    int scenes, pictures, errors;
+    int scenes, pictures, errors, kept, resumed;
+    char *error; /* the last one */
     bool coarse; /* the last picture */
     held_picture *picture;
     NephStatistics statistics;
@@ -36,6 +37,12 @@ static void listen(const session_news *news, void *data)
     h->scenes += news->loaded != NULL;
     h->errors += news->error != NULL;
     h->statistics = news->statistics;
+    h->kept += news->kept != NULL;
+    h->resumed += news->resumed != NULL;
+    if (news->error) {
+        g_free(h->error);
+        h->error = g_strdup(news->error->message);
+    }
     if (!news->picture)
         return;
     h->pictures++;
@@ -84,6 +91,7 @@ static void end(session *s, heard *h)
     while (g_main_context_iteration(NULL, FALSE))
         ;
     held_picture_unref(h->picture);
+    g_free(h->error);
 }
 
 /* The same picture as the library makes without a window. */
@@ -166,10 +174,147 @@ static void test_moving(void)
     }
     g_assert_true(h.picture->coarse);
     session_set_camera(s, &camera, false);
-    h.state = SESSION_RENDERING;
-    wait_until(is_done, &h);
+    wait_until(is_done, &h); /* nor is what was done before taken for it */
     g_assert_false(h.picture->coarse);
     end(s, &h);
+}
+
+/* ---- Checkpoints ---- */
+
+static bool has_passes(const heard *h)
+{
+    return h->scenes > 0 && h->statistics.passes > 1;
+}
+
+static bool is_kept(const heard *h)
+{
+    return h->kept > 0;
+}
+
+static bool is_resumed(const heard *h)
+{
+    return h->resumed > 0;
+}
+
+static bool is_paused(const heard *h)
+{
+    return h->state == SESSION_PAUSED;
+}
+
+static NephSettings *long_settings(const NephScene *scene)
+{
+    NephSettings *settings = neph_scene_settings(scene);
+    neph_settings_set(settings, "passes", "60", NULL);
+    neph_settings_set(settings, "photons", "20000", NULL);
+    return settings;
+}
+
+static NephRender *whole_render(NephScene *scene, const char *checkpoint)
+{
+    g_autoptr(NephSettings) settings = long_settings(scene);
+    neph_scene_resize(scene, 20, 12, NULL);
+    NephRender *render = neph_render_new(scene, settings, NULL);
+    g_assert_true(neph_render_run(render, NULL, NULL, NULL));
+    g_assert_true(!checkpoint || neph_render_save_checkpoint(render, checkpoint, NULL));
+    return render;
+}
+
+static void assert_same_picture(const NephRender *whole, const heard *h)
+{
+    int width, height, n;
+    g_autoptr(NephImage) image = neph_render_image(whole, NULL);
+    neph_image_size(image, &width, &height, &n);
+    g_assert_cmpint(h->picture->width, ==, width);
+    g_assert_cmpmem(neph_image_pixels(image),
+                    (size_t)(width * height * n) * sizeof(float),
+                    neph_image_pixels(h->picture->image),
+                    (size_t)(width * height * n) * sizeof(float));
+}
+
+static void resume_in_new_session(const char *path, const NephRender *whole)
+{
+    heard h = {0};
+    session *s = session_new(listen, &h);
+    session_load(s, scene_file);
+    wait_until(is_done, &h); /* what is done goes on too */
+    session_resume(s, path);
+    wait_until(is_resumed, &h);
+    wait_until(is_done, &h);
+    g_assert_cmpint(h.errors, ==, 0);
+    g_assert_cmpint(h.statistics.passes, ==, 60);
+    assert_same_picture(whole, &h);
+    end(s, &h);
+}
+
+/* Kept while it is rendered and while it pauses, and gone on from by another session: the
+ * picture of a render without a break, in the size and with the settings of the file. So
+ * does what the command line has kept. */
+static void test_checkpoint(void)
+{
+    heard h = {0};
+    g_autoptr(NephScene) scene = neph_scene_load(scene_file, 0, NULL, NULL, NULL);
+    g_autoptr(NephSettings) settings = long_settings(scene);
+    g_autofree char *running = g_build_filename(folder, "running", NULL);
+    g_autofree char *paused = g_build_filename(folder, "paused", NULL);
+    g_autofree char *others = g_build_filename(folder, "others", NULL);
+    session *s = session_new(listen, &h);
+    session_load(s, scene_file);
+    wait_until(has_picture, &h);
+    session_set_settings(s, settings);
+    session_set_size(s, 20, 12);
+    h.statistics.passes = 0;
+    session_keep_in(s, running);
+    wait_until(is_kept, &h);
+    wait_until(has_passes, &h);
+    session_pause(s);
+    wait_until(is_paused, &h);
+    h.kept = 0;
+    session_keep_in(s, paused);
+    wait_until(is_kept, &h);
+    g_assert_cmpint(h.errors, ==, 0);
+    end(s, &h);
+    g_autoptr(NephRender) whole = whole_render(scene, others);
+    resume_in_new_session(running, whole);
+    resume_in_new_session(paused, whole);
+    resume_in_new_session(others, whole);
+    g_unlink(running);
+    g_unlink(paused);
+    g_unlink(others);
+}
+
+/* What can not be is told, and all goes on as it was. */
+static void test_checkpoint_refused(void)
+{
+    heard h = {0};
+    session *s = session_new(listen, &h);
+    session_keep_in(s, "/nowhere/at/all");
+    wait_until(has_error, &h);
+    g_assert_nonnull(strstr(h.error, "nothing is rendered"));
+    session_load(s, scene_file);
+    wait_until(is_done, &h);
+    h.errors = 0;
+    session_keep_in(s, "/nowhere/at/all");
+    wait_until(has_error, &h);
+    g_assert_nonnull(strstr(h.error, "/nowhere/at/all"));
+    h.errors = 0;
+    session_resume(s, scene_file);
+    wait_until(has_error, &h);
+    g_assert_nonnull(strstr(h.error, "found another file"));
+    g_assert_cmpint(h.state, ==, SESSION_DONE);
+    h.errors = 0;
+    g_autofree char *path = g_build_filename(folder, "kept", NULL);
+    session_keep_in(s, path);
+    wait_until(is_kept, &h);
+    NephCamera camera = {
+        .direction = {0, 0, 1}, .up = {0, 1, 0}, .fov = 50.0, .focal_distance = 1.0};
+    session_set_camera(s, &camera, false);
+    wait_until(is_done, &h);
+    session_resume(s, path); /* seen from elsewhere */
+    wait_until(has_error, &h);
+    g_assert_nonnull(strstr(h.error, "of another scene"));
+    g_assert_cmpint(h.resumed, ==, 0);
+    end(s, &h);
+    g_unlink(path);
 }
 
 /* Orders in every order and at every moment. */
@@ -178,6 +323,7 @@ static void test_any_order(void)
     heard h = {0};
     session *s = session_new(listen, &h);
     GRand *random = g_rand_new_with_seed(7);
+    g_autofree char *path = g_build_filename(folder, "any", NULL);
     g_autoptr(NephSettings) settings = neph_settings_new();
     neph_settings_set(settings, "photons", "500", NULL);
     neph_settings_set(settings, "passes", "50", NULL);
@@ -186,7 +332,7 @@ static void test_any_order(void)
     session_load(s, scene_file);
     wait_until(has_picture, &h);
     for (int i = 0; i < 150; i++) {
-        switch (g_rand_int_range(random, 0, 8)) {
+        switch (g_rand_int_range(random, 0, 10)) {
         case 0:
             session_load(s, scene_file);
             break;
@@ -208,6 +354,12 @@ static void test_any_order(void)
         case 6:
             session_set_camera(s, &camera, g_rand_boolean(random));
             break;
+        case 7:
+            session_keep_in(s, path);
+            break;
+        case 8:
+            session_resume(s, path);
+            break;
         default:
             session_restart(s);
         }
@@ -222,6 +374,7 @@ static void test_any_order(void)
     wait_until(is_done, &h);
     g_rand_free(random);
     end(s, &h);
+    g_unlink(path);
 }
 
 int main(int argc, char **argv)
@@ -234,6 +387,8 @@ int main(int argc, char **argv)
     g_test_add_func("/session/missing", test_missing);
     g_test_add_func("/session/endless-import", test_endless_import);
     g_test_add_func("/session/moving", test_moving);
+    g_test_add_func("/session/checkpoint", test_checkpoint);
+    g_test_add_func("/session/checkpoint-refused", test_checkpoint_refused);
     g_test_add_func("/session/any-order", test_any_order);
     int result = g_test_run();
     g_remove(scene_file);

@@ -334,6 +334,43 @@ static void test_save(void)
     view_close(w);
 }
 
+/* Kept, other settings tried, and gone on from with those of the file. What can not be is
+   said, and the scene's own files are safe. */
+static void test_checkpoint(void)
+{
+    g_autofree char *path = view_write("kept.pbrt", view_scene);
+    g_autofree char *kept = g_build_filename(view_folder(), "kept.checkpoint", NULL);
+    window *w = open_scene(path);
+    GtkWidget *gtk = GTK_WIDGET(w->gtk);
+    view_wait(view_is_done, w);
+    gtk_widget_activate_action(gtk, "win.save-checkpoint-as", "s", kept);
+    view_wait_for_word(w, "kept.checkpoint");
+    int64_t passes = w->statistics.passes;
+    g_autofree char *seed = neph_settings_get(settings_panel_values(w->settings), "seed");
+    g_autoptr(NephSettings) other =
+        neph_settings_copy(settings_panel_values(w->settings));
+    neph_settings_set(other, "seed", "77", NULL);
+    settings_panel_show(w->settings, other, w->of_scene);
+    session_set_settings(w->session, other);
+    view_wait(view_is_rendering, w);
+    gtk_widget_activate_action(gtk, "win.resume-from", "s", kept);
+    view_wait_for_word(w, "Going on from the checkpoint");
+    view_wait(view_is_done, w);
+    g_autofree char *back = neph_settings_get(settings_panel_values(w->settings), "seed");
+    g_assert_cmpstr(back, ==, seed);
+    g_assert_cmpint(w->statistics.passes, ==, passes);
+    gtk_widget_activate_action(gtk, "win.resume-from", "s", path);
+    view_wait_for_word(w, "found another file");
+    gtk_widget_activate_action(gtk, "win.save-checkpoint-as", "s", "/nowhere/at/all");
+    view_wait_for_word(w, "/nowhere/at/all");
+    gtk_widget_activate_action(gtk, "win.save-checkpoint-as", "s", path);
+    view_wait_for_word(w, "kept.pbrt");
+    g_autofree char *text = NULL;
+    g_assert_true(g_file_get_contents(path, &text, NULL, NULL));
+    g_assert_cmpstr(text, ==, view_scene);
+    view_close(w);
+}
+
 /* A file of eight bits is what the window shows: its exposure, its curve, its layer, its
    false colours; one of floats is the light itself. */
 static void test_save_as_shown(void)
@@ -546,6 +583,7 @@ int main(int argc, char **argv)
     view_add_test("/view/save", test_save);
     view_add_test("/view/save-as-shown", test_save_as_shown);
     view_add_test("/view/save-and-close", test_save_and_close);
+    view_add_test("/view/checkpoint", test_checkpoint);
     view_add_test("/view/close-while-rendering", test_close_while_rendering);
     view_add_test("/view/size", test_size);
     view_add_test("/view/accessible-names", test_accessible_names);
