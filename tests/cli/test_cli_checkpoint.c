@@ -120,10 +120,7 @@ static void test_goes_on(folder *f, gconstpointer data)
 static void test_refused(folder *f, gconstpointer data)
 {
     (void)data;
-    static const struct {
-        const char *arguments, *part;
-        int code;
-    } cases[] = {
+    static const refused_run cases[] = {
         {"--resume none", "cannot open 'none'", 1},
         {"--resume box.pbrt", "expected a checkpoint, found another file", 1},
         {"--resume c --seed 3", "with seed = 0, not 3", 1},
@@ -136,14 +133,7 @@ static void test_refused(folder *f, gconstpointer data)
         {"--checkpoint s.json --stats s.json", "it would replace", 2},
     };
     run_well(f, "render box.pbrt -q -o a.exr --checkpoint c");
-    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
-        g_autofree char *line =
-            g_strdup_printf("render box.pbrt -o a.exr %s", cases[i].arguments);
-        g_auto(result) r = run(f, line);
-        g_test_message("%s: %s", cases[i].arguments, r.err);
-        g_assert_cmpint(r.code, ==, cases[i].code);
-        contains(r.err, cases[i].part);
-    }
+    run_refused(f, "render box.pbrt -o a.exr ", cases, G_N_ELEMENTS(cases));
     g_autofree char *scene = folder_read(f, "box.pbrt");
     g_autofree char *other = g_strconcat(scene, "# other\n", NULL);
     folder_write(f, "box.pbrt", other);

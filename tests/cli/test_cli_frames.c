@@ -84,10 +84,7 @@ static void test_photons(folder *f, gconstpointer data)
 static void test_refused(folder *f, gconstpointer data)
 {
     (void)data;
-    static const struct {
-        const char *arguments, *part;
-        int code;
-    } cases[] = {
+    static const refused_run cases[] = {
         {"--frame 3-1 -o a.exr", "--frame: expected a number, or two as in 1-24", 2},
         {"--frame x -o a.exr", "--frame: expected a number", 2},
         {"--frame 1-2", "expected -o FILE too", 2},
@@ -104,13 +101,7 @@ static void test_refused(folder *f, gconstpointer data)
     g_assert_cmpint(mkfifo(pipe, 0600), ==, 0);
     folder_write(f, "path", path);
     folder_write(f, "wrong", "LookAt 0 0 -2 0 0 0 0 1 0\nLookAt 0 0 -2 0 0 0 0 1\n");
-    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
-        g_autofree char *line = g_strdup_printf("render box.pbrt %s", cases[i].arguments);
-        g_auto(result) r = run(f, line);
-        g_test_message("%s: %s", cases[i].arguments, r.err);
-        g_assert_cmpint(r.code, ==, cases[i].code);
-        contains(r.err, cases[i].part);
-    }
+    run_refused(f, "render box.pbrt ", cases, G_N_ELEMENTS(cases));
     g_assert_cmpuint(folder_count(f), ==, 4);
 }
 

@@ -53,10 +53,7 @@ static void test_scene(folder *f, gconstpointer data)
 static void test_refused(folder *f, gconstpointer data)
 {
     (void)data;
-    static const struct {
-        const char *arguments, *part;
-        int code;
-    } cases[] = {
+    static const refused_run cases[] = {
         {"photons box.pbrt --save kept --set integrator=vcm", "expected photonmap", 2},
         {"photons box.pbrt --save kept --set integrator=path", "expected photonmap", 2},
         {"photons box.pbrt --passes 2", "--passes: expected --save FILE too", 2},
@@ -69,12 +66,7 @@ static void test_refused(folder *f, gconstpointer data)
          "with radius = ", 1},
     };
     run_well(f, "photons box.pbrt -q --save kept --set integrator=photonmap");
-    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
-        g_auto(result) r = run(f, cases[i].arguments);
-        g_test_message("%s: %s", cases[i].arguments, r.err);
-        g_assert_cmpint(r.code, ==, cases[i].code);
-        contains(r.err, cases[i].part);
-    }
+    run_refused(f, "", cases, G_N_ELEMENTS(cases));
     g_assert_cmpuint(folder_count(f), ==, 2);
 }
 

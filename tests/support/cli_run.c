@@ -122,6 +122,17 @@ void run_well(const folder *f, const char *arguments)
     g_assert_cmpint(r.code, ==, 0);
 }
 
+void run_refused(const folder *f, const char *begin, const refused_run *cases, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        g_autofree char *line = g_strconcat(begin, cases[i].arguments, NULL);
+        g_auto(result) r = run(f, line);
+        g_test_message("%s: %s", line, r.err);
+        g_assert_cmpint(r.code, ==, cases[i].code);
+        contains(r.err, cases[i].part);
+    }
+}
+
 /* ---- Terminals ---- */
 
 int terminal_open(char **name)

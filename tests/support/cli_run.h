@@ -38,6 +38,15 @@ const char *run_program(void);
 result run(const folder *f, const char *arguments);
 /** @brief The same, and asserts that all is well. */
 void run_well(const folder *f, const char *arguments);
+
+/** @brief A command that is refused: with what exit code, and a part of what it says. */
+typedef struct refused_run {
+    const char *arguments, *part;
+    int code;
+} refused_run;
+
+/** @brief Runs n of them, each after what all begin with, and asserts so. */
+void run_refused(const folder *f, const char *begin, const refused_run *cases, size_t n);
 /** @brief A pseudo-terminal. @param name of what stands at its other end; freed by the
  * caller @return -1 if there are none */
 int terminal_open(char **name);
