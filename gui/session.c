@@ -75,10 +75,23 @@ static bool quick_look(session *s, double allowed)
     return image != NULL;
 }
 
+/* A render that pauses is still to be seen. */
+static bool still_wanted_picture(void *data)
+{
+    session *s = data;
+    pthread_mutex_lock(&s->lock);
+    const session_order *w = &s->wanted;
+    bool same = w->version == s->order.version || w->keep;
+    bool wanted = same && !w->quit && !w->path;
+    pthread_mutex_unlock(&s->lock);
+    return wanted;
+}
+
+/* Of what nobody wants any more no noise is taken out. */
 static void show_picture(session *s)
 {
     double start = seconds();
-    NephImage *image = neph_render_image(s->render, NULL);
+    NephImage *image = neph_render_image_while(s->render, still_wanted_picture, s, NULL);
     if (image)
         session_tell_picture(s, image, false);
     s->last_snapshot = seconds();

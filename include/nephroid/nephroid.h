@@ -460,6 +460,10 @@ NEPH_API void neph_render_cancel(NephRender *render);
 /** @brief The mean of the passes so far, with layers; owned by the caller.
  * NEPH_ERROR_FAILED if memory is refused. */
 NEPH_API NephImage *neph_render_image(const NephRender *render, GError **error);
+/** @brief The same, as long as go_on says so, which matters while noise is taken out;
+ * else NULL with NEPH_ERROR_CANCELLED. neph_render_cancel does not end it. */
+NEPH_API NephImage *neph_render_image_while(const NephRender *render, NephGoOnFunc go_on,
+                                            void *data, GError **error);
 NEPH_SIZED void neph_render_statistics(const NephRender *render, NephStatistics *out);
 /** @brief The relative error of the image, as in NephStatistics, found now: also from the
  * progress function of a render that is not asked to keep it. */

@@ -394,9 +394,11 @@ static image *make_image(const film *f, int y, int rows, const float *denoised,
     return img;
 }
 
-image *film_image(const film *f, unsigned threads, GError **error)
+image *film_image(const film *f, unsigned threads, const cancel_flag *cancel,
+                  GError **error)
 {
-    float *denoised = film_can_denoise(f) ? film_denoise(f, threads, NULL, error) : NULL;
+    float *denoised =
+        film_can_denoise(f) ? film_denoise(f, threads, cancel, error) : NULL;
     if (film_can_denoise(f) && !denoised)
         return NULL;
     image *img = make_image(f, 0, f->height, denoised, threads, error);

@@ -138,8 +138,10 @@ void film_to_rgb(const film *f, const double sum[3], double weight, float out[3]
  * space. With two passes or more also variance.Y, the square of the standard error of
  * the luminance; with light groups their layers light.NAME; then those of a gbuffer; last
  * denoised.R G B, where there is enough for film_denoise.
- * All of the pass under way, too, as far as its n_cells say; where that is all there is, pixels
- * that are still to come look like those beside. */
-image *film_image(const film *f, unsigned threads, GError **error);
+ * All of the pass under way, too, as far as its n_cells say; where that is all there is,
+ * pixels that are still to come look like those beside.
+ * @param cancel ends the taking out of noise; may be NULL */
+image *film_image(const film *f, unsigned threads, const cancel_flag *cancel,
+                  GError **error);
 /** @brief Some of its rows only, from y on; never denoised. */
 image *film_image_rows(const film *f, int y, int rows, unsigned threads, GError **error);

@@ -219,7 +219,12 @@ static void describe(const render *r, image *img)
 
 image *render_image(const render *r, GError **error)
 {
-    image *img = film_image(&r->film, r->n_threads, error);
+    return render_image_while(r, NULL, error);
+}
+
+image *render_image_while(const render *r, const cancel_flag *cancel, GError **error)
+{
+    image *img = film_image(&r->film, r->n_threads, cancel, error);
     if (img)
         describe(r, img);
     return img;

@@ -61,6 +61,8 @@ void render_cancel(render *r);
 /** @brief The mean of the passes done, with layers and metadata; before there is one,
  * what was done of the first. Owned by the caller. */
 image *render_image(const render *r, GError **error);
+/** @brief The same, unless cancelled: ERROR_CANCELLED. */
+image *render_image_while(const render *r, const cancel_flag *cancel, GError **error);
 /** @brief Of the setting `time`, so many seconds have gone by before the run begins, and
  * what it takes to write the picture to these files is kept for after it.
  * @param paths NULL-terminated, copied */

@@ -189,6 +189,41 @@ static void test_cancel_keeping(void)
     g_assert_cmpfloat(best, <, soon);
 }
 
+/* While noise is taken out: the next call has the whole picture. */
+static void test_cancel_denoising(void)
+{
+    g_autoptr(NephScene) scene = make_scene("Camera \"perspective\"\n");
+    g_autoptr(NephSettings) settings = neph_scene_settings(scene);
+    neph_settings_set(settings, "integrator", "path", NULL);
+    neph_settings_set(settings, "passes", "2", NULL);
+    neph_scene_resize(scene, 400, 300, NULL);
+    g_autoptr(NephRender) render = neph_render_new(scene, settings, NULL);
+    g_assert_true(neph_render_run(render, NULL, NULL, NULL));
+    gint64 start = g_get_monotonic_time();
+    g_autoptr(NephImage) whole = neph_render_image(render, NULL);
+    gint64 took = g_get_monotonic_time() - start;
+    double worst = 0.0;
+    for (int i = 0; i < MOMENTS; i++) {
+        double best = INFINITY;
+        for (int k = 0; k < TRIES && best > soon; k++) {
+            g_autoptr(GError) error = NULL;
+            patience p = {.end = g_get_monotonic_time() + took * i / MOMENTS};
+            g_autoptr(NephImage) none =
+                neph_render_image_while(render, until, &p, &error);
+            if (!none)
+                g_assert_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
+            g_assert_true(i > 0 || !none);
+            best = none ? 0.0 : 1e-6 * (double)(g_get_monotonic_time() - p.end);
+        }
+        g_test_message("at %d of %d of %.2f s: %.1f ms", i, MOMENTS, 1e-6 * (double)took,
+                       1e3 * best);
+        worst = fmax(worst, best);
+    }
+    g_assert_cmpfloat(worst, <, soon);
+    g_autoptr(NephImage) again = neph_render_image(render, NULL);
+    assert_same(whole, again);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -206,6 +241,7 @@ int main(int argc, char **argv)
                          test_cancel);
     g_test_add_data_func("/api-threads/cancel/path", "integrator=path passes=1 spp=256",
                          test_cancel);
+    g_test_add_func("/api-threads/cancel/denoising", test_cancel_denoising);
     g_test_add_func("/api-threads/cancel/keeping", test_cancel_keeping);
     int result = g_test_run();
     remove_folder();

@@ -1,3 +1,4 @@
+#include "api/asking.h"
 #include "api/objects.h"
 
 #include "api/render/render.h"
@@ -83,6 +84,14 @@ void neph_render_cancel(NephRender *r)
 NephImage *neph_render_image(const NephRender *r, GError **error)
 {
     return neph_image_wrap(render_image(r->render, error));
+}
+
+NephImage *neph_render_image_while(const NephRender *r, NephGoOnFunc go_on, void *data,
+                                   GError **error)
+{
+    asking a;
+    return neph_image_wrap(
+        render_image_while(r->render, asking_begin(&a, go_on, data), error));
 }
 
 void neph_render_statistics(const NephRender *r, NephStatistics *out)
