@@ -313,8 +313,8 @@ static bool trace_part(const void *pass, const photon_part *part,
 static void tell_photon(const void *pass, photon_class c, uint64_t i,
                         photon_listener tell, void *data)
 {
-    const uint64_t each = MAX(n_in_slice(pass, c), 1);
-    const slice_task s = {.pass = pass, .slice = (int)(i / each), .c = c};
+    const uint64_t each = n_in_slice(pass, c);
+    const slice_task s = {.pass = pass, .slice = each > 0 ? (int)(i / each) : 0, .c = c};
     const trace_task task = trace_task_for(&s, NULL);
     photon_tell(&task, i, tell, data);
 }
