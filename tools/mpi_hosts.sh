@@ -30,10 +30,10 @@ host() {
     [ -z "$rate" ] || tc -n "$name" qdisc add dev eth0 root tbf rate "$rate" burst 256kb latency 50ms
 }
 
-ip link add "$bridge" type bridge 2>/dev/null && ip link set "$bridge" up || {
+if ! ip link add "$bridge" type bridge 2>/dev/null || ! ip link set "$bridge" up; then
     echo "network namespaces are not to be had here" >&2
     exit 77
-}
+fi
 for i in $(seq 0 "$hosts"); do host "$i" || exit 77; done
 
 # What mpirun calls in place of ssh: HOST COMMAND..., HOST being an address.
