@@ -11,7 +11,6 @@ enum {
     PROBE = 1 << 16,       /* size: so many photons tell what one takes */
     PHOTON_MOST = 4 << 10, /* bytes: what one takes, in all places where it is stored */
     TRIES = 8,             /* to choose photons: each time a tenth fewer at least */
-    DIGITS_KEPT = 100,     /* of a number of photons, so that it is the same again */
 };
 
 /* Passes differ in what their photons take, and are planned for so much more. */
@@ -43,6 +42,7 @@ static size_t photon_bytes(const transport_plan *plan, double probe,
                            const cancel_flag *cancel)
 {
     transport_plan small = *plan;
+    small.how.threads = 1; /* several have more at once, or less, as it happens */
     double share = fmin(probe / (double)MAX(n_photons(plan), 1), 1.0);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         small.n_photons[c] = (uint64_t)ceil((double)plan->n_photons[c] * share);
@@ -99,13 +99,14 @@ static bool refuse_photons(size_t beside, size_t need, const transport_plan *pla
     return false;
 }
 
-/* 123456 as 120000. */
+/* Down to quarters of a power of two: what a process has beside differs by some hundred
+   kilobytes from run to run, and the photons shall be the same again. */
 static int64_t rounded(int64_t n)
 {
-    int64_t unit = 1;
-    while (n / unit >= DIGITS_KEPT)
-        unit *= 10;
-    return n / unit * unit;
+    int64_t power = 1;
+    while (power <= n / 2)
+        power *= 2;
+    return power < 4 ? n : n / (power / 4) * (power / 4);
 }
 
 /* @return false: there are as few as there may be */
