@@ -43,7 +43,8 @@ static void map(const scene *s)
 {
     const float radius = 0.05f * s->radius;
     trace_result of = photons(s);
-    photon_map *m = photon_map_build(MAP_GRID, &of.photons, radius, 1, NULL);
+    photon_map *m =
+        photon_map_build(MAP_GRID, &of.photons, radius, (workers){.threads = 1}, NULL);
     point_hits hits = {0};
     if (!m)
         give_up("the map can not be built");

@@ -121,7 +121,8 @@ static void build_all(bench *b)
         float radius = (float)(1 + i / N_KINDS) * b->asked.typical;
         double begin = now();
         photon_map **map = &b->maps[i / N_KINDS][i % N_KINDS];
-        *map = photon_map_build(choices[i % N_KINDS], &store, radius, 1, NULL);
+        *map = photon_map_build(choices[i % N_KINDS], &store, radius,
+                                (workers){.threads = 1}, NULL);
         b->build[i % N_KINDS] = now() - begin;
         if (!*map)
             exit(3);

@@ -100,7 +100,7 @@ static void make_radii(places *of)
     size_t n = MAX(of->n_photons / PILOT_SHARE, RADIUS_NEAREST);
     photon_store store = make_photons(of, 3, n);
     pilot by = {
-        photon_map_build(MAP_KDTREE, &store, 0.0f, 1, NULL),
+        photon_map_build(MAP_KDTREE, &store, 0.0f, (workers){.threads = 1}, NULL),
         sqrtf((float)PLACE_WANTED / RADIUS_NEAREST * (float)n / (float)of->n_photons)};
     size_t n_places = MIN(n, MOST_PLACES);
     vec3 *at = aligned_alloc(64, (n_places * sizeof *at + 63) / 64 * 64);

@@ -23,3 +23,12 @@ bool parallel_for(size_t n, size_t chunk_size, unsigned threads,
     }
     return !cancelled(cancel);
 }
+
+bool parallel_work(size_t n, size_t chunk_size, workers by, parallel_body body, void *data,
+                   GError **error)
+{
+    if (parallel_for(n, chunk_size, by.threads, by.cancel, body, data))
+        return true;
+    error_set(error, ERROR_CANCELLED, "cancelled");
+    return false;
+}

@@ -5,6 +5,8 @@
  */
 #pragma once
 
+#include "base/error.h"
+
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -41,6 +43,16 @@ typedef void (*parallel_body)(size_t begin, size_t end, unsigned thread, void *d
  */
 bool parallel_for(size_t n, size_t chunk_size, unsigned threads,
                   const cancel_flag *cancel, parallel_body body, void *data);
+
+/** @brief Who does work, and until when. */
+typedef struct workers {
+    unsigned threads;          /**< 0 = one per processor */
+    const cancel_flag *cancel; /**< NULL: until it is done */
+} workers;
+
+/** @brief parallel_for by these. @return false with ERROR_CANCELLED if it was cancelled */
+bool parallel_work(size_t n, size_t chunk_size, workers by, parallel_body body, void *data,
+                   GError **error);
 
 /** @brief Chunks that are worth a thread's while, where the result is the same with any
  * other: of elements that trace or ask something, some microseconds each, and of those

@@ -166,21 +166,24 @@ static void pack_piece(size_t begin, size_t end, unsigned thread, void *data)
     }
 }
 
-bool photon_store_pack(photon_store *store, const size_t *order, unsigned threads,
+bool photon_store_pack(photon_store *store, const size_t *order, workers by,
                        GError **error)
 {
     packing job = {store->flux, NULL, order};
     job.to = big_alloc(points_padded(store->n), sizeof *job.to, "photons", error);
     if (!job.to)
         return false;
-    parallel_for(store->n, ITEMS_AT_ONCE, threads, NULL, pack_piece, &job);
+    if (!parallel_work(store->n, ITEMS_AT_ONCE, by, pack_piece, &job, error)) {
+        big_free(job.to);
+        return false;
+    }
     big_free(store->flux);
     store->flux = NULL;
     store->packed = job.to;
     return true;
 }
 
-bool photon_store_follow(photon_store *store, const size_t *order, unsigned threads,
+bool photon_store_follow(photon_store *store, const size_t *order, workers by,
                          GError **error)
 {
     const struct {
@@ -199,7 +202,7 @@ bool photon_store_follow(photon_store *store, const size_t *order, unsigned thre
         return true;
     for (size_t i = 0; i < G_N_ELEMENTS(all); i++)
         if (all[i].kept &&
-            !points_permute(all[i].array, store->n, all[i].size, order, threads, error))
+            !points_permute(all[i].array, store->n, all[i].size, order, by, error))
             return false;
     store->capacity = points_padded(store->n) - points_padded(0);
     return true;

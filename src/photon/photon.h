@@ -106,14 +106,14 @@ static inline spectrum photon_store_flux(const photon_store *store, size_t i)
 
 /** @brief Puts flux in this order (as photon_store_follow, which then leaves it alone),
  * and keeps of it what packed_flux does. Nothing can be put into the store any more. */
-bool photon_store_pack(photon_store *store, const size_t *order, unsigned threads,
+bool photon_store_pack(photon_store *store, const size_t *order, workers by,
                        GError **error);
 
 /** @brief After positions were put in an order (point_index_build), what lies at them
  * follows: photon i is the one that was order[i]. NULL: they stayed as they were. One
  * array at a time, so the extra memory is that of flux. On failure the store may only be
  * cleared. */
-bool photon_store_follow(photon_store *store, const size_t *order, unsigned threads,
+bool photon_store_follow(photon_store *store, const size_t *order, workers by,
                          GError **error);
 
 /** @brief Direction and flags in 32 bits; error below 1e-4 rad. */

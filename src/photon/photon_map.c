@@ -8,31 +8,30 @@ struct photon_map {
     point_index *index;
 };
 
-static bool index_store(photon_map *map, map_choice choice, float radius,
-                        unsigned threads, GError **error)
+static bool index_store(photon_map *map, map_choice choice, float radius, workers by,
+                        GError **error)
 {
     photon_store *store = &map->store;
     point_arrays points = photon_points(store);
     size_t *order = NULL;
-    map->index = point_index_build(choice, &points, radius, threads, &order, error);
+    map->index = point_index_build(choice, &points, radius, by, &order, error);
     store->x = points.x;
     store->y = points.y;
     store->z = points.z;
     bool ok = map->index &&
-              (!store->flux || photon_store_pack(store, order, threads, error)) &&
-              photon_store_follow(store, order, threads, error);
+              (!store->flux || photon_store_pack(store, order, by, error)) &&
+              photon_store_follow(store, order, by, error);
     big_free(order);
     return ok;
 }
 
 photon_map *photon_map_build(map_choice choice, photon_store *store, float radius,
-                             unsigned threads, GError **error)
+                             workers by, GError **error)
 {
     g_autoptr(photon_map) map = g_new0(photon_map, 1);
     map->store = *store;
     *store = (photon_store){0};
-    return index_store(map, choice, radius, threads, error) ? g_steal_pointer(&map)
-                                                            : NULL;
+    return index_store(map, choice, radius, by, error) ? g_steal_pointer(&map) : NULL;
 }
 
 void photon_map_free(photon_map *map)

@@ -52,7 +52,7 @@ static inline map_choice photon_map_chosen(map_choice wanted, bool radii_differ)
  *  @param radius that fixed-radius queries will mostly use, m; 0 if unknown
  *  The result does not depend on the number of threads. */
 photon_map *photon_map_build(map_choice choice, photon_store *store, float radius,
-                             unsigned threads, GError **error);
+                             workers by, GError **error);
 void photon_map_free(photon_map *map);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(photon_map, photon_map_free)
 const photon_store *photon_map_store(const photon_map *map);

@@ -72,10 +72,9 @@ radius_cache *radius_cache_build(const vec3 *places, size_t n,
     if (!cache)
         return NULL;
     radius_loop loop = {places, source, cache->radii, false};
-    if (!parallel_for(n, RAYS_AT_ONCE, threads, source->cancel, find_radii, &loop)) {
-        error_set(error, ERROR_CANCELLED, "cancelled");
+    const workers by = {threads, source->cancel};
+    if (!parallel_work(n, RAYS_AT_ONCE, by, find_radii, &loop, error))
         return NULL;
-    }
     if (loop.refused && !point_hits_refuse(error))
         return NULL;
     return g_steal_pointer(&cache);

@@ -185,6 +185,12 @@ typedef struct transport_plan {
                                  one such a path */
 } transport_plan;
 
+/** @brief Who works for the render that a plan is for. */
+static inline workers plan_workers(const transport_plan *plan)
+{
+    return (workers){(unsigned)plan->how.threads, plan->cancel};
+}
+
 /** @brief A plan in which nothing is decided yet. */
 transport_plan transport_plan_of(const view *v, const settings *how);
 /** @brief Decides all that a render with these settings does alike in every pass; what

@@ -61,7 +61,8 @@ static photon_map *build(map_choice choice, const photon *photons, size_t n, flo
     g_assert_true(photon_store_reserve(&store, n, NULL));
     for (size_t i = 0; i < n; i++)
         photon_store_put(&store, &photons[i]);
-    photon_map *map = photon_map_build(choice, &store, radius, 1, NULL);
+    photon_map *map =
+        photon_map_build(choice, &store, radius, (workers){.threads = 1}, NULL);
     g_assert_nonnull(map);
     return map;
 }

@@ -129,7 +129,8 @@ static photon_map *build_map(map_choice choice, photon_store *store, float radiu
                              unsigned threads)
 {
     GError *error = NULL;
-    photon_map *map = photon_map_build(choice, store, radius, threads, &error);
+    photon_map *map =
+        photon_map_build(choice, store, radius, (workers){.threads = threads}, &error);
     g_assert_no_error(error);
     g_assert_null(store->x);
     return map;
@@ -420,7 +421,8 @@ static void test_empty(void)
 {
     for (map_choice choice = MAP_LIST; choice <= MAP_GRID; choice++) {
         photon_store none = {0};
-        g_autoptr(photon_map) map = photon_map_build(choice, &none, 0.1f, 1, NULL);
+        g_autoptr(photon_map) map =
+            photon_map_build(choice, &none, 0.1f, (workers){.threads = 1}, NULL);
         g_assert_nonnull(map);
         point_hits hits = {.n = 5};
         g_assert_true(photon_map_within(map, vec3_make(0, 0, 0), 1, NULL, &hits));
@@ -507,7 +509,8 @@ static void test_build_refused(void)
             photon_store store = make_store(place_cube, 100);
             g_autoptr(GError) error = NULL;
             big_alloc_fail_at(n);
-            g_autoptr(photon_map) map = photon_map_build(choice, &store, 0.1f, 1, &error);
+            g_autoptr(photon_map) map =
+                photon_map_build(choice, &store, 0.1f, (workers){.threads = 1}, &error);
             big_alloc_fail_at(0);
             g_assert_null(store.x);
             if (map)
@@ -535,6 +538,49 @@ static void test_query_refused(void)
     }
 }
 
+/* A flag that is set the n-th time that work shows a pulse. */
+typedef struct late_cancel {
+    cancel_flag flag;
+    int n, seen;
+} late_cancel;
+
+static void count_down(void *data)
+{
+    late_cancel *late = data;
+    if (++late->seen == late->n)
+        atomic_store(&late->flag.set, true);
+}
+
+static photon_map *build_until(map_choice choice, late_cancel *late, GError **error)
+{
+    enum { N = 100000 };
+    photon_store store = make_store(place_cube, N);
+    late->flag.progress = count_down;
+    late->flag.progress_data = late;
+    return photon_map_build(choice, &store, 0.05f, (workers){1, &late->flag}, error);
+}
+
+/* Whenever it is asked to, sorting ends, and gives back what it took. */
+static void test_cancelled(void)
+{
+    static const map_choice choices[] = {MAP_KDTREE, MAP_GRID};
+    size_t before = memory_forget_most();
+    for (size_t i = 0; i < G_N_ELEMENTS(choices); i++) {
+        late_cancel never = {.n = -1};
+        photon_map *map = build_until(choices[i], &never, NULL);
+        g_assert_nonnull(map);
+        photon_map_free(map);
+        g_assert_cmpint(never.seen, >, 8);
+        for (int n = 1; n < never.seen / 2; n += 1 + n / 4) {
+            late_cancel late = {.n = n};
+            g_autoptr(GError) error = NULL;
+            g_assert_null(build_until(choices[i], &late, &error));
+            g_assert_cmpint(error->code, ==, ERROR_CANCELLED);
+        }
+        g_assert_cmpuint(memory_forget_most(), ==, before);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -552,5 +598,6 @@ int main(int argc, char **argv)
     g_test_add_func("/map/peak", test_peak);
     g_test_add_func("/map/build-refused", test_build_refused);
     g_test_add_func("/map/query-refused", test_query_refused);
+    g_test_add_func("/map/cancelled", test_cancelled);
     return g_test_run();
 }

@@ -38,7 +38,7 @@ static photon_map *field(float x0, float x1)
                     .flux = spectrum_fill((x1 - x0) * 2.0f / N)};
         photon_store_put(&store, &p);
     }
-    return photon_map_build(MAP_GRID, &store, radius, 1, NULL);
+    return photon_map_build(MAP_GRID, &store, radius, (workers){.threads = 1}, NULL);
 }
 
 /* Irradiance found around (x, 0, 0), mean over a stretch along y. */
@@ -155,7 +155,7 @@ static photon_map *sunlit_wall(bool oriented)
                     .flux = spectrum_fill(1000.0f * 0.2f / N)};
         photon_store_put(&store, &p);
     }
-    return photon_map_build(MAP_GRID, &store, radius, 1, NULL);
+    return photon_map_build(MAP_GRID, &store, radius, (workers){.threads = 1}, NULL);
 }
 
 static void test_bright_wall_does_not_light_the_floor(void)
@@ -183,7 +183,7 @@ static photon_map *field_on_ball(float reach)
         photon p = {.p = 0.5f * n, .wi = n, .flux = spectrum_fill(PI_F / N)};
         photon_store_put(&store, &p);
     }
-    return photon_map_build(MAP_GRID, &store, reach, 1, NULL);
+    return photon_map_build(MAP_GRID, &store, reach, (workers){.threads = 1}, NULL);
 }
 
 /* Where the surface bends off the disc, photons weigh less, and so must area. */

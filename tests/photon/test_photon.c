@@ -105,11 +105,11 @@ static void assert_photon(const photon_store *store, size_t place, uint32_t i)
 static void put_in_order(photon_store *store, const size_t *order)
 {
     point_arrays points = photon_points(store);
-    g_assert_true(point_arrays_permute(&points, order, 2, NULL));
+    g_assert_true(point_arrays_permute(&points, order, (workers){.threads = 2}, NULL));
     store->x = points.x;
     store->y = points.y;
     store->z = points.z;
-    g_assert_true(photon_store_follow(store, order, 2, NULL));
+    g_assert_true(photon_store_follow(store, order, (workers){.threads = 2}, NULL));
 }
 
 static void test_store(void)
@@ -200,7 +200,7 @@ static void test_store_packed(void)
         photon_store_put(&store, &p);
         order[i] = i * 7 % N;
     }
-    g_assert_true(photon_store_pack(&store, order, 2, NULL));
+    g_assert_true(photon_store_pack(&store, order, (workers){.threads = 2}, NULL));
     put_in_order(&store, order);
     g_assert_null(store.flux);
     g_assert_cmpuint(photon_store_bytes(&store), <=, N * 40 + 32 * 40);

@@ -226,8 +226,8 @@ static void check_index(const cloud *c, map_choice choice, float radius, unsigne
     size_t *order;
     GError *error = NULL;
     point_arrays points = arrays_of(c);
-    g_autoptr(point_index) index =
-        point_index_build(choice, &points, radius, threads, &order, &error);
+    g_autoptr(point_index) index = point_index_build(
+        choice, &points, radius, (workers){.threads = threads}, &order, &error);
     g_assert_no_error(error);
     things at = put_in_order(c, &points, order);
     ask(c, index, &at);

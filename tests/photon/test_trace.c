@@ -227,7 +227,7 @@ static void test_integrating_sphere(void)
     trace_result result;
     g_assert_true(photon_trace(&task, false, &result, NULL));
     g_autoptr(photon_map) map =
-        photon_map_build(MAP_GRID, &result.photons, 0.5f, 2, NULL);
+        photon_map_build(MAP_GRID, &result.photons, 0.5f, (workers){.threads = 2}, NULL);
     memset(&result.photons, 0, sizeof result.photons);
     trace_result_clear(&result);
     spectrum power = power_of_lights(s, &task.w);

@@ -31,7 +31,7 @@ static photon_map *field(uint32_t behind)
                     .flux = spectrum_fill(1.0f / N)};
         photon_store_put(&store, &p);
     }
-    return photon_map_build(MAP_KDTREE, &store, 0, 1, NULL);
+    return photon_map_build(MAP_KDTREE, &store, 0, (workers){.threads = 1}, NULL);
 }
 
 static void test_photons_behind(void)

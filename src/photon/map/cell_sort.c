@@ -99,7 +99,7 @@ static bool sort_allocate(sorter *s, GError **error)
 }
 
 size_t *cell_sort(size_t n, size_t n_cells, cell_of_element cell_of, const void *data,
-                  uint32_t *start, unsigned threads, GError **error)
+                  uint32_t *start, workers by, GError **error)
 {
     sorter s = {
         .n = n,
@@ -110,12 +110,14 @@ size_t *cell_sort(size_t n, size_t n_cells, cell_of_element cell_of, const void 
         .data = data,
         .start = start,
     };
-    if (sort_allocate(&s, error)) {
-        parallel_for(n, ITEMS_AT_ONCE, threads, NULL, count_chunk, &s);
+    bool done = sort_allocate(&s, error) &&
+                parallel_work(n, ITEMS_AT_ONCE, by, count_chunk, &s, error);
+    if (done)
         sum_counts(&s);
-        parallel_for(n, ITEMS_AT_ONCE, threads, NULL, scatter_chunk, &s);
-        parallel_for(N_BINS, 1, threads, NULL, sort_bin, &s);
-    }
+    done = done && parallel_work(n, ITEMS_AT_ONCE, by, scatter_chunk, &s, error) &&
+           parallel_work(N_BINS, 1, by, sort_bin, &s, error);
+    if (!done)
+        g_clear_pointer(&s.order, big_free);
     big_free(s.counts);
     big_free(s.pairs);
     return s.order;

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "base/error.h"
+#include "base/parallel.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -21,4 +21,4 @@ typedef size_t (*cell_of_element)(size_t i, const void *data);
  *         an element are held while sorting.
  */
 size_t *cell_sort(size_t n, size_t n_cells, cell_of_element cell_of, const void *data,
-                  uint32_t *start, unsigned threads, GError **error);
+                  uint32_t *start, workers by, GError **error);

@@ -9,9 +9,9 @@ typedef struct point_index_kind {
     const char *name; /**< "list", "kdtree", "grid" */
     /** The order that it wants points in, big_alloc'ed; of index->points, not empty. NULL
      * when memory is refused. No function: they stay as they are. */
-    size_t *(*sort)(point_index *index, float radius, unsigned threads, GError **error);
+    size_t *(*sort)(point_index *index, float radius, workers by, GError **error);
     /** What is made of points in this order. No function: nothing. */
-    bool (*build)(point_index *index, unsigned threads, GError **error);
+    bool (*build)(point_index *index, workers by, GError **error);
     void (*free)(point_index *index);          /**< structure is not NULL */
     size_t (*bytes)(const point_index *index); /**< of the structure */
     /* Of an index with points. */

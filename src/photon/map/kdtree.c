@@ -61,6 +61,7 @@ typedef struct kd_builder {
     size_t *order;
     const point_arrays *points;
     unsigned n_levels, level;
+    const cancel_flag *cancel;
 } kd_builder;
 
 /* Moves items below pivot (or_like: or like it) to the front, without branches; returns
@@ -94,10 +95,11 @@ static float choose_pivot(const kd_item *items, size_t n, int axis, size_t rank)
     return sample[rank * n_sample / n];
 }
 
-/* Orders items so that those before rank are not above those from rank on. */
-static void split_at(kd_item *items, size_t n, int axis, size_t rank)
+/* Orders items so that those before rank are not above those from rank on. Goes through
+   many of them several times, so it stops between if nobody wants it any more. */
+static void split_at(const kd_builder *b, kd_item *items, size_t n, int axis, size_t rank)
 {
-    while (n > 1) {
+    while (n > 1 && !cancelled(b->cancel)) {
         float pivot = choose_pivot(items, n, axis, rank);
         size_t below = partition(items, n, axis, pivot, false);
         if (rank < below) {
@@ -134,21 +136,21 @@ static int widest_axis(const kd_item *items, size_t n)
 }
 
 /* One binary split of a node that has room for span points. */
-static void split_node(kd_item *items, size_t n, size_t span)
+static void split_node(const kd_builder *b, kd_item *items, size_t n, size_t span)
 {
     if (n > span / 2)
-        split_at(items, n, widest_axis(items, n), span / 2);
+        split_at(b, items, n, widest_axis(items, n), span / 2);
 }
 
 /* Splits down to leaves. */
-static void split_subtree(kd_item *items, size_t n, size_t span)
+static void split_subtree(const kd_builder *b, kd_item *items, size_t n, size_t span)
 {
     if (n <= LEAF)
         return;
-    split_node(items, n, span);
+    split_node(b, items, n, span);
     size_t half = MIN(n, span / 2);
-    split_subtree(items, half, span / 2);
-    split_subtree(items + half, n - half, span / 2);
+    split_subtree(b, items, half, span / 2);
+    split_subtree(b, items + half, n - half, span / 2);
 }
 
 static void split_task(size_t node, size_t end, unsigned thread, void *data)
@@ -157,22 +159,25 @@ static void split_task(size_t node, size_t end, unsigned thread, void *data)
     const kd_builder *b = data;
     size_t begin = node * b->span, n = MIN(b->span, b->n - begin);
     if (b->span > ITEMS_AT_ONCE)
-        split_node(b->items + begin, n, b->span);
+        split_node(b, b->items + begin, n, b->span);
     else
-        split_subtree(b->items + begin, n, b->span);
+        split_subtree(b, b->items + begin, n, b->span);
 }
 
 /* Large nodes one level after the other, each level's in parallel; then whole subtrees in
  * parallel. */
-static void split_all(kd_builder *b, unsigned threads)
+static bool split_all(kd_builder *b, workers by, GError **error)
 {
+    b->cancel = by.cancel;
     b->span = LEAF;
     for (unsigned level = 0; level < b->n_levels; level++)
         b->span *= WIDTH;
     for (;; b->span /= 2) {
-        parallel_for((b->n + b->span - 1) / b->span, 1, threads, NULL, split_task, b);
+        size_t n_nodes = (b->n + b->span - 1) / b->span;
+        if (!parallel_work(n_nodes, 1, by, split_task, b, error))
+            return false;
         if (b->span <= ITEMS_AT_ONCE)
-            return;
+            return true;
     }
 }
 
@@ -211,17 +216,17 @@ static unsigned levels_over(size_t n)
     return levels;
 }
 
-size_t *kdtree_sort(const point_arrays *points, unsigned threads, GError **error)
+size_t *kdtree_sort(const point_arrays *points, workers by, GError **error)
 {
     kd_builder b = {.n = points->n, .points = points, .n_levels = levels_over(points->n)};
     b.items = big_alloc(b.n, sizeof *b.items, "sorting points", error);
     if (!b.items)
         return NULL;
-    parallel_for(b.n, ITEMS_AT_ONCE, threads, NULL, load_items, &b);
-    split_all(&b, threads);
-    b.order = big_alloc(b.n, sizeof *b.order, "sorting points", error);
-    if (b.order)
-        parallel_for(b.n, ITEMS_AT_ONCE, threads, NULL, store_order, &b);
+    if (parallel_work(b.n, ITEMS_AT_ONCE, by, load_items, &b, error) &&
+        split_all(&b, by, error))
+        b.order = big_alloc(b.n, sizeof *b.order, "sorting points", error);
+    if (b.order && !parallel_work(b.n, ITEMS_AT_ONCE, by, store_order, &b, error))
+        g_clear_pointer(&b.order, big_free);
     big_free(b.items);
     return b.order;
 }
@@ -283,7 +288,7 @@ static void shape_tree(kdtree *tree, size_t n)
     }
 }
 
-kdtree *kdtree_build(const point_arrays *sorted, unsigned threads, GError **error)
+kdtree *kdtree_build(const point_arrays *sorted, workers by, GError **error)
 {
     kdtree *tree = big_alloc(1, sizeof *tree, "kdtree", error);
     if (!tree)
@@ -295,9 +300,12 @@ kdtree *kdtree_build(const point_arrays *sorted, unsigned threads, GError **erro
         return NULL;
     }
     kd_builder b = {.tree = tree, .n = sorted->n, .points = sorted};
-    for (b.level = 1; b.level <= tree->n_levels; b.level++)
-        parallel_for(nodes_on_level(b.n, b.level), ITEMS_AT_ONCE / (WIDTH * LEAF),
-                     threads, NULL, fill_groups, &b);
+    bool done = true;
+    for (b.level = 1; b.level <= tree->n_levels && done; b.level++)
+        done = parallel_work(nodes_on_level(b.n, b.level), ITEMS_AT_ONCE / (WIDTH * LEAF),
+                             by, fill_groups, &b, error);
+    if (!done)
+        g_clear_pointer(&tree, kdtree_free);
     return tree;
 }
 

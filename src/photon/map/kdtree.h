@@ -15,9 +15,9 @@ typedef struct kdtree kdtree;
 /** @brief The order that a tree wants points in, fewer than 2^32, owned by the caller
  * (big_free); NULL when memory is refused. It does not depend on the number of threads.
  */
-size_t *kdtree_sort(const point_arrays *points, unsigned threads, GError **error);
+size_t *kdtree_sort(const point_arrays *points, workers by, GError **error);
 /** @brief Over points in this order: at least one. They are not kept. */
-kdtree *kdtree_build(const point_arrays *sorted, unsigned threads, GError **error);
+kdtree *kdtree_build(const point_arrays *sorted, workers by, GError **error);
 void kdtree_free(kdtree *tree);
 size_t kdtree_bytes(const kdtree *tree); /**< memory kept */
 

@@ -103,20 +103,20 @@ static void bound_chunk(size_t begin, size_t end, unsigned thread, void *data)
     loop->boxes[begin / ITEMS_AT_ONCE] = box;
 }
 
-static bool find_bounds(grid *g, const point_arrays *s, unsigned threads, GError **error)
+static bool find_bounds(grid *g, const point_arrays *s, workers by, GError **error)
 {
     size_t n_chunks = (s->n + ITEMS_AT_ONCE - 1) / ITEMS_AT_ONCE;
     box3 all = box3_empty();
     bounds_loop loop = {s, big_alloc(n_chunks, sizeof(box3), "grid of points", error)};
     if (!loop.boxes)
         return false;
-    parallel_for(s->n, ITEMS_AT_ONCE, threads, NULL, bound_chunk, &loop);
-    for (size_t i = 0; i < n_chunks; i++)
+    bool done = parallel_work(s->n, ITEMS_AT_ONCE, by, bound_chunk, &loop, error);
+    for (size_t i = 0; i < n_chunks && done; i++)
         all = box3_union(all, loop.boxes[i]);
     big_free(loop.boxes);
     g->low = all.low;
     g->high = all.high;
-    return true;
+    return done;
 }
 
 static double count_cells(grid *g, float cell)
@@ -183,19 +183,18 @@ static void grid_free(point_index *index)
     big_free(g);
 }
 
-static size_t *grid_sort(point_index *index, float radius, unsigned threads,
-                         GError **error)
+static size_t *grid_sort(point_index *index, float radius, workers by, GError **error)
 {
     grid *g = index->structure = big_alloc(1, sizeof *g, "grid of points", error);
     if (!g)
         return NULL;
-    if (!find_bounds(g, &index->points, threads, error))
+    if (!find_bounds(g, &index->points, by, error))
         return NULL;
     shape_grid(g, index->points.n, radius);
     g->start = big_alloc(g->n_slots + 1, sizeof *g->start, "grid of points", error);
     if (!g->start)
         return NULL;
-    return cell_sort(index->points.n, g->n_slots, slot_of_point, index, g->start, threads,
+    return cell_sort(index->points.n, g->n_slots, slot_of_point, index, g->start, by,
                      error);
 }
 

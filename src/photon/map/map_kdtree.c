@@ -4,16 +4,15 @@
 #include "photon/map/index_kind.h"
 #include "photon/map/kdtree.h"
 
-static size_t *tree_sort(point_index *index, float radius, unsigned threads,
-                         GError **error)
+static size_t *tree_sort(point_index *index, float radius, workers by, GError **error)
 {
     (void)radius;
-    return kdtree_sort(&index->points, threads, error);
+    return kdtree_sort(&index->points, by, error);
 }
 
-static bool tree_build(point_index *index, unsigned threads, GError **error)
+static bool tree_build(point_index *index, workers by, GError **error)
 {
-    index->structure = kdtree_build(&index->points, threads, error);
+    index->structure = kdtree_build(&index->points, by, error);
     return index->structure != NULL;
 }
 

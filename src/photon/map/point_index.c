@@ -12,12 +12,12 @@ static const point_index_kind *const kinds[] = {
 
 /* @return false when memory is refused */
 static bool sort_points(point_index *index, point_arrays *points, float radius,
-                        unsigned threads, size_t **order, GError **error)
+                        workers by, size_t **order, GError **error)
 {
     if (!index->kind->sort)
         return true;
-    *order = index->kind->sort(index, radius, threads, error);
-    bool ok = *order && point_arrays_permute(points, *order, threads, error);
+    *order = index->kind->sort(index, radius, by, error);
+    bool ok = *order && point_arrays_permute(points, *order, by, error);
     if (!ok)
         g_clear_pointer(order, big_free);
     index->points = *points;
@@ -25,7 +25,7 @@ static bool sort_points(point_index *index, point_arrays *points, float radius,
 }
 
 point_index *point_index_build(map_choice choice, point_arrays *points, float radius,
-                               unsigned threads, size_t **order, GError **error)
+                               workers by, size_t **order, GError **error)
 {
     g_autoptr(point_index) index = g_new0(point_index, 1);
     float usable = radius > 0.0f && isfinite(radius) ? radius : 0.0f;
@@ -39,9 +39,9 @@ point_index *point_index_build(map_choice choice, point_arrays *points, float ra
     }
     if (points->n == 0)
         return g_steal_pointer(&index);
-    if (!sort_points(index, points, usable, threads, order, error))
+    if (!sort_points(index, points, usable, by, order, error))
         return NULL;
-    if (!index->kind->build || index->kind->build(index, threads, error))
+    if (!index->kind->build || index->kind->build(index, by, error))
         return g_steal_pointer(&index);
     g_clear_pointer(order, big_free);
     return NULL;

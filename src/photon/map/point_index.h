@@ -40,7 +40,7 @@ typedef struct point_index point_index;
  *        by the caller (big_free). NULL: they stay as they were, or it failed
  */
 point_index *point_index_build(map_choice choice, point_arrays *points, float radius,
-                               unsigned threads, size_t **order, GError **error);
+                               workers by, size_t **order, GError **error);
 void point_index_free(point_index *index);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(point_index, point_index_free)
 size_t point_index_bytes(const point_index *index); /**< memory kept, without points */

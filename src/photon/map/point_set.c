@@ -26,8 +26,8 @@ point_set *point_set_build(const vec3 *points, size_t n, unsigned threads, GErro
         set->points.y[i] = points[i][1];
         set->points.z[i] = points[i][2];
     }
-    set->index =
-        point_index_build(MAP_KDTREE, &set->points, 0.0f, threads, &set->number, error);
+    set->index = point_index_build(MAP_KDTREE, &set->points, 0.0f,
+                                   (workers){threads, NULL}, &set->number, error);
     return set->index ? g_steal_pointer(&set) : NULL;
 }
 

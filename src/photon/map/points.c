@@ -30,13 +30,13 @@ void point_arrays_clear(point_arrays *points)
     *points = (point_arrays){0};
 }
 
-bool point_arrays_permute(point_arrays *points, const size_t *order, unsigned threads,
+bool point_arrays_permute(point_arrays *points, const size_t *order, workers by,
                           GError **error)
 {
     size_t n = points->n, size = sizeof(float);
-    return points_permute(&points->x, n, size, order, threads, error) &&
-           points_permute(&points->y, n, size, order, threads, error) &&
-           points_permute(&points->z, n, size, order, threads, error);
+    return points_permute(&points->x, n, size, order, by, error) &&
+           points_permute(&points->y, n, size, order, by, error) &&
+           points_permute(&points->z, n, size, order, by, error);
 }
 
 /* An array being put in order. */
@@ -75,15 +75,18 @@ static void permute_piece(size_t begin, size_t end, unsigned thread, void *data)
     }
 }
 
-bool points_permute(void *array, size_t n, size_t size, const size_t *order,
-                    unsigned threads, GError **error)
+bool points_permute(void *array, size_t n, size_t size, const size_t *order, workers by,
+                    GError **error)
 {
     void **old = array;
     void *to = big_alloc(points_padded(n), size, "points in order", error);
     if (!to)
         return false;
     permutation job = {order, *old, to, size};
-    parallel_for(n, ITEMS_AT_ONCE, threads, NULL, permute_piece, &job);
+    if (!parallel_work(n, ITEMS_AT_ONCE, by, permute_piece, &job, error)) {
+        big_free(to);
+        return false;
+    }
     big_free(*old);
     *old = to;
     return true;

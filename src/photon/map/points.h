@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "base/error.h"
+#include "base/parallel.h"
 #include "photon/map/lanes.h"
 
 #include <stdbool.h>
@@ -20,14 +20,14 @@ typedef struct point_arrays {
 bool point_arrays_make(point_arrays *points, size_t n, const char *what, GError **error);
 void point_arrays_clear(point_arrays *points);
 /** @brief The three arrays in this order, as points_permute. */
-bool point_arrays_permute(point_arrays *points, const size_t *order, unsigned threads,
+bool point_arrays_permute(point_arrays *points, const size_t *order, workers by,
                           GError **error);
 
 /** @brief Puts in order what lies at n points, an array of elements of some size: the
  * i-th becomes the one that was order[i]. *array is exchanged for another, with room for
  * a SIMD block behind; on failure it stays what it was. */
-bool points_permute(void *array, size_t n, size_t size, const size_t *order,
-                    unsigned threads, GError **error);
+bool points_permute(void *array, size_t n, size_t size, const size_t *order, workers by,
+                    GError **error);
 
 /** @brief n and the least room behind, to a whole SIMD block. */
 size_t points_padded(size_t n);

@@ -99,7 +99,7 @@ static trace_result empty_result(const scene *s, bool oriented)
 bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
                   GError **error)
 {
-    unsigned threads = (unsigned)task->how->threads;
+    const workers by = {(unsigned)task->how->threads, task->cancel};
     *result = empty_result(task->scene, oriented);
     size_t n = (size_t)(task->end > 0 ? task->end - task->begin : task->n_photons);
     size_t n_chunks = (n + RAYS_AT_ONCE - 1) / RAYS_AT_ONCE;
@@ -107,10 +107,8 @@ bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
     if (!chunks)
         return false;
     trace_loop loop = {task, task->first + task->begin, *result, chunks};
-    bool done = parallel_for(n, RAYS_AT_ONCE, threads, task->cancel, trace_some, &loop);
-    if (!done)
-        error_set(error, ERROR_CANCELLED, "cancelled");
-    bool joined = done && trace_chunks_join(chunks, n_chunks, threads, result, error);
+    bool joined = parallel_work(n, RAYS_AT_ONCE, by, trace_some, &loop, error) &&
+                  trace_chunks_join(chunks, n_chunks, by, result, error);
     trace_chunks_clear(chunks, n_chunks);
     big_free(chunks);
     if (!joined)

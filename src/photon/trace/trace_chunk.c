@@ -55,14 +55,13 @@ static bool add_up(trace_chunk *chunks, size_t n, trace_result *result, GError *
     return true;
 }
 
-bool trace_chunks_join(trace_chunk *chunks, size_t n, unsigned threads,
-                       trace_result *result, GError **error)
+bool trace_chunks_join(trace_chunk *chunks, size_t n, workers by, trace_result *result,
+                       GError **error)
 {
     if (!add_up(chunks, n, result, error))
         return false;
     join_loop loop = {result, chunks};
-    parallel_for(n, 1, threads, NULL, join_chunk, &loop);
-    return true;
+    return parallel_work(n, 1, by, join_chunk, &loop, error);
 }
 
 void trace_chunks_clear(trace_chunk *chunks, size_t n)

@@ -16,9 +16,10 @@ typedef struct trace_chunk {
 void trace_chunk_put(trace_chunk *chunk, photon_store *store, const photon *p);
 
 /** @brief Puts n chunks behind one another into the result, whose stores are set up and
- * empty. @return false if memory was refused, to a chunk or now */
-bool trace_chunks_join(trace_chunk *chunks, size_t n, unsigned threads,
-                       trace_result *result, GError **error);
+ * empty. @return false if memory was refused, to a chunk or now, or it was
+ * cancelled */
+bool trace_chunks_join(trace_chunk *chunks, size_t n, workers by, trace_result *result,
+                       GError **error);
 
 /** @brief Frees what chunks hold. */
 void trace_chunks_clear(trace_chunk *chunks, size_t n);

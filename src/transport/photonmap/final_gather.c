@@ -96,11 +96,9 @@ static bool add_points(const photonmap_pass *pass, int slice, const trace_result
                             .out = out,
                             .offset = offset,
                             .slice = slice};
-    if (!parallel_for(points->photons.n, RAYS_AT_ONCE, (unsigned)pass->how->threads,
-                      pass->plan->cancel, irradiance_chunk, &loop)) {
-        error_set(error, ERROR_CANCELLED, "cancelled");
+    if (!parallel_work(points->photons.n, RAYS_AT_ONCE, plan_workers(pass->plan),
+                       irradiance_chunk, &loop, error))
         return false;
-    }
     if (atomic_load(&loop.failed)) {
         error_set(error, ERROR_FAILED, "out of memory for irradiance estimates");
         return false;
@@ -138,21 +136,20 @@ static irradiance_cache *cache_with_room(size_t n, size_t n_groups, GError **err
 }
 
 /* Sorts the places, and what is kept at them likewise. */
-static bool sort_cache(irradiance_cache *cache, size_t n_groups, unsigned threads,
+static bool sort_cache(irradiance_cache *cache, size_t n_groups, workers by,
                        GError **error)
 {
     size_t n = cache->places.n, *order = NULL;
-    cache->index =
-        point_index_build(MAP_KDTREE, &cache->places, 0.0f, threads, &order, error);
+    cache->index = point_index_build(MAP_KDTREE, &cache->places, 0.0f, by, &order, error);
     bool ok =
         cache->index &&
-        (!order || (points_permute(&cache->normal, n, sizeof *cache->normal, order,
-                                   threads, error) &&
-                    points_permute(&cache->irradiance, n, sizeof *cache->irradiance,
-                                   order, threads, error) &&
-                    (!cache->groups ||
-                     points_permute(&cache->groups, n, n_groups * sizeof *cache->groups,
-                                    order, threads, error))));
+        (!order ||
+         (points_permute(&cache->normal, n, sizeof *cache->normal, order, by, error) &&
+          points_permute(&cache->irradiance, n, sizeof *cache->irradiance, order, by,
+                         error) &&
+          (!cache->groups ||
+           points_permute(&cache->groups, n, n_groups * sizeof *cache->groups, order, by,
+                          error))));
     big_free(order);
     return ok;
 }
@@ -168,7 +165,7 @@ bool irradiance_cache_build(photonmap_pass *pass, int slice, const trace_result 
     bool ok = cache != NULL;
     for (size_t i = 0, offset = 0; i < n && ok; offset += points[i++].photons.n)
         ok = add_points(pass, slice, &points[i], offset, cache, error);
-    return ok && sort_cache(cache, n_groups, (unsigned)pass->how->threads, error);
+    return ok && sort_cache(cache, n_groups, plan_workers(pass->plan), error);
 }
 
 /* What moves is looked up where its photons are kept. */

@@ -142,8 +142,8 @@ static bool build_class(photonmap_pass *pass, const slice_task *s, trace_result 
         pass->plan->radius_cache[s->c] && pass->estimates[s->c].nearest == 0;
     map_choice wanted = (map_choice)pass->how->photon_map;
     *map = photon_map_build(photon_map_chosen(wanted, radii_differ), &store,
-                            isfinite(radius) ? radius : 0.0f,
-                            (unsigned)pass->how->threads, error);
+                            isfinite(radius) ? radius : 0.0f, plan_workers(pass->plan),
+                            error);
     bool ok =
         *map && photonmap_keep_in_media(pass, s->slice, s->c, &result->in_media, error);
     counts->time_build += clock_seconds() - start;

@@ -250,11 +250,9 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
     all->task.pass = plan_trial_pass(TRIAL_GUIDE + round);
     all->task.w = scene_trial_wavelengths(all->task.scene, round);
     all->round = (guide_trial){0};
-    if (!parallel_for(all->each, RAYS_AT_ONCE, (unsigned)all->task.how->threads,
-                      all->task.cancel, run_trials, all)) {
-        error_set(error, ERROR_CANCELLED, "cancelled");
+    const workers by = {(unsigned)all->task.how->threads, all->task.cancel};
+    if (!parallel_work(all->each, RAYS_AT_ONCE, by, run_trials, all, error))
         return false;
-    }
     if (atomic_load(&all->refused) && !point_hits_refuse(error))
         return false;
     for (size_t i = 0; i < all->each; i++)

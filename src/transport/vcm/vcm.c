@@ -157,16 +157,14 @@ static bool build_map(vcm_pass *pass, transport_counts *counts, GError **error)
     if (!fill_store(pass, &store, error))
         return false;
     pass->map = photon_map_build(photon_map_chosen((map_choice)how->photon_map, false),
-                                 &store, pass->radius, (unsigned)how->threads, error);
+                                 &store, pass->radius, plan_workers(pass->plan), error);
     if (pass->map)
         pass->merged = big_alloc(n, sizeof *pass->merged, "light vertices", error);
     if (!pass->merged)
         return false;
-    if (!parallel_for(n, ITEMS_AT_ONCE, (unsigned)how->threads, pass->plan->cancel,
-                      merge_some, pass)) {
-        error_set(error, ERROR_CANCELLED, "cancelled");
+    if (!parallel_work(n, ITEMS_AT_ONCE, plan_workers(pass->plan), merge_some, pass,
+                       error))
         return false;
-    }
     counts->time_build += clock_seconds() - start;
     counts->memory_photons += photon_map_bytes(pass->map) + n * sizeof *pass->merged;
     return true;

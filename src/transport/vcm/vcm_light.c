@@ -428,11 +428,9 @@ bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts
         return false;
     }
     light_loop loop = {pass, chunks};
-    bool done = parallel_for(paths->n, RAYS_AT_ONCE, (unsigned)pass->plan->how.threads,
-                             cancel, trace_chunk, &loop);
-    if (!done)
-        error_set(error, ERROR_CANCELLED, "cancelled");
-    bool joined = done && join(&loop, n_chunks, counts, error);
+    const workers by = {(unsigned)pass->plan->how.threads, cancel};
+    bool joined = parallel_work(paths->n, RAYS_AT_ONCE, by, trace_chunk, &loop, error) &&
+                  join(&loop, n_chunks, counts, error);
     for (size_t c = 0; c < n_chunks; c++)
         chunk_clear(&chunks[c]);
     big_free(chunks);
