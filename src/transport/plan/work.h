@@ -7,13 +7,17 @@
  *   paths   what paths find by themselves             1 share    auto
  *   aim     trial photons, which teach the guide      2 shares   where casters are
  *   radii   how dense photons lie (radius.c)        1/2 share    where photons are sent
+ *   pass    a small one, to try spots with          1/2 share    auto
  *   spots   what looking at bright spots is worth     1 share    auto
+ *   gather  what gathering all light is worth     2 1/2 shares   auto: radii, two maps,
+ *                                                                places
  */
 #pragma once
 
 #include "transport/transport.h"
 
-/** A share of the work asked for: five of them, all that trials get, are a twentieth. */
+/** A share of the work asked for. Where all is tried that is above it is eight of them;
+ * with fewer for each /spots and /gather lose gains in small pictures. */
 #define TRIAL_SHARE 0.01
 
 /** What a camera sample costs, in rays, before any is traced: counted were 3.3 in
