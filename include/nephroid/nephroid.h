@@ -306,6 +306,11 @@ NEPH_API NephImage *neph_image_new(int width, int height, const float *rgb,
  * the layer "denoised" where there is one. */
 NEPH_API bool neph_image_write(const NephImage *image, const char *path, float exposure,
                                GError **error);
+/** @brief The same, as long as go_on says so; else false with NEPH_ERROR_CANCELLED, and
+ * what was there under that name still is. */
+NEPH_API bool neph_image_write_while(const NephImage *image, const char *path,
+                                     float exposure, NephGoOnFunc go_on, void *data,
+                                     GError **error);
 /** @brief How a picture comes out in eight bits. Pixels that no light reaches do not
  * count. */
 typedef enum {

@@ -1,10 +1,11 @@
 #include "api/objects.h"
 
+#include "api/asking.h"
 #include "base/json.h"
 #include "image/arrange.h"
-#include "image/layers.h"
 #include "image/compare.h"
 #include "image/exposure.h"
+#include "image/layers.h"
 
 #include <string.h>
 
@@ -47,7 +48,15 @@ NephImage *neph_image_new(int width, int height, const float *rgb, GError **erro
 bool neph_image_write(const NephImage *img, const char *path, float exposure,
                       GError **error)
 {
-    const image_write_options options = {.exposure = exposure};
+    return neph_image_write_while(img, path, exposure, NULL, NULL, error);
+}
+
+bool neph_image_write_while(const NephImage *img, const char *path, float exposure,
+                            NephGoOnFunc go_on, void *data, GError **error)
+{
+    asking a;
+    const image_write_options options = {.exposure = exposure,
+                                         .cancel = asking_begin(&a, go_on, data)};
     return image_write(img->image, path, &options, error);
 }
 

@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* sync_file_range */
 #include "base/output.h"
 
 #include <errno.h>
@@ -7,6 +8,8 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+enum { PIECE = 8 << 20 }; /* size: of a file, that a disk takes soon */
 
 /* A temporary file that a signal must not leave behind. A handler may look at any moment,
    so nodes stay once they are there, and whoever takes the path out of one owns it. */
@@ -23,6 +26,7 @@ struct output {
     char *temporary;  /* NULL: path is not a regular file and is written directly */
     unfinished *node; /* of temporary */
     FILE *stream;     /* NULL: closed */
+    const cancel_flag *cancel;
 };
 
 static unfinished *note_unfinished(const char *path)
@@ -136,8 +140,17 @@ FILE *output_stream(output *out)
     return out->stream;
 }
 
+void output_watch(output *out, const cancel_flag *cancel)
+{
+    out->cancel = cancel;
+}
+
 static bool refuse(const output *out, GError **error)
 {
+    if (cancelled(out->cancel)) {
+        error_set(error, ERROR_CANCELLED, "cancelled");
+        return false;
+    }
     error_set(error, ERROR_FAILED, "cannot write %s: %s", out->path,
               g_strerror(errno ? errno : EIO));
     return false;
@@ -154,13 +167,33 @@ static bool is_written(FILE *stream)
     return fflush(stream) == 0 && !failed;
 }
 
-/* Flushes and syncs; devices and pipes know no sync. */
+/* What is on its way to a slow disk cannot be called back, so it is sent in pieces. */
+static bool sync_pieces(int fd, const cancel_flag *cancel)
+{
+    struct stat info;
+    off_t size = fstat(fd, &info) == 0 ? info.st_size : 0;
+    for (off_t at = 0; cancel && at < size && !cancel_beat(cancel); at += PIECE)
+        if (sync_file_range(fd, at, PIECE,
+                            SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE |
+                                SYNC_FILE_RANGE_WAIT_AFTER) != 0)
+            break; /* a file system without it: what follows does all */
+    return !cancelled(cancel) && fsync(fd) == 0;
+}
+
+/* Devices and pipes know no sync. */
+static bool is_on_disk(const output *out, FILE *stream)
+{
+    if (!is_written(stream))
+        return false;
+    return !out->temporary || sync_pieces(fileno(stream), out->cancel);
+}
+
 bool output_close(output *out, GError **error)
 {
     FILE *stream = g_steal_pointer(&out->stream);
     if (!stream)
         return true;
-    bool written = is_written(stream) && (!out->temporary || fsync(fileno(stream)) == 0);
+    bool written = !cancel_beat(out->cancel) && is_on_disk(out, stream);
     int reason = errno;
     bool closed = fclose(stream) == 0;
     if (!written)

@@ -4,12 +4,13 @@
  *
  *   output_open ─► write to output_stream ─► output_commit   or   output_discard
  *
- * A file that was there keeps its owner and permissions; a new one has those that the umask
- * leaves. What is not a regular file (/dev/stdout, a pipe) is written directly.
+ * A file that was there keeps its owner and permissions; a new one has those that the
+ * umask leaves. What is not a regular file (/dev/stdout, a pipe) is written directly.
  */
 #pragma once
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 #include <stdio.h>
 
@@ -19,6 +20,10 @@ typedef struct output output;
 output *output_open(const char *path, GError **error);
 /** @brief Where to write; owned by the output. Write errors may be left to the commit. */
 FILE *output_stream(output *out);
+/** @brief From now on closing and committing end soon, with ERROR_CANCELLED and the old
+ * file as it was, once cancel is set; its progress is called. Who writes asks by himself.
+ * @param cancel may be NULL; stays the caller's */
+void output_watch(output *out, const cancel_flag *cancel);
 /** @brief Ends writing, so that nothing but the renaming is left to the commit: for files
  * that are to appear together. ERROR_FAILED if anything was not written. */
 bool output_close(output *out, GError **error);

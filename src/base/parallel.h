@@ -27,6 +27,15 @@ static inline bool cancelled(const cancel_flag *flag)
            atomic_load_explicit(&((cancel_flag *)flag)->set, memory_order_relaxed);
 }
 
+/** @brief Beats, for long work that is no parallel loop: on the thread that was called,
+ * some twenty times a second. @return cancelled(flag) */
+static inline bool cancel_beat(const cancel_flag *flag)
+{
+    if (flag && flag->progress)
+        flag->progress(flag->progress_data);
+    return cancelled(flag);
+}
+
 /**
  * @brief Work on elements [begin, end); chunk is begin / chunk_size; thread is in
  * 0..threads-1.

@@ -236,12 +236,16 @@ bool image_write(const image *img, const char *path, const image_write_options *
     g_autoptr(output) out = codec ? output_open(path, error) : NULL;
     if (!out)
         return false;
-    image_sink sink = {path, output_stream(out)};
-    if (!codec->write(img, &sink, options ? options : &plain, error)) {
-        name_file(path, error);
-        return false;
-    }
-    return output_commit(g_steal_pointer(&out), error);
+    const image_write_options *how = options ? options : &plain;
+    output_watch(out, how->cancel);
+    image_sink sink = {path, output_stream(out), how->cancel};
+    g_autoptr(GError) refused = NULL;
+    bool written = codec->write(img, &sink, how, &refused);
+    if (written || cancelled(how->cancel))
+        return output_commit(g_steal_pointer(&out), error);
+    name_file(path, &refused);
+    g_propagate_error(error, g_steal_pointer(&refused));
+    return false;
 }
 
 /* What a disk takes for a byte, s: a common one, since trying it out would take as long.
@@ -257,7 +261,7 @@ double image_write_seconds(const image *img, const char *path)
     FILE *memory = open_memstream(&bytes, &size);
     if (!codec || !memory)
         return 0.0;
-    const image_sink sink = {path, memory};
+    const image_sink sink = {path, memory, NULL};
     int64_t start = g_get_monotonic_time();
     codec->write(img, &sink, &plain, NULL);
     fclose(memory);

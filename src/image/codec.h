@@ -7,6 +7,7 @@
  */
 #pragma once
 
+#include "base/parallel.h"
 #include "image/image.h"
 
 #include <stdint.h>
@@ -23,7 +24,15 @@ typedef struct image_source {
 typedef struct image_sink {
     const char *path; /**< for messages */
     FILE *stream;
+    const cancel_flag *cancel; /**< asked by sink_wants; may be NULL */
 } image_sink;
+
+/** @brief To be asked before each row. @return false: nobody wants the file any more, and
+ * what comes of it does not count */
+static inline bool sink_wants(const image_sink *sink)
+{
+    return !cancel_beat(sink->cancel);
+}
 
 /** @brief One file format. */
 typedef struct image_codec {

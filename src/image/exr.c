@@ -390,7 +390,8 @@ static int write_chunks(exr_job *job, exr_chunk *chunks, size_t n, int y, int st
     for (int at = y; used < n && at < job->to_write->height; at += step)
         if (!begin_chunk(&chunks[used++], at))
             return -1;
-    parallel_for(used, 1, 0, NULL, pack_chunks, chunks);
+    if (!parallel_for(used, 1, 0, job->sink->cancel, pack_chunks, chunks))
+        return -1;
     for (size_t i = 0; i < used; i++)
         if (!succeeded(job, chunks[i].packed) ||
             !succeeded(job, chunks[i].write(&chunks[i].encoder)))

@@ -329,7 +329,7 @@ static bool write_hdr(const image *img, const image_sink *sink,
     g_autofree uint8_t *scanline = g_malloc_n((gsize)img->width, 4);
     const float *p = img->pixels;
     write_header(img, sink->stream);
-    for (int y = 0; y < img->height; y++) {
+    for (int y = 0; y < img->height && sink_wants(sink); y++) {
         for (int x = 0; x < img->width; x++, p += img->n_channels) {
             const float v[3] = {writable(p[rgba[0]]), writable(p[rgba[1]]),
                                 writable(p[rgba[2]])};

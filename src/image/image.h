@@ -7,7 +7,7 @@
  */
 #pragma once
 
-#include "base/error.h"
+#include "base/parallel.h"
 
 #include <stddef.h>
 
@@ -38,7 +38,8 @@ typedef struct image_read_options {
 } image_read_options;
 
 typedef struct image_write_options {
-    float exposure; /**< stops applied to 8-bit output: value * 2^exposure */
+    float exposure;            /**< stops applied to 8-bit output: value * 2^exposure */
+    const cancel_flag *cancel; /**< asked again and again; may be NULL */
 } image_write_options;
 
 /** @brief A black image with the given channels (names copied). NULL: absurd size or
@@ -78,7 +79,8 @@ image *image_read_bytes(const char *name, GBytes *bytes,
  * those of eight bits image_shown_colors; EXR writes all, as 32-bit float, and the header
  * as string attributes.
  *  @param options NULL = exposure 0. @return false with ERROR_INPUT (unknown extension,
- *  unwritable, no R, G, B) or ERROR_FAILED (disk). */
+ *  unwritable, no R, G, B) or ERROR_FAILED (disk);
+ *  with ERROR_CANCELLED once it is cancelled. */
 bool image_write(const image *img, const char *path, const image_write_options *options,
                  GError **error);
 

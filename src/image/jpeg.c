@@ -191,6 +191,8 @@ static void write_file(jpeg_job *job)
     jpeg_start_compress(&job->out, TRUE);
     size_t stride = (size_t)img->width * (size_t)img->n_channels;
     for (int y = 0; y < img->height; y++) {
+        if (!sink_wants(job->sink))
+            longjmp(job->jump, 1);
         encode_row(job, img->pixels + (size_t)y * stride);
         jpeg_write_scanlines(&job->out, &job->row, 1);
     }

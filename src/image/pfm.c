@@ -122,7 +122,7 @@ static bool write_pfm(const image *img, const image_sink *sink,
     if (!image_raw(img, sink->path, rgba, error))
         return false;
     fprintf(sink->stream, "PF\n%d %d\n-1\n", img->width, img->height);
-    for (int y = img->height - 1; y >= 0; y--)
+    for (int y = img->height - 1; y >= 0 && sink_wants(sink); y--)
         for (int x = 0; x < img->width; x++) {
             size_t pixel = (size_t)y * (size_t)img->width + (size_t)x;
             const float *p = img->pixels + pixel * (size_t)img->n_channels;

@@ -219,10 +219,12 @@ static void write_file(png_job *job)
     png_set_sRGB(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(job->png, job->info);
     size_t stride = (size_t)job->width * (size_t)job->img->n_channels;
-    for (int y = 0; y < job->height; y++) {
+    for (int y = 0; y < job->height && sink_wants(job->sink); y++) {
         encode_row(job, job->img->pixels + (size_t)y * stride);
         png_write_row(job->png, job->bytes);
     }
+    if (cancelled(job->sink->cancel))
+        png_error(job->png, "cancelled");
     png_write_end(job->png, job->info);
 }
 

@@ -156,7 +156,8 @@ static void test_cancel(const void *words)
 
 /* Photons that are kept, and their file that is not there then. */
 typedef struct patience {
-    gint64 end, asked;
+    gint64 end, asked; /* monotonic µs; asked is 0 until it is */
+    double cpu;        /* s of the process, when it was */
 } patience;
 
 static bool until(void *data)
@@ -164,9 +165,18 @@ static bool until(void *data)
     patience *p = data;
     if (g_get_monotonic_time() < p->end)
         return true;
-    if (!p->asked)
+    if (!p->asked) {
         p->asked = g_get_monotonic_time();
+        p->cpu = cpu_seconds();
+    }
     return false;
+}
+
+/* s from the end of patience to now. */
+static double seconds_since(const patience *p)
+{
+    return fmin(1e-6 * (double)(g_get_monotonic_time() - p->asked),
+                cpu_seconds() - p->cpu);
 }
 
 static void test_cancel_keeping(void)
@@ -182,7 +192,7 @@ static void test_cancel_keeping(void)
         const NephSaveOptions options = {.go_on = until, .go_on_data = &p};
         g_assert_false(neph_photons_save(scene, settings, path, &options, &error));
         g_assert_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
-        best = fmin(best, 1e-6 * (double)(g_get_monotonic_time() - p.asked));
+        best = fmin(best, seconds_since(&p));
         g_assert_false(g_file_test(path, G_FILE_TEST_EXISTS));
     }
     g_test_message("%.1f ms", 1e3 * best);
@@ -213,7 +223,7 @@ static void test_cancel_denoising(void)
             if (!none)
                 g_assert_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
             g_assert_true(i > 0 || !none);
-            best = none ? 0.0 : 1e-6 * (double)(g_get_monotonic_time() - p.end);
+            best = none ? 0.0 : seconds_since(&p);
         }
         g_test_message("at %d of %d of %.2f s: %.1f ms", i, MOMENTS, 1e-6 * (double)took,
                        1e3 * best);
@@ -222,6 +232,77 @@ static void test_cancel_denoising(void)
     g_assert_cmpfloat(worst, <, soon);
     g_autoptr(NephImage) again = neph_render_image(render, NULL);
     assert_same(whole, again);
+}
+
+/* Writing a picture: the old file stays, and nothing is beside it. */
+static NephImage *noise(int width, int height)
+{
+    g_autofree float *rgb = g_new(float, 3 * (size_t)width * (size_t)height);
+    g_autoptr(GRand) random = g_rand_new_with_seed(19);
+    for (size_t i = 0; i < 3 * (size_t)width * (size_t)height; i++)
+        rgb[i] = (float)g_rand_double(random);
+    return neph_image_new(width, height, rgb, NULL);
+}
+
+static size_t n_files(void)
+{
+    g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
+    size_t n = 0;
+    while (g_dir_read_name(dir))
+        n++;
+    return n;
+}
+
+static void assert_file_is(const char *path, const char *bytes, size_t size)
+{
+    g_autofree char *found = NULL;
+    gsize n = 0;
+    g_assert_true(g_file_get_contents(path, &found, &n, NULL));
+    g_assert_cmpmem(found, n, bytes, size);
+}
+
+/* s from the asking to the end; 0: it was written before. */
+static double cancel_writing(const NephImage *image, const char *path, gint64 after)
+{
+    g_autoptr(GError) error = NULL;
+    patience p = {.end = g_get_monotonic_time() + after};
+    if (neph_image_write_while(image, path, 0.0f, until, &p, &error))
+        return 0.0;
+    g_assert_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
+    return seconds_since(&p);
+}
+
+static void test_cancel_writing(const void *ending)
+{
+    enum { WIDTH = 1600, HEIGHT = 1200 };
+    g_autofree char *name = g_strconcat("seen", (const char *)ending, NULL);
+    g_autofree char *path = g_build_filename(folder, name, NULL);
+    g_autoptr(NephImage) image = noise(WIDTH, HEIGHT);
+    g_autofree char *whole = NULL;
+    gsize size = 0;
+    gint64 start = g_get_monotonic_time();
+    g_assert_true(neph_image_write(image, path, 0.0f, NULL));
+    gint64 took = g_get_monotonic_time() - start;
+    g_assert_true(g_file_get_contents(path, &whole, &size, NULL));
+    size_t before = n_files();
+    double worst = 0.0;
+    for (int i = 0; i < MOMENTS; i++) {
+        g_assert_true(g_file_set_contents(path, "old", 3, NULL));
+        double best = INFINITY;
+        for (int k = 0; k < TRIES && best > soon; k++)
+            best = fmin(best, cancel_writing(image, path, took * i / MOMENTS));
+        g_assert_true(i > 0 || best > 0.0);
+        if (best > 0.0)
+            assert_file_is(path, "old", 3);
+        g_assert_cmpuint(n_files(), ==, before);
+        g_test_message("at %d of %d of %.2f s: %.1f ms", i, MOMENTS, 1e-6 * (double)took,
+                       1e3 * best);
+        worst = fmax(worst, best);
+    }
+    g_assert_cmpfloat(worst, <, soon);
+    patience enough = {.end = G_MAXINT64};
+    g_assert_true(neph_image_write_while(image, path, 0.0f, until, &enough, NULL));
+    assert_file_is(path, whole, size);
 }
 
 int main(int argc, char **argv)
@@ -243,6 +324,12 @@ int main(int argc, char **argv)
                          test_cancel);
     g_test_add_func("/api-threads/cancel/denoising", test_cancel_denoising);
     g_test_add_func("/api-threads/cancel/keeping", test_cancel_keeping);
+    static const char *const endings[] = {".exr", ".png", ".jpg", ".hdr", ".pfm"};
+    for (size_t i = 0; i < G_N_ELEMENTS(endings); i++) {
+        g_autofree char *name =
+            g_strconcat("/api-threads/cancel/writing/", endings[i] + 1, NULL);
+        g_test_add_data_func(name, endings[i], test_cancel_writing);
+    }
     int result = g_test_run();
     remove_folder();
     return result;

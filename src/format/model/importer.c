@@ -235,19 +235,12 @@ static bool make_room(heard *h, GError **error)
     return grown != NULL;
 }
 
-static bool is_cancelled(const cancel_flag *cancel)
-{
-    if (cancel && cancel->progress)
-        cancel->progress(cancel->progress_data);
-    return cancelled(cancel);
-}
-
 static stop listen_to(const child *c, heard *h, GError **error)
 {
     for (;;) {
         struct pollfd ready = {.fd = c->pipe, .events = POLLIN};
         int n = poll(&ready, 1, BEAT_MS);
-        if (is_cancelled(c->job->cancel))
+        if (cancel_beat(c->job->cancel))
             return STOP_CANCEL;
         if (g_get_monotonic_time() > c->deadline)
             return STOP_TIME;
