@@ -194,13 +194,19 @@ static facing facing_of(const gltf_data *d, float mu)
     return f;
 }
 
+static unsigned facet_lobe(const gltf_surface *s, ggx roughness)
+{
+    unsigned lobe = ggx_class(roughness) | LOBE_REFLECTION;
+    return s->is_followed ? lobe_followed(lobe) : lobe;
+}
+
 static unsigned layer_lobe(const gltf_surface *s, int layer)
 {
     switch (layer) {
     case LAYER_COAT:
-        return ggx_class(s->coat_roughness) | LOBE_REFLECTION;
+        return facet_lobe(s, s->coat_roughness);
     case LAYER_FACETS:
-        return ggx_class(s->roughness) | LOBE_REFLECTION;
+        return facet_lobe(s, s->roughness);
     case LAYER_PANE:
         return ggx_glass_class(s->roughness) | LOBE_TRANSMISSION;
     case LAYER_LEAF:

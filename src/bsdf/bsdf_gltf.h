@@ -19,6 +19,7 @@ typedef struct gltf_surface {
     float coat;         /**< 0..1 */
     ggx roughness;      /**< alpha_x along the grooves' normal */
     ggx coat_roughness; /**< round: alpha_x = alpha_y */
+    bool is_followed;   /**< facets and coat are GLOSSY however rough they are */
     float turn;         /**< from the frame's s to the axis of alpha_x, rad */
 } gltf_surface;
 

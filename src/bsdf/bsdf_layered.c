@@ -327,6 +327,8 @@ void bsdf_make_layered(bsdf *b, const coat_layers *from)
     c->lobes[FACE] = ggx_class(from->coat) | LOBE_REFLECTION;
     if (from->is_metal)
         c->lobes[CLEAR] = ggx_class(c->metal) | LOBE_REFLECTION;
+    for (int k = FACE; k <= CLEAR && from->is_followed; k++)
+        c->lobes[k] = lobe_followed(c->lobes[k]);
     if (!from->is_metal || !spectrum_is_black(from->albedo))
         c->lobes[CLOUDY] = LOBE_DIFFUSE | LOBE_REFLECTION;
     b->ops = &ops;

@@ -25,6 +25,12 @@ static inline unsigned ggx_class(ggx g)
     return maxf(g.alpha_x, g.alpha_y) < GLOSSY_ALPHA ? LOBE_GLOSSY : LOBE_DIFFUSE;
 }
 
+/** @brief The same lobe as one that is followed however wide it is. */
+static inline unsigned lobe_followed(unsigned lobe)
+{
+    return lobe & LOBE_DIFFUSE ? (lobe & ~(unsigned)LOBE_DIFFUSE) | LOBE_GLOSSY : lobe;
+}
+
 /** @brief The class of a lobe that passes light on: however rough, it is to be followed.
  * What comes through turns with the facets' slope, so that on glass that bends, light
  * gathered a little way off points elsewhere, and an estimate of it is far too bright. */
@@ -95,6 +101,7 @@ void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, float alpha,
  * the mean way between particles. */
 typedef struct coat_layers {
     bool is_metal;
+    bool is_followed; /**< what its faces reflect is GLOSSY however rough they are */
     spectrum metal_eta, metal_k; /**< of the metal, over vacuum */
     spectrum rho;                /**< of the diffuse base, 0..1 */
     spectrum albedo;             /**< of the particles, 0..1; 0: they only absorb */

@@ -69,7 +69,7 @@ bool material_casts_caustics(const material *m)
 
 bool material_is_conductor(const material *m)
 {
-    return m->kind->is_metal;
+    return m->kind->is_metal && m->kind->is_metal(m->self);
 }
 
 const struct medium *material_interior(const material *m)

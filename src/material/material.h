@@ -12,7 +12,7 @@
 typedef struct bsdf_options {
     bool deterministic; /**< multiple_samples off: rough is smooth, glass only refracts
                            (or reflects totally), coats are dropped */
-    bool metal_is_followed; /**< a conductor's lobe is GLOSSY however rough it is */
+    bool metal_is_followed; /**< metal's lobes are GLOSSY however rough */
     int least_walks;        /**< averaged where light walks at random between layers */
 } bsdf_options;
 
@@ -28,8 +28,8 @@ typedef struct material_kind {
     /** Lobe classes and sides that may occur anywhere on it: SPECULAR or GLOSSY ones cast
      *  caustics. */
     unsigned (*possible_lobes)(const void *self);
-    /** Bare metal. */
-    bool is_metal;
+    /** True if metal reflects at some place of it. May be NULL: nowhere. */
+    bool (*is_metal)(const void *self);
     /** What fills a solid made of it; NULL: none. May be NULL. */
     const struct medium *(*interior)(const void *self);
     /** True if its surfaces bound a body that refracts. May be NULL: they do not. */
@@ -64,7 +64,7 @@ unsigned material_possible_lobes(const material *m);
 /** @brief What fills a solid made of it; NULL: none. */
 const struct medium *material_interior(const material *m);
 
-/** @brief True of bare metal. */
+/** @brief True of metal, bare or lacquered. */
 bool material_is_conductor(const material *m);
 
 /** @brief True if light may leave a surface of it by a specular or glossy lobe. */

@@ -41,7 +41,7 @@ static void lacquered_bsdf(const void *self, const surface_hit *hit, const wavel
                            const bsdf_options *options, bsdf *out)
 {
     const lacquered *m = self;
-    coat_layers from = {.is_metal = true};
+    coat_layers from = {.is_metal = true, .is_followed = options->metal_is_followed};
     metal_input_eval(&m->index, hit, w, &from.metal_eta, &from.metal_k);
     if (options->deterministic) {
         bsdf_make_conductor(out, from.metal_eta, from.metal_k, (ggx){0.0f, 0.0f});
@@ -70,6 +70,12 @@ static unsigned lacquered_lobes(const void *self)
     return example.lobes;
 }
 
+static bool always_metal(const void *self)
+{
+    (void)self;
+    return true;
+}
+
 const material_kind material_coated_conductor = {
     .name = "coatedconductor",
     .parameters = "interface.roughness interface.uroughness interface.vroughness "
@@ -80,4 +86,5 @@ const material_kind material_coated_conductor = {
     .free = lacquered_free,
     .make_bsdf = lacquered_bsdf,
     .possible_lobes = lacquered_lobes,
+    .is_metal = always_metal,
 };

@@ -38,14 +38,20 @@ static void metal_bsdf(const void *self, const surface_hit *hit, const wavelengt
     if (!options->deterministic)
         roughness = roughness_input_eval(&m->roughness, hit);
     bsdf_make_conductor(out, eta, k, roughness);
-    if (options->metal_is_followed && (out->lobes & LOBE_DIFFUSE))
-        out->lobes = LOBE_GLOSSY | LOBE_REFLECTION;
+    if (options->metal_is_followed)
+        out->lobes = lobe_followed(out->lobes);
 }
 
 static unsigned metal_lobes(const void *self)
 {
     const metal *m = self;
     return roughness_input_classes(&m->roughness) | LOBE_REFLECTION;
+}
+
+static bool always_metal(const void *self)
+{
+    (void)self;
+    return true;
 }
 
 const material_kind material_conductor = {
@@ -55,5 +61,5 @@ const material_kind material_conductor = {
     .free = metal_free,
     .make_bsdf = metal_bsdf,
     .possible_lobes = metal_lobes,
-    .is_metal = true,
+    .is_metal = always_metal,
 };

@@ -191,6 +191,11 @@ static bool is_matt(const gltf_surface *s)
            spectrum_is_black(s->through) && spectrum_is_black(s->leaf);
 }
 
+static bool is_mostly_metal(float metallic)
+{
+    return metallic > 0.5f;
+}
+
 /* One deterministic path: the mirror of a metal, through glass, or the matt part. */
 static void make_plainest(const gltf_material *m, const gltf_point *at, bsdf *out)
 {
@@ -198,7 +203,7 @@ static void make_plainest(const gltf_material *m, const gltf_point *at, bsdf *ou
         bsdf_make_clear(out);
     else if (at->transmission > 0.5f)
         bsdf_make_refractor(out, at->eta, !curve_is_constant(m->eta));
-    else if (at->metallic > 0.5f)
+    else if (is_mostly_metal(at->metallic))
         bsdf_make_gltf(out, &(gltf_surface){.f0 = at->base, .f90 = 1.0f});
     else
         bsdf_make_diffuse(out, at->base);
@@ -231,6 +236,7 @@ static void gltf_bsdf(const void *self, const surface_hit *hit, const wavelength
         return;
     }
     gltf_surface surface = surface_of(m, hit, w, &at);
+    surface.is_followed = options->metal_is_followed && is_mostly_metal(at.metallic);
     if (is_matt(&surface))
         bsdf_make_diffuse(out, surface.diffuse);
     else
@@ -287,6 +293,12 @@ static unsigned gltf_lobes(const void *self)
     return lobes;
 }
 
+static bool gltf_is_metal(const void *self)
+{
+    const gltf_material *m = self;
+    return m->metallic.texture || is_mostly_metal(m->metallic.constant);
+}
+
 static const medium *gltf_interior(const void *self)
 {
     const gltf_material *m = self;
@@ -309,6 +321,7 @@ const material_kind material_gltf = {
     .free = gltf_free,
     .make_bsdf = gltf_bsdf,
     .possible_lobes = gltf_lobes,
+    .is_metal = gltf_is_metal,
     .interior = gltf_interior,
     .encloses = gltf_encloses,
 };

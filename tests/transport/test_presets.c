@@ -184,6 +184,33 @@ static void test_one_map(void)
 
 /* ---- Where photons are stored ---- */
 
+/* Rough metal under lacquer or from a glTF file is metal as well. */
+static void test_other_metals(void)
+{
+    static const char *const metals[] = {
+        "\"coatedconductor\" \"float conductor.roughness\" .5 \"float "
+        "interface.roughness\" .5",
+        "\"gltf\" \"float metallic\" 1 \"float roughness\" .8",
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(metals); i++) {
+        g_autofree char *text =
+            g_strconcat(ROOM SECOND_LAMP MIRROR "AttributeBegin Material ", metals[i],
+                        " Translate .7 -.2 .45 Shape \"sphere\" \"float radius\" .4 "
+                        "AttributeEnd\n",
+                        NULL);
+        g_autoptr(view) v = view_of(text);
+        g_autoptr(render_photons) of_000 = photons_of(v, "000", "photons=30000");
+        g_autoptr(render_photons) of_002 = photons_of(
+            v, "002",
+            "direct_photons=10000 indirect_photons=10000 caustic_photons=10000");
+        g_autoptr(render_photons) of_003 = photons_of(v, "003", "photons=30000");
+        g_test_message("%s", metals[i]);
+        g_assert_cmpuint(n_on_rough(of_000), >, 100);
+        g_assert_cmpuint(n_on_rough(of_002), ==, 0);
+        g_assert_cmpuint(n_on_rough(of_003), ==, 0);
+    }
+}
+
 static void test_lobes(void)
 {
     static const char few[] = "photons=30000 direct_photons=10000 "
@@ -310,6 +337,7 @@ int main(int argc, char **argv)
     g_test_add_func("/presets/one-radius", test_one_radius);
     g_test_add_func("/presets/one-map", test_one_map);
     g_test_add_func("/presets/lobes", test_lobes);
+    g_test_add_func("/presets/other-metals", test_other_metals);
     g_test_add_func("/presets/by-light", test_by_light);
     g_test_add_func("/presets/survivors", test_survivors);
     g_test_add_func("/presets/pictures", test_pictures);
