@@ -4,12 +4,15 @@
 usage: tools/experiments.py PROGRAM FOLDER [--quick] [EXPERIMENT...]
 
 Writes docs/report/figures/*.jpg and *.svg and docs/report/results.md, from renders that are kept in
-FOLDER; with --quick smaller ones, to FOLDER/report instead. Every figure in the text is taken from
-the renders: nothing is typed in.
+FOLDER; with --quick smaller ones, to FOLDER/report instead. Where EXPERIMENTs are named, only their
+sections are made anew. Every figure in the text is taken from the renders: nothing is typed in.
+Times are seconds of all processors together, so that a busy machine finds what a quiet one does.
 """
 import argparse
 import array
+import math
 import pathlib
+import re
 import subprocess
 
 import cornell
@@ -19,7 +22,8 @@ from renders import ROOT, Kept
 WATER, BOX, RING = ("scenes/water-box/water-box.pbrt", "scenes/point-light/point-light.pbrt",
                     "scenes/cardioid/cardioid.pbrt")
 CORNER, BALLS = "scenes/corner/corner.pbrt", "scenes/spheres/spheres.pbrt"
-CLASSIC = ["--integrator", "photonmap", "--passes", "1", "--spp", "4", "--set", "alpha=1"]
+RAW = ["--denoise", "off"]
+CLASSIC = [*RAW, "--integrator", "photonmap", "--passes", "1", "--spp", "4", "--set", "alpha=1"]
 ALL_BY_PHOTONS = [*CLASSIC, "--set", "direct_illumination=false"]
 EXPERIMENTS = []
 
@@ -52,9 +56,9 @@ class Report:
     def say(self, *lines):
         self.lines += [*lines, ""]
 
-    def sheet(self, name, images, columns, caption, exposure=None):
+    def sheet(self, name, images, columns, caption):
         out = self.folder / "figures" / f"{name}.jpg"
-        self.kept.picture(images, out, columns=columns, exposure=exposure)
+        self.kept.picture(images, out, columns=columns)
         self.say(f"![{caption}](figures/{name}.jpg)", f"*{caption}*")
 
     def plot(self, name, series, x, y, caption):
@@ -72,22 +76,23 @@ class Report:
 @experiment
 def emitted(r):
     """Photons emitted"""
-    counts = [1000, 10000, 100000] if r.quick else [1000, 10000, 100000, 1000000]
-    images = [r.kept.render("emitted", WATER, *ALL_BY_PHOTONS, "--spp", 1, *r.size(400, 320),
-                            *setting("photons", 3 * n), *for_each_class("nearest", max(2, n // 1000)))
+    counts = [10 ** e for e in range(3, 6 if r.quick else 8)]
+    images = [r.kept.render("emitted", WATER, *ALL_BY_PHOTONS, "--spp", 1, *r.size(240, 192),
+                            *setting("photons", n),
+                            *for_each_class("nearest", min(max(2, n // 3000), 500)))
               for n in counts]
-    r.say("Each class of photons is emitted a thousand times and more, tenfold from picture to "
-          "picture, and each estimate takes the nearest thousandth of them: the pictures differ in sharpness, not "
-          "in grain.")
-    r.sheet("emitted", images, 2, "Water in a box by " + ", ".join(f"{n:,}" for n in counts)
-            + " photons a class")
+    r.say("A third of the photons for each class, tenfold from picture to picture, and each estimate "
+          "takes the nearest thousandth of its class, at most 500: the pictures differ in sharpness, not in "
+          "grain.")
+    r.sheet("emitted", images, 3, "Water in a box by " + ", ".join(f"{n:,}" for n in counts)
+            + " photons")
 
 
 @experiment
 def nearest(r):
     """Photons in an estimate"""
     counts = [10, 100, 1000] if r.quick else [10, 100, 1000, 10000]
-    images = [r.kept.render("nearest", WATER, *ALL_BY_PHOTONS, "--spp", 1, *r.size(400, 320),
+    images = [r.kept.render("nearest", WATER, *ALL_BY_PHOTONS, "--spp", 1, *r.size(240, 192),
                             *setting("photons", 600000), *for_each_class("nearest", n))
               for n in counts]
     r.say("With 200,000 photons a class, the nearest ten make an estimate, or more, tenfold from "
@@ -118,12 +123,12 @@ def kernels(r):
 def radius(r):
     """The radius, and the bias it brings"""
     radii = [0.01, 0.03, 0.1, 0.3] if r.quick else [0.01, 0.02, 0.04, 0.08, 0.16, 0.32]
-    fixed = [*ALL_BY_PHOTONS, *r.size(280, 210), *setting("photons", 400000)]
+    fixed = [*ALL_BY_PHOTONS, "--spp", 1, *r.size(200, 150), *setting("photons", 100000)]
     images = [r.kept.render("radius", CORNER, *fixed, *setting("radius", x),
                             *setting("edges", "false")) for x in radii]
     with_edges = [r.kept.render("radius", CORNER, *fixed, *setting("radius", x)) for x in radii]
-    truth = r.kept.render("radius-truth", CORNER, *r.size(280, 210), "--integrator", "path",
-                          "--passes", 16 if r.quick else 64, "--spp", 16)
+    truth = r.kept.render("radius-truth", CORNER, *r.size(200, 150), "--integrator", "path",
+                          "--passes", 16, "--spp", 16)
     r.say("A wall of 4 mm parts a bright room from a dark one. As the radius grows, light comes "
           "through the wall, round the corners, and the shadow's edge goes soft: all of it is "
           "bias, and none of it goes away with more photons.")
@@ -131,17 +136,22 @@ def radius(r):
     r.sheet("radius", [images[i] for i in shown] + [with_edges[i] for i in shown], 3,
             "Radius " + ", ".join(f"{radii[i]:g} m" for i in shown)
             + "; above without, below with what keeps estimates from reaching round edges")
-    r.plot("radius-error", [("all photons within the radius", radii,
-                             [r.relmse(i, truth) for i in images]),
-                            ("edges probed", radii, [r.relmse(i, truth) for i in with_edges])],
+    many = [r.kept.render("radius", CORNER, *fixed, *setting("radius", x), "--passes",
+                          8) for x in radii]
+    errors = [[r.relmse(i, truth) for i in row] for row in (images, with_edges, many)]
+    r.plot("radius-error", [("as found", radii, errors[0]), ("edges probed", radii, errors[1]),
+                            ("probed, many passes", radii, errors[2])],
            "radius, m", "relMSE", "Error against radius: grain on the left, bias on the right")
+    r.say("What is left after so many passes of the same radius that grain hardly counts is the bias:")
+    r.table(["radius, m", "one pass", "one pass, edges probed", "many passes, edges probed"],
+            [(f"{x:g}", *[f"{row[i]:.4f}" for row in errors]) for i, x in enumerate(radii)])
 
 
 @experiment
 def gather_rays(r):
     """Final gathering"""
-    counts = [1, 8, 64] if r.quick else [1, 8, 64, 256]
-    base = [*CLASSIC, *r.size(320, 320), *setting("photons", 200000)]
+    counts = [1, 8, 64]
+    base = [*CLASSIC, *r.size(240, 240), *setting("photons", 200000)]
     plain = r.kept.render("gather", BALLS, *base)
     images = [r.kept.render("gather", BALLS, *base, *setting("final_gather", "true"),
                             *setting("gather_rays", n)) for n in counts]
@@ -203,7 +213,7 @@ def bsdfs(r):
 @experiment
 def failures(r):
     """Two failures worth seeing"""
-    right, wrong = [r.kept.render("bubble", scene, *r.size(320, 240), "--time", 6 if r.quick else 20)
+    right, wrong = [r.kept.render("bubble", scene, *r.size(320, 240), processor=8 if r.quick else 20)
                     for scene in ("scenes/egg/egg.pbrt", "docs/report/bubble.pbrt")]
     r.say("A surface whose normals point inward makes glass a bubble of air in an endless block of "
           "glass: the egg's own shadow has no light in it. It looks nearly right.")
@@ -217,11 +227,81 @@ def failures(r):
 @experiment
 def classes(r):
     """Each map alone"""
-    base = [*ALL_BY_PHOTONS, *r.size(320, 320), *setting("photons", 450000)]
-    image = r.kept.render("classes", BALLS, *base)
-    layers = [r.kept.layer(image, name) for name in ("direct", "indirect", "caustic")]
-    r.say("Direct light, indirect light and caustics, each from its own map, and their sum.")
-    r.sheet("classes", [*layers, image], 4, "The direct, the indirect and the caustic map; all")
+    size = r.size(200, 200)
+    kinds = ("direct", "indirect", "caustic")
+    few = ["--preset", "002", *for_each_class("photons", 6000)]
+    drawn = [r.kept.photons(BALLS, *size, *few, "--class", c) for c in kinds]
+    drawn.append(r.kept.photons(BALLS, *size, *few))
+    image = r.kept.render("classes", BALLS, *ALL_BY_PHOTONS, *size, *setting("photons", 450000))
+    r.say("The photons of each map and of all, 6,000 a map; below, what 150,000 a map make of direct "
+          "light, indirect light and caustics, and their sum.")
+    r.sheet("classes", [*drawn, *[r.kept.layer(image, c) for c in kinds], image], 4,
+            "The direct, the indirect and the caustic map; all")
+
+
+@experiment
+def few(r):
+    """Few photons, one by one"""
+    size = r.size(320, 320)
+    drawn = [r.kept.photons(BOX, *size, "--preset", "003", *setting("photons", n))
+             for n in (5000, 50000)]
+    r.say("A point light in a box, by `--preset 003`: photons that do not bounce, half of which survive "
+          "the roulette and are stored, in a list that is gone through.")
+    r.sheet("few-photons", drawn, 2, "5,000 and 50,000 photons over the wireframe, coloured by their power")
+    counts = (100, 1000, 10000)
+    images = [r.kept.render("few", BOX, "--preset", "003", *RAW, *size, "--spp", 1,
+                            *setting("photons", n), *setting("radius", x))
+              for n, x in zip(counts, (0.25, 0.15, 0.08))]
+    r.sheet("few", images, 3, "100, 1,000 and 10,000 photons emitted")
+    r.table(["photons", "stored", "trace, s", "camera, s"],
+            [(f"{n:,}", f"{sum(c['stored'] for c in said['photons'].values()):,}",
+              f"{said['time']['trace']:.4f}", f"{said['time']['camera']:.3f}")
+             for n, said in zip(counts, map(r.kept.statistics, images))])
+
+
+@experiment
+def beside(r):
+    """Photon maps beside paths"""
+    seconds = 4 if r.quick else 12
+    r.say("Two scenes for the same time, with photon maps of shrinking radius and with paths from the "
+          "eye (Monte Carlo), as rendered. A small lamp behind water or glass is found by chance alone.")
+    for name, scene, width, height in (("beside-water", WATER, 400, 320), ("beside-balls", BALLS, 320, 320)):
+        images = [r.kept.render(name, scene, *RAW, *r.size(width, height), "--integrator", integrator,
+                                processor=seconds) for integrator in ("sppm", "path")]
+        r.sheet(name, images, 2, f"Photon maps and paths, {seconds} s each")
+
+
+@experiment
+def where_time_goes(r):
+    """Where the time goes"""
+    rows = []
+    for scene, width, height in ((BALLS, 320, 320), (WATER, 400, 320), (RING, 320, 320),
+                                 ("scenes/cornell-box/cornell-box.pbrt", 320, 320)):
+        image = r.kept.render("parts", scene, *RAW, *r.size(width, height), "--integrator", "photonmap",
+                              "--passes", 2, *setting("photons", 400000))
+        said = r.kept.statistics(image)["time"]
+        parts = [said[k] for k in ("trace", "build", "gather")] + [said["camera"] - said["gather"]]
+        rows.append([pathlib.Path(scene).stem, *[f"{100.0 * p / sum(parts):.0f} %" for p in parts]])
+    r.say("The shares of a render's time, 400,000 photons a pass and four samples a pixel: photons sent "
+          "forward, sorted into maps, gathered into estimates, and all else that the camera's paths take, "
+          "tracing above all.")
+    r.table(["scene", "photons traced", "maps built", "estimates", "camera's paths without them"], rows)
+
+
+@experiment
+def budget(r):
+    """What to spend a second on"""
+    counts = [1000, 10000, 100000] if r.quick else [1000, 10000, 100000, 1000000]
+    seconds, size = 4 if r.quick else 8, r.size(256, 256)
+    truth = truth_of_balls(r)
+    rows = []
+    for n in counts:
+        image = r.kept.render("budget", BALLS, *RAW, *size, "--integrator", "sppm", "--spp", 1,
+                              *setting("photons", n), processor=seconds)
+        rows.append((f"{n:,}", r.kept.statistics(image)["passes"], f"{r.relmse(image, truth):.4f}"))
+    r.say(f"{seconds} s of sppm each: many passes of few photons, or few passes of many. Photons are cheaper "
+          "than camera rays with their estimates, up to where a pass is nothing but photons.")
+    r.table(["photons a pass", "passes", "relMSE"], rows)
 
 
 def pixels(path):
@@ -231,6 +311,65 @@ def pixels(path):
         width, height = map(int, file.readline().split())
         assert float(file.readline()) < 0
         return width, height, array.array("f", file.read())
+
+
+def cardioid(t):
+    """What a unit circle's reflections of a lamp at (-1, 0) touch, cusp at t = 0."""
+    return (2.0 * math.cos(t) - math.cos(2.0 * t)) / 3.0, (2.0 * math.sin(t) - math.sin(2.0 * t)) / 3.0
+
+
+def nephroid(t):
+    """The same for parallel light along +x."""
+    return 0.75 * math.cos(t) - 0.25 * math.cos(3.0 * t), 0.75 * math.sin(t) - 0.25 * math.sin(3.0 * t)
+
+
+def on_curve(curve, y):
+    """x where a curve whose y grows with t from 0 to a quarter turn has this y."""
+    low, high = 0.0, 0.5 * math.pi
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if curve(middle)[1] < y else (low, middle)
+    return curve(low)[0]
+
+
+def brightest(image, row, first, last):
+    width, _, values = image
+    return max(range(first, last), key=lambda x: values[3 * (row * width + x) + 1])
+
+
+def off_curve(image, curve, radius):
+    """How far, in pixels, the brightest point of each row is from where the curve crosses it."""
+    width, height, _ = image
+    off = []
+    for row in range(height):
+        y = abs(row + 0.5 - 0.5 * height) / radius
+        if 0.15 < y < 0.6:
+            wall = 0.92 * math.sqrt(1.0 - y * y)
+            found = brightest(image, row, width // 2, int(width / 2 + wall * radius))
+            off.append(abs(found + 0.5 - 0.5 * width - radius * on_curve(curve, y)))
+    return sorted(off)
+
+
+@experiment
+def curves(r):
+    """The curves, against their closed forms"""
+    across, half = 400, 0.11  # pixels, and metres from the middle to the edge of the picture
+    radius = 0.1 / half * 0.5 * across
+    rows, images = [], []
+    for name, curve in (("cardioid", cardioid), ("nephroid", nephroid)):
+        image = r.kept.render(f"above-{name}", f"docs/report/above-{name}.pbrt", *RAW, "--size",
+                              f"{across}x{across}", "--integrator", "photonmap",
+                              *setting("caustic_photons", 300000), *setting("radius", 0.0006),
+                              *setting("alpha", 1), processor=6 if r.quick else 20)
+        off = off_curve(pixels(r.kept.layer(image, "caustic", "pfm")), curve, radius)
+        rows.append((name, len(off), f"{off[len(off) // 2]:.1f}", f"{off[int(0.9 * len(off))]:.1f}"))
+        images.append(image)
+    r.say("Rays that a circle reflects touch a cardioid where the lamp stands on the circle, with its cusp a "
+          "third of the radius behind the middle, and a nephroid where light is parallel, with its cusp at one "
+          "half. A low ring of silver from straight above, 182 pixels in radius; in each row of pixels the "
+          "brightest, and where the curve crosses the row:")
+    r.sheet("curves", images, 2, "The cardioid and the nephroid, from above")
+    r.table(["curve", "rows", "pixels off: median", "nine in ten below"], rows)
 
 
 def patch(image, paint, place, normal):
@@ -251,7 +390,7 @@ def patch(image, paint, place, normal):
 def measured(r):
     """The Cornell box as it was measured"""
     image = r.kept.render("measured", "scenes/cornell-box/cornell-box.pbrt", "--integrator", "path",
-                          "--size", "256x256", "--passes", 4 if r.quick else 16, "--spp", 32)
+                          "--size", "256x256", "--passes", 4 if r.quick else 8, "--spp", 32)
     direct = pixels(r.kept.layer(image, "direct", "pfm"))
     paints = {name: cornell.paint_xyz(name) for name in cornell.PAINTS}
     rows, off, off_xy = [], 0.0, 0.0
@@ -278,37 +417,54 @@ def window(r):
           "![Photons in the window](../images/view-photons.png)")
 
 
+def truth_of_balls(r):
+    return r.kept.render("truth", BALLS, *r.size(256, 256), "--integrator", "vcm",
+                         processor=60 if r.quick else 150)
+
+
 @experiment
 def convergence(r):
     """Error against time"""
-    times = [1, 2, 4] if r.quick else [2, 4, 8, 16, 32]
+    times = [1, 2, 4] if r.quick else [1, 2, 4, 8]
     size = r.size(256, 256)
-    truth = r.kept.render("truth", BALLS, *size, "--integrator", "vcm", "--time",
-                          30 if r.quick else 600)
+    truth = truth_of_balls(r)
     series = []
     for integrator in ("path", "photonmap", "sppm", "vcm", "auto"):
         images = [r.kept.render(f"time-{integrator}", BALLS, *size, "--integrator", integrator,
-                                "--time", t) for t in times]
-        series.append((integrator, times, [r.relmse(i, truth) for i in images]))
-    r.say("Two balls in a box, rough metal and glass, by each integrator for the same time, "
-          "against vcm for much longer.")
+                                "--spp", 1, processor=t) for t in times]
+        series.append((integrator, [r.kept.statistics(i)["processor"] for i in images],
+                       [r.relmse(i, truth) for i in images]))
+    r.say("Two balls in a box, rough metal and glass, by each integrator for about the same time, as "
+          "rendered, against vcm for much longer.")
     r.plot("convergence", series, "seconds", "relMSE", "Error against time")
-    r.table(["seconds", *[s[0] for s in series]],
+    r.table(["seconds, about", *[s[0] for s in series]],
             [[t, *[f"{s[2][i]:.4f}" for s in series]] for i, t in enumerate(times)])
+
+
+def sections(path):
+    """Those of a page that is there already, by their titles."""
+    if not path.exists():
+        return {}
+    parts = re.split(r"^(?=## )", path.read_text(), flags=re.M)[1:]
+    return {part.split("\n")[0][3:]: part.rstrip("\n").split("\n") + [""] for part in parts}
 
 
 def write(r, asked):
     quick = " --quick" if r.quick else ""
     lines = ["# Results", "", f"Made by `tools/experiments.py{quick}` (`./dev gallery{quick}`): every",
              "number and picture below is from its renders.", ""]
-    for run in EXPERIMENTS:
+    page = r.folder / "results.md"
+    there = sections(page) if asked else {}
+    for i, run in enumerate(EXPERIMENTS):
         if asked and run.__name__ not in asked:
+            lines += there.get(run.__doc__, [])
             continue
+        print(f"experiment {i + 1} of {len(EXPERIMENTS)}: {run.__doc__}", flush=True)
         r.lines = []
         r.say(f"## {run.__doc__}")
         run(r)
         lines += r.lines
-    (r.folder / "results.md").write_text("\n".join(lines))
+    page.write_text("\n".join(lines))
 
 
 def main():
@@ -318,8 +474,7 @@ def main():
     parser.add_argument("experiments", nargs="*")
     parser.add_argument("--quick", action="store_true")
     asked = parser.parse_intermixed_args()
-    is_draft = asked.quick or asked.experiments
-    folder = asked.folder / "report" if is_draft else ROOT / "docs/report"
+    folder = asked.folder / "report" if asked.quick else ROOT / "docs/report"
     subprocess.run([ROOT / "tools/illustrations.py", folder / "figures"], check=True)
     write(Report(Kept(asked.program, asked.folder), folder, asked.quick), asked.experiments)
     print(folder / "results.md")

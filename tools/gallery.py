@@ -4,10 +4,10 @@
 usage: tools/gallery.py PROGRAM FOLDER [--quick] [--seconds S] [SCENE...]
 
 Each scenes/*/*.pbrt with a WorldBegin is rendered as the program does it without being told
-anything but the time, S seconds (60; 10 if quick, at half the size), and written to FOLDER as
-EXR and JPEG. A run that was stopped goes on where it was. FOLDER/index.html shows all, with
-settings, times and statistics; without --quick and SCENE, so do docs/gallery.md and the pictures
-beside the scenes.
+anything but the time, and written to FOLDER as EXR and JPEG: S seconds of all processors together
+(150), or if quick 10 by the clock at half the size. A run that was stopped goes on where it was.
+FOLDER/index.html shows all, with settings, times and statistics; without --quick so do
+docs/gallery.md and the pictures beside the scenes, of the SCENEs alone where some are named.
 """
 import argparse
 import html
@@ -17,8 +17,6 @@ import shutil
 import sys
 
 from renders import ROOT, Kept
-
-MOST_BYTES = 400000  # of a picture in the repository
 
 
 def arguments():
@@ -67,10 +65,12 @@ def film_size(path):
     return int(width[1]), int(height[1])
 
 
-def options_for(path, quick, seconds):
+def render(kept, path, quick, seconds):
     width, height = film_size(path)
-    scale = 2 if quick else 1
-    return ["--size", f"{width // scale}x{height // scale}", "--time", f"{seconds:g}"]
+    if quick:
+        return kept.render(path.stem, path, "--size", f"{width // 2}x{height // 2}", "--time",
+                           f"{seconds or 10:g}")
+    return kept.render(path.stem, path, processor=seconds or 150)
 
 
 def first_sentences(path):
@@ -87,7 +87,8 @@ def first_sentences(path):
 def figures(kept, exr):
     """What the statistics say, in a few words."""
     stats = kept.statistics(exr)
-    return f"{stats['passes'] + stats.get('part', 0):.3g} passes, {stats['time']['total']:.0f} s"
+    return (f"{stats['passes'] + stats.get('part', 0):.3g} passes, {stats['processor']:.0f} s of "
+            "one processor")
 
 
 def page(kept, made):
@@ -103,21 +104,31 @@ def page(kept, made):
             + "\n".join(rows) + "\n")
 
 
+def section(kept, path, exr):
+    picture = path.relative_to(ROOT).with_suffix(".jpg")
+    return "\n".join([f"## {path.stem}", "", first_sentences(path), "",
+                      f"![{path.stem}](../{picture})", "",
+                      f"[`{path.relative_to(ROOT)}`](../{path.relative_to(ROOT)}), "
+                      f"{figures(kept, exr)}.", ""])
+
+
 def write_document(kept, made):
-    lines = ["# Gallery", "",
-             "Each picture is what the program makes of its scene without being told anything but",
-             "the time. Made by `./dev gallery`.", ""]
+    """Sections of what was made, in place of those that were there; others stay."""
+    document = ROOT / "docs/gallery.md"
+    sections = {}
+    if document.exists():
+        for part in re.split(r"^(?=## )", document.read_text(), flags=re.M)[1:]:
+            sections[re.search(r"`(scenes/.*?)`", part)[1]] = part.rstrip() + "\n"
     for path, exr in made:
-        lines += [f"## {path.stem}", "", first_sentences(path), "",
-                  f"![{path.stem}](../{path.relative_to(ROOT).with_suffix('.jpg')})", "",
-                  f"[`{path.relative_to(ROOT)}`](../{path.relative_to(ROOT)}), {figures(kept, exr)}.",
-                  ""]
-    (ROOT / "docs/gallery.md").write_text("\n".join(lines))
+        sections[str(path.relative_to(ROOT))] = section(kept, path, exr)
+    there = [text for scene, text in sorted(sections.items()) if (ROOT / scene).exists()]
+    document.write_text("\n".join([
+        "# Gallery", "", "Each picture is what the program makes of its scene without being told "
+        "anything but", "the time. Made by `./dev gallery`.", "", *there]))
 
 
 def main():
     asked = arguments()
-    seconds = asked.seconds or (10 if asked.quick else 60)
     kept = Kept(asked.program, asked.folder)
     scenes = [p for p in all_scenes() if not asked.scenes or p.stem in asked.scenes]
     if not scenes:
@@ -125,15 +136,13 @@ def main():
     made = []
     for i, path in enumerate(scenes):
         print(f"{i + 1} of {len(scenes)}", file=sys.stderr)
-        exr = kept.render(path.stem, path, *options_for(path, asked.quick, seconds))
+        exr = render(kept, path, asked.quick, asked.seconds)
         kept.picture([exr], asked.folder / f"{path.stem}.jpg")
         made.append((path, exr))
     (asked.folder / "index.html").write_text(page(kept, made))
-    if not asked.quick and not asked.scenes:
+    if not asked.quick:
         for path, _ in made:
             picture = asked.folder / f"{path.stem}.jpg"
-            if picture.stat().st_size > MOST_BYTES:
-                sys.exit(f"gallery: {picture} is too large to keep")
             shutil.copy(picture, path.with_suffix(".jpg"))
         write_document(kept, made)
     print(asked.folder / "index.html")

@@ -345,8 +345,95 @@ def by_area():
     return d
 
 
-DRAWINGS = (photon_classes, two_passes, emission, roulette, gathering, kernels, kd_tree,
-            nearest_search, by_area)
+def signs():
+    """What the signs of the other drawings mean."""
+    d = Drawing(650, 150)
+    d.dot((30, 30), LIGHT, 9)
+    d.text((50, 35), "lamp")
+    d.polygon([(22, 62), (22, 78), (36, 70)], EYE, "#d8efe2")
+    d.text((50, 75), "eye, and rays from it")
+    d.circle((30, 112), 11, INK, "#eef6fb")
+    d.text((50, 117), "glass, mirror: specular")
+    for i, (colour, words) in enumerate(((DIRECT, "photon straight from a lamp"), (INDIRECT, "after a diffuse bounce"),
+                                         (CAUSTIC, "by way of glass or mirrors"))):
+        y = 30 + 41 * i
+        d.arrow((260, y), (305, y), colour)
+        d.dot((309, y), colour)
+        d.text((325, y + 5), words)
+    d.line((532, 45), (612, 45), INK, 2.5)
+    d.text((572, 65), "diffuse surface", "middle")
+    d.circle((572, 105), 20, EYE, "none", 1.2, "4 3")
+    d.text((572, 143), "reach of an estimate", "middle")
+    return d
+
+
+def shadow_rays():
+    """One ray to a point tells whether it is seen, an area takes several."""
+    d = Drawing(640, 240)
+    for x, size in ((20, 0), (330, 46)):
+        room(d, x, 20, 290, 190)
+        lamp, block = (x + 145, 45), (x + 160, 105, 70, 22)
+        d.polygon([(block[0], block[1]), (block[0] + block[2], block[1]),
+                   (block[0] + block[2], block[1] + block[3]), (block[0], block[1] + block[3])], INK, "#d9d4c7")
+        for px in (x + 60, x + 165, x + 235):
+            for k in range(-2, 3) if size else (0,):
+                to = (lamp[0] + k * size / 2, lamp[1])
+                step = lambda y: px + (to[0] - px) * (208 - y) / (208 - to[1])
+                stopped = any(block[0] < step(y) < block[0] + block[2] for y in (block[1], block[1] + block[3]))
+                d.arrow((px, 208), to, CAUSTIC if stopped else EYE, 1.2, "4 3" if stopped else None)
+            d.dot((px, 208))
+        if size:
+            d.line((lamp[0] - size, lamp[1]), (lamp[0] + size, lamp[1]), LIGHT, 6)
+        else:
+            d.dot(lamp, LIGHT, 9)
+    d.text((165, 230), "a point: seen or not", "middle")
+    d.text((475, 230), "an area: how much of it is seen", "middle")
+    return d
+
+
+def aimed():
+    """Photons for caustics are sent to where glass and metal are."""
+    d = Drawing(640, 230)
+    room(d, 20, 20, 600, 190)
+    lamp, balls = (320, 60), ((150, 165, 34), (500, 150, 42))
+    for x, y, radius in balls:
+        d.circle((x, y), radius, INK, "#eef6fb")
+        far, aim = math.dist(lamp, (x, y)), math.atan2(y - lamp[1], x - lamp[0])
+        for k in range(-3, 4):
+            angle = aim + k / 3.4 * math.asin(radius / far)
+            v = (math.cos(angle), math.sin(angle))
+            hit, _, _ = refract_ball((lamp[0] + 22 * v[0], lamp[1] + 22 * v[1]), v, (x, y), radius, 1.5)
+            d.arrow((lamp[0] + 22 * v[0], lamp[1] + 22 * v[1]), hit, CAUSTIC)
+    d.circle(lamp, 20, LIGHT, "#fff3cf", 2)
+    return d
+
+
+def reflection():
+    """Light from the whole hemisphere is reflected to one direction; a Lambertian surface sends it anywhere."""
+    d = Drawing(640, 220)
+    for x, title in ((165, "incoming light and one way out"), (475, "Lambert: alike in all directions")):
+        d.line((x - 130, 180), (x + 130, 180), INK, 2.5)
+        d.arrow((x, 180), (x, 50), INK, 1.2, "5 4")
+        d.text((x + 8, 58), "n")
+        d.text((x, 208), title, "middle")
+    arc = [(165 + 115 * math.cos(math.radians(a)), 180 - 115 * math.sin(math.radians(a))) for a in range(0, 181, 4)]
+    d.curve(arc, "#999", 1.2)
+    for a in (25, 62, 118, 150):
+        rim = (165 + 115 * math.cos(math.radians(a)), 180 - 115 * math.sin(math.radians(a)))
+        d.arrow(rim, (165 + 8 * math.cos(math.radians(a)), 180 - 8 * math.sin(math.radians(a))), DIRECT)
+    d.arrow((165, 180), (165 + 140 * math.cos(math.radians(42)), 180 - 140 * math.sin(math.radians(42))), EYE, 2.2)
+    d.text((275, 80), "v", colour=EYE)
+    d.text((60, 92), "L", colour=DIRECT)
+    d.arrow((375, 95), (470, 175), DIRECT)
+    for a in range(10, 171, 20):
+        length = 75
+        d.arrow((475, 180), (475 + length * math.cos(math.radians(a)), 180 - length * math.sin(math.radians(a))),
+                INDIRECT, 1.3)
+    return d
+
+
+DRAWINGS = (signs, photon_classes, two_passes, shadow_rays, emission, aimed, roulette, gathering, reflection,
+            kernels, kd_tree, nearest_search, by_area)
 
 
 def main():

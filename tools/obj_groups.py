@@ -3,80 +3,97 @@
 
 usage: tools/obj_groups.py FILE.obj FOLDER
 
-Writes FOLDER/GROUP.ply: positions, normals where the file has them, triangles (polygons as fans).
-Units and axes stay the file's. Prints each group and its number of triangles.
+Writes FOLDER/GROUP.ply: positions, normals, triangles (polygons as fans). Units and axes stay the
+file's. Its normals are not taken: where they are means over all faces at a point, edges of stone are
+shaded black. Ours are means over those faces at a point that meet at less than CREASE degrees.
+Prints each group and its number of triangles.
 """
+import math
 import pathlib
 import struct
 import sys
 
 
-class Group:
-    """Corners that have been met, in order, and triangles of them."""
-
-    def __init__(self):
-        self.corners = {}
-        self.triangles = []
-
-    def add(self, polygon):
-        numbers = [self.corners.setdefault(corner, len(self.corners)) for corner in polygon]
-        for i in range(1, len(numbers) - 1):
-            self.triangles.append((numbers[0], numbers[i], numbers[i + 1]))
+CREASE = 35.0
 
 
-def corner(word, n_positions, n_normals):
-    """(position, normal or None) from v, v/vt, v//vn or v/vt/vn; numbers may count from the end."""
-    parts = word.split("/")
-    position = int(parts[0])
-    position = position - 1 if position > 0 else n_positions + position
-    if len(parts) < 3 or not parts[2]:
-        return position, None
-    normal = int(parts[2])
-    return position, normal - 1 if normal > 0 else n_normals + normal
+def normal_of(a, b, c):
+    """Of a triangle, as long as twice its area."""
+    u, v = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
+    return (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+
+
+def unit(v):
+    length = math.sqrt(sum(x * x for x in v))
+    return tuple(x / length for x in v) if length > 0.0 else v
+
+
+def index(word, n_positions):
+    """Of the position of v, v/vt, v//vn or v/vt/vn; numbers may count from the end."""
+    number = int(word.split("/")[0])
+    return number - 1 if number > 0 else n_positions + number
 
 
 def read(path):
-    positions, normals, groups = [], [], {}
-    group = groups.setdefault("none", Group())
+    """Positions, and triangles by the groups' names."""
+    positions, groups = [], {}
+    group = groups.setdefault("none", [])
     for line in path.open(encoding="latin-1"):
         words = line.split()
         if not words:
             continue
         if words[0] == "v":
             positions.append(tuple(map(float, words[1:4])))
-        elif words[0] == "vn":
-            normals.append(tuple(map(float, words[1:4])))
         elif words[0] == "g":
-            group = groups.setdefault("_".join(words[1:]) or "none", Group())
+            group = groups.setdefault("_".join(words[1:]) or "none", [])
         elif words[0] == "f":
-            group.add([corner(w, len(positions), len(normals)) for w in words[1:]])
-    return positions, normals, {name: g for name, g in groups.items() if g.triangles}
+            polygon = [index(w, len(positions)) for w in words[1:]]
+            group += [(polygon[0], *polygon[i:i + 2]) for i in range(1, len(polygon) - 1)]
+    return positions, {name: g for name, g in groups.items() if g}
 
 
-def write(path, group, positions, normals):
-    has_normals = all(n is not None for _, n in group.corners)
-    names = ["x", "y", "z"] + (["nx", "ny", "nz"] if has_normals else [])
+def with_normals(triangles, positions):
+    """Corners (position, normal), each once, and triangles of their numbers."""
+    faces = [normal_of(*[positions[i] for i in t]) for t in triangles]
+    units = [unit(f) for f in faces]
+    around = {}
+    for face, triangle in enumerate(triangles):
+        for i in triangle:
+            around.setdefault(positions[i], []).append(face)
+    least = math.cos(math.radians(CREASE))
+    corners, numbered = {}, []
+    for face, triangle in enumerate(triangles):
+        numbers = []
+        for i in triangle:
+            near = [f for f in around[positions[i]]
+                    if sum(a * b for a, b in zip(units[f], units[face])) >= least]
+            normal = unit([sum(faces[f][k] for f in near) for k in range(3)])
+            numbers.append(corners.setdefault((positions[i], tuple(normal)), len(corners)))
+        numbered.append(numbers)
+    return corners, numbered
+
+
+def write(path, triangles, positions):
+    corners, triangles = with_normals(triangles, positions)
     with path.open("wb") as out:
-        head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(group.corners)}"]
-        head += [f"property float {name}" for name in names]
-        head += [f"element face {len(group.triangles)}", "property list uchar int vertex_indices",
+        head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(corners)}"]
+        head += [f"property float {name}" for name in ("x", "y", "z", "nx", "ny", "nz")]
+        head += [f"element face {len(triangles)}", "property list uchar int vertex_indices",
                  "end_header", ""]
         out.write("\n".join(head).encode())
-        for position, normal in group.corners:
-            out.write(struct.pack("<3f", *positions[position]))
-            if has_normals:
-                out.write(struct.pack("<3f", *normals[normal]))
-        for triangle in group.triangles:
+        for position, normal in corners:
+            out.write(struct.pack("<6f", *position, *normal))
+        for triangle in triangles:
             out.write(struct.pack("<B3i", 3, *triangle))
 
 
 def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
-    positions, normals, groups = read(pathlib.Path(sys.argv[1]))
-    for name, group in sorted(groups.items()):
-        write(pathlib.Path(sys.argv[2]) / f"{name}.ply", group, positions, normals)
-        print(f"{name:24} {len(group.triangles):7}")
+    positions, groups = read(pathlib.Path(sys.argv[1]))
+    for name, triangles in sorted(groups.items()):
+        write(pathlib.Path(sys.argv[2]) / f"{name}.ply", triangles, positions)
+        print(f"{name:24} {len(triangles):7}")
 
 
 if __name__ == "__main__":

@@ -1,11 +1,40 @@
 """Renders that are kept: what gallery.py and experiments.py ask for is made once and found again."""
 import hashlib
 import json
+import os
 import pathlib
+import signal
 import subprocess
 import sys
+import time
 
+MOST_BYTES = 400000  # of a picture in the repository
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def children_seconds():
+    """Processor time of the processes that were started and have ended."""
+    times = os.times()
+    return times.children_user + times.children_system
+
+
+def processor_seconds(process):
+    """That a process has taken so far, of all its threads."""
+    fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def render_for(words, seconds):
+    """A render that is told to end when it has had so many seconds of all processors together, so
+    that a busy machine makes the picture that a quiet one makes. Passes under way are lost."""
+    process = subprocess.Popen([*words, "--passes", "1000000"])
+    while process.poll() is None:
+        if processor_seconds(process) >= seconds:
+            process.send_signal(signal.SIGTERM)
+            seconds = float("inf")
+        time.sleep(0.1)
+    if process.returncode not in (0, 3):  # 3: ended when told to
+        sys.exit(f"{' '.join(map(str, words))}: {process.returncode}")
 
 
 class Kept:
@@ -26,25 +55,42 @@ class Kept:
         return self.folder / f"{name}-{key}.exr"
 
     def is_new(self, path, scene):
-        stats = path.with_suffix(".json")
-        if not path.exists() or not stats.exists():
-            return False
+        return (path.exists() and path.with_suffix(".json").exists()
+                and self.is_newer(path, scene))
+
+    def is_newer(self, path, scene):
         made = path.stat().st_mtime
         build = pathlib.Path(self.program).resolve().parent.parent
         causes = [pathlib.Path(self.program), *build.glob("libnephroid.so"),
                   *scene.parent.glob("*.pbrt")]
         return all(f.stat().st_mtime < made for f in causes)
 
-    def render(self, name, scene, *options):
-        """The EXR of a scene (a path from the project's root); its statistics lie beside it."""
+    def render(self, name, scene, *options, processor=None):
+        """The EXR of a scene (a path from the project's root); its statistics lie beside it, with
+        the processor seconds it took. processor: how many it may take."""
         scene, options = ROOT / scene, [str(o) for o in options]
-        path = self.path(name, scene, options)
+        path = self.path(name, scene, options + ([f"processor {processor:g}"] if processor else []))
         if not self.is_new(path, scene):
             print(f"render {name}: {scene.name} {' '.join(options)}", file=sys.stderr, flush=True)
             part = path.with_name(path.stem + "-part.exr")
-            self.run("render", scene, "-q", "-o", part, "--stats", path.with_suffix(".json"),
-                     *options)
+            stats, before = path.with_suffix(".json"), children_seconds()
+            words = ["render", str(scene), "-q", "-o", str(part), "--stats", str(stats), *options]
+            if processor:
+                render_for([self.program, *words], processor)
+            else:
+                self.run(*words)
+            said = json.loads(stats.read_text())
+            said["processor"] = children_seconds() - before
+            stats.write_text(json.dumps(said))
             part.rename(path)
+        return path
+
+    def photons(self, scene, *options):
+        """A picture of the photons of one pass over the wireframe."""
+        scene, options = ROOT / scene, [str(o) for o in options]
+        path = self.path(f"photons-{scene.stem}", scene, options).with_suffix(".png")
+        if not path.exists() or not self.is_newer(path, scene):
+            self.run("photons", scene, "-q", "-o", path, *options)
         return path
 
     def layer(self, path, name, kind="exr"):
@@ -69,3 +115,5 @@ class Kept:
         if exposure:
             words += ["--exposure", exposure]
         self.run("image", *sources, "-o", out, *words)
+        if pathlib.Path(out).stat().st_size > MOST_BYTES:
+            sys.exit(f"{out} is too large to keep")

@@ -226,7 +226,20 @@ def glass_block(size, depth, wall, ribs, height):
 
 
 def block_wall(n, pitch):
-    lines = ["# Made by tools/scene_geometry.py."]
+    lines = ["# Made by tools/scene_geometry.py.",
+             "Material \"diffuse\" \"rgb reflectance\" [0.55 0.53 0.50]"]
+    joint, high = 0.006, pitch * n
+
+    def bar(x, z, across, up):  # a joint of mortar, a little narrower than the wall
+        for y in (-0.036, 0.036):
+            p, q = (x - across, y, z - up), (x + across, y, z + up)
+            lines.append(f"Shape \"bilinearmesh\" \"point3 P\" [{p[0]:.4g} {y} {p[2]:.4g}  "
+                         f"{q[0]:.4g} {y} {p[2]:.4g}  {p[0]:.4g} {y} {q[2]:.4g}  "
+                         f"{q[0]:.4g} {y} {q[2]:.4g}]")
+
+    for k in range(n + 1):
+        bar(pitch * (k - 0.5 * n), 0.5 * high, joint, 0.5 * high)
+        bar(0.0, pitch * k, 0.5 * high, joint)
     for j in range(n):
         for i in range(n):
             x, z = pitch * (i - 0.5 * (n - 1)), pitch * (j + 0.5)
@@ -255,7 +268,7 @@ def chandelier():
             lines.append(f"  AttributeBegin Rotate {a:.5g} 0 0 1 Translate {radius:.4g} 0 0.012 "
                          "ObjectInstance \"candle\"")
             lines.append("    Translate 0 0 0.108 Scale 0.005 0.005 0.014 AreaLightSource "
-                         "\"diffuse\" \"blackbody L\" 2400 \"float scale\" 160 Material "
+                         "\"diffuse\" \"blackbody L\" 3400 \"float scale\" 260 Material "
                          "\"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"sphere\" AttributeEnd")
         for i in range(drops):
             a = 360.0 * i / drops
@@ -319,7 +332,7 @@ def files():
     yield "cognac", "cognac-shape", subdivided("What is in the glass.", *turned(COGNAC, 28))
     yield "water-box", "water-shape", subdivided(
         "Wavy water in a box of 1 m.",
-        *waves(0.52, 0.52, 40, 0.3, ripples(2, 8, 0.16, 0.40, 0.20)), 2)
+        *waves(0.52, 0.52, 52, 0.3, ripples(2, 9, 0.14, 0.30, 0.26)), 2)
     yield "pool", "water-shape", subdivided(
         "The water of a pool, 4 m by 6.",
         *waves(2.1, 3.1, 56, 0.0, ripples(5, 9, 0.35, 1.1, 0.16)), 2)

@@ -1,6 +1,8 @@
 -- Links of one Markdown file to another, where all are one page: to the other's title, or the
 -- heading that is named. What is not in the page keeps its words alone.
 local titles = {
+  front = "photon-mapping-the-report",
+  counterparts = "what-three-texts-show-and-what-stands-here-for-it",
   report = "why-it-is-right-five-proofs",
   results = "results",
   discussion = "discussion",

@@ -8,5 +8,5 @@ docs=$here/../../docs
 pandoc --from gfm+tex_math_dollars --to html5 --standalone --self-contained --mathml \
     --toc --toc-depth=2 --css "$here/page.css" --lua-filter "$here/links.lua" \
     --resource-path "$docs:$docs/report" --metadata pagetitle="Nephroid: the report" \
-    "$docs/report.md" "$docs/report/results.md" "$docs/report/discussion.md" \
-    "$docs/gallery.md" "$docs/journal.md"
+    "$docs/report/front.md" "$docs/report.md" "$docs/report/results.md" "$docs/report/discussion.md" \
+    "$docs/report/counterparts.md" "$docs/gallery.md" "$docs/journal.md"
