@@ -262,7 +262,7 @@ def few(r):
 @experiment
 def beside(r):
     """Photon maps beside paths"""
-    seconds = 4 if r.quick else 12
+    seconds = 4 if r.quick else 8
     r.say("Two scenes for the same time, with photon maps of shrinking radius and with paths from the "
           "eye (Monte Carlo), as rendered. A small lamp behind water or glass is found by chance alone.")
     for name, scene, width, height in (("beside-water", WATER, 400, 320), ("beside-balls", BALLS, 320, 320)):
@@ -451,8 +451,9 @@ def sections(path):
 
 def write(r, asked):
     quick = " --quick" if r.quick else ""
-    lines = ["# Results", "", f"Made by `tools/experiments.py{quick}` (`./dev gallery{quick}`): every",
-             "number and picture below is from its renders.", ""]
+    lines = ["# Results", "", f"Made by `tools/experiments.py{quick}` (`./dev gallery{quick}`), section by section: every",
+             "number and picture below is from its renders. Where pictures are small and few they are those of "
+             "`--quick`.", ""]
     page = r.folder / "results.md"
     there = sections(page) if asked else {}
     for i, run in enumerate(EXPERIMENTS):
