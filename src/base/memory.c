@@ -12,7 +12,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum { HUGE_ARRAY = 4 << 20 }; /* bytes, from which on huge pages are worth asking for */
+enum {
+    ALIGNMENT = 64,       /* bytes: a cache line */
+    HUGE_ARRAY = 4 << 20, /* bytes, from which on huge pages are worth asking for */
+};
 
 #define DEFAULT_SHARE 0.8
 
@@ -200,62 +203,83 @@ static void use_huge_pages(char *base, size_t bytes)
 
 /* From calloc, which knows which memory is zero already: a big array is then not touched
  * before it is used, nor by one thread only. Before the array stand how large it is and
- * where it begins. */
+ * where it begins; an odd place says that it is the system's. */
 typedef struct array_head {
     size_t bytes;
-    void *base;
+    uintptr_t base;
 } array_head;
+
+enum { IS_MAPPED = 1 };
 
 /* From the system where an array is large: of what malloc is given back it keeps pieces,
    which do not fit what comes next. A sanitizer watches what comes from malloc only. */
-static bool is_mapped(size_t bytes)
+static bool is_large(size_t bytes)
 {
 #ifdef SANITIZED
     return false && bytes;
 #else
-    enum { MAPPED_ARRAY = 1 << 20 };
-    return bytes >= MAPPED_ARRAY;
+    enum { LARGE_ARRAY = 1 << 17 }; /* as malloc has it, until it has met larger ones */
+    return bytes >= LARGE_ARRAY;
 #endif
 }
 
-static void *take(size_t bytes)
+static bool is_mapped(const array_head *head)
 {
-    if (!is_mapped(bytes))
-        return calloc(1, bytes);
-    void *base =
-        mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    return base == MAP_FAILED ? NULL : base;
+    return head->base & IS_MAPPED;
+}
+
+/* There may be so many pieces of the system's and no more. @return 0: no memory */
+static uintptr_t take(size_t bytes)
+{
+    void *base = MAP_FAILED;
+    if (is_large(bytes))
+        base =
+            mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (base != MAP_FAILED)
+        return (uintptr_t)base | IS_MAPPED;
+    return (uintptr_t)calloc(1, bytes);
 }
 
 static void give_back(const array_head *head)
 {
-    if (is_mapped(head->bytes))
-        munmap(head->base, head->bytes);
+    if (is_mapped(head))
+        munmap((void *)(head->base - IS_MAPPED), head->bytes);
     else
-        free(head->base);
+        free((void *)head->base);
+}
+
+/* Behind room for the head. */
+static void *array_of(const array_head *head)
+{
+    uintptr_t base = head->base & ~(uintptr_t)IS_MAPPED;
+    array_head *array = (array_head *)((base + ALIGNMENT) & ~(uintptr_t)(ALIGNMENT - 1));
+    array[-1] = *head;
+    return array;
+}
+
+/* With the head. */
+static size_t bytes_for(size_t bytes)
+{
+    return ((bytes + ALIGNMENT) & ~(size_t)(ALIGNMENT - 1)) + ALIGNMENT;
 }
 
 void *big_alloc(size_t n, size_t size, const char *what, GError **error)
 {
-    const size_t alignment = 64;
     size_t bytes = 0;
     bool fits = !__builtin_mul_overflow(n, size, &bytes) && bytes <= SIZE_MAX / 2;
-    size_t rounded = fits ? (bytes + alignment) & ~(alignment - 1) : SIZE_MAX / 2;
-    size_t total = rounded + alignment;
+    size_t total = bytes_for(fits ? bytes : SIZE_MAX / 2);
     if (!memory_reserve(total, what, error))
         return NULL;
-    char *base = must_fail() ? NULL : take(total);
-    if (!base) {
+    const array_head head = {total, must_fail() ? 0 : take(total)};
+    if (!head.base) {
         memory_release(total);
         refuse(total, what, error);
         return NULL;
     }
-    if (rounded >= HUGE_ARRAY)
-        use_huge_pages(base, rounded);
-    atomic_fetch_add(&in_arrays, is_mapped(total) ? 0 : total);
-    uintptr_t array = ((uintptr_t)base + alignment) & ~(uintptr_t)(alignment - 1);
-    ((array_head *)array)[-1] = (array_head){total, base};
-    return (void *)array;
+    if (total > HUGE_ARRAY)
+        use_huge_pages((char *)(head.base & ~(uintptr_t)IS_MAPPED), total - ALIGNMENT);
+    atomic_fetch_add(&in_arrays, is_mapped(&head) ? 0 : total);
+    return array_of(&head);
 }
 
 void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *what,
@@ -269,13 +293,33 @@ void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *w
     return grown;
 }
 
+/* Of what is the system's in whole pages, of malloc's by moving it. */
+void *big_fit(void *array, size_t n, size_t size)
+{
+    if (!array)
+        return NULL;
+    array_head *head = (array_head *)array - 1;
+    if (!is_mapped(head)) {
+        void *fit = big_grow(array, n, n, size, "", NULL);
+        return fit ? fit : array;
+    }
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), before = head->bytes;
+    size_t kept = (bytes_for(n * size) + page - 1) & ~(page - 1);
+    if (kept >= before ||
+        munmap((char *)(head->base - IS_MAPPED) + kept, before - kept) != 0)
+        return array;
+    memory_release(before - kept);
+    head->bytes = kept;
+    return array;
+}
+
 void big_free(void *array)
 {
     if (!array)
         return;
     const array_head head = ((array_head *)array)[-1];
     memory_release(head.bytes);
-    atomic_fetch_sub(&in_arrays, is_mapped(head.bytes) ? 0 : head.bytes);
+    atomic_fetch_sub(&in_arrays, is_mapped(&head) ? 0 : head.bytes);
     give_back(&head);
 }
 

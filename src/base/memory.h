@@ -28,6 +28,10 @@ void *big_alloc(size_t n, size_t size, const char *what, GError **error);
 void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *what,
                GError **error);
 
+/** @brief Gives back what is behind the first n elements. @return the array, which may
+ * have moved; NULL for NULL */
+void *big_fit(void *array, size_t n, size_t size);
+
 /** @brief Frees what big_alloc or big_grow gave; NULL is allowed. */
 void big_free(void *array);
 

@@ -126,12 +126,20 @@ static bool send_fewer(transport_plan *plan, double share)
     return fewer;
 }
 
-/* What they take that are planned, and a margin. */
+/* What they take that are planned, and a margin. As few as fit whatever they take tell of
+   too much each, by what does not depend on their number: they only say how many may be
+   tried. */
 static size_t photons_need(const transport_plan *plan, size_t room,
                            const cancel_flag *cancel)
 {
+    double n = (double)n_photons(plan), tried = 0.0, need = 0.0;
     double probe = CLAMP((double)room / PHOTON_MOST, PHOTON_SHARE_LEAST, PROBE);
-    return (size_t)(MARGIN * (double)photon_bytes(plan, probe, cancel));
+    while (probe >= 2.0 * tried && !cancelled(cancel)) {
+        need = (double)photon_bytes(plan, probe, cancel);
+        tried = probe;
+        probe = fmin(0.5 * (double)room / fmax(need / n, 1.0), fmin(n, PROBE));
+    }
+    return (size_t)(MARGIN * need);
 }
 
 bool footprint_fit(transport_plan *plan, size_t beside, bool may_choose,

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "gltf_text.h"
 #include "render_with.h"
+#include "sanitizers.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -52,6 +53,28 @@ static void test_limit(void)
     big_free(grown);
     g_assert_true(is_left(MIB));
     g_assert_false(is_left(MIB + 1));
+    memory_set_limit(0);
+}
+
+/* What is behind the first elements goes back to the limit, and to the system. */
+static void test_fit(void)
+{
+    static const size_t sizes[] = {100, 3000, 200 * KIB, 9 * MIB};
+    for (size_t i = 0; i < G_N_ELEMENTS(sizes); i++) {
+        memory_set_limit(16 * MIB);
+        unsigned char *array = big_alloc(sizes[i], 1, "room", NULL);
+        memset(array, 7, sizes[i]);
+        size_t resident = memory_resident(), kept = sizes[i] / 3;
+        array = big_fit(array, kept, 1);
+        g_assert_true(is_left(16 * MIB - kept - 5 * KIB)); /* a page, a head */
+        for (size_t k = 0; k < kept; k++)
+            g_assert_cmpuint(array[k], ==, 7);
+        if (sizes[i] > MIB && !MEMORY_IS_WATCHED)
+            g_assert_cmpuint(memory_resident() + sizes[i] / 2, <, resident);
+        big_free(array);
+        g_assert_true(is_left(16 * MIB));
+    }
+    g_assert_null(big_fit(NULL, 0, 1));
     memory_set_limit(0);
 }
 
@@ -343,6 +366,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/memory/limit", test_limit);
+    g_test_add_func("/memory/fit", test_fit);
     g_test_add_func("/memory/threads", test_threads);
     g_test_add_func("/memory/cgroups", test_cgroups);
     g_test_add_func("/memory/machine", test_machine);

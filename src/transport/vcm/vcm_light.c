@@ -343,6 +343,8 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
             follow(&l);
         loop->pass->light.end[i] = out->n_vertices;
     }
+    out->vertices = big_fit(out->vertices, out->n_vertices, sizeof *out->vertices);
+    out->splats = big_fit(out->splats, out->n_splats, sizeof *out->splats);
     if (out->hits.refused && !out->error)
         point_hits_refuse(&out->error);
     point_hits_clear(&out->hits);
@@ -354,6 +356,11 @@ static void chunk_clear(light_chunk *chunk)
     big_free(chunk->splats);
     g_clear_error(&chunk->error);
     *chunk = (light_chunk){0};
+}
+
+static size_t chunk_bytes(size_t n_vertices, size_t n_splats)
+{
+    return n_vertices * sizeof(light_vertex) + n_splats * sizeof(splat);
 }
 
 /* Copies chunk c's vertices and splats to their place and frees them. */
@@ -371,6 +378,7 @@ static void join_chunk(size_t c, size_t end, unsigned thread, void *data)
                from->n_splats * sizeof *from->splats);
     for (size_t i = c * RAYS_AT_ONCE; i < MIN((c + 1) * RAYS_AT_ONCE, to->n); i++)
         to->end[i] += from->first_vertex;
+    memory_count(chunk_bytes(from->n_vertices, from->n_splats));
     chunk_clear(from);
 }
 
@@ -391,10 +399,14 @@ static bool join(light_loop *loop, size_t n, transport_counts *counts, GError **
         counts->photon_rays += chunks[c].n_rays;
         counts->n_not_finite += chunks[c].n_not_finite;
     }
+    /* Each chunk goes when it is copied: both are never there as a whole. */
+    memory_release(chunk_bytes(n_vertices, n_splats));
     to->vertices = big_alloc(n_vertices, sizeof *to->vertices, "light vertices", error);
     to->splats = big_alloc(n_splats, sizeof *to->splats, "splats", error);
-    if (!to->vertices || !to->splats)
+    if (!to->vertices || !to->splats) {
+        memory_count(chunk_bytes(n_vertices, n_splats));
         return false;
+    }
     to->n_vertices = n_vertices;
     to->n_splats = n_splats;
     parallel_for(n, 1, (unsigned)loop->pass->plan->how.threads, NULL, join_chunk, loop);
