@@ -76,6 +76,12 @@ static void add_floats(void *to, const void *from, int n)
         sum[i] += number[i];
 }
 
+/* Lamps in mirrors are lights in sight: what they are of a layer. */
+static double lamps_luminance(const guide_sum *guides, int layer)
+{
+    return layer == LAYER_SPECULAR ? (double)guides->lights[LUMINANCE] : 0.0;
+}
+
 void halves_end_pass(const film *f, size_t begin, size_t end)
 {
     const size_t color = offsetof(film_sum, color) / sizeof(double);
@@ -86,6 +92,7 @@ void halves_end_pass(const film *f, size_t begin, size_t end)
         add_floats(&pixel->guides, &f->pass_guides[i], GUIDE_NUMBERS);
         for (size_t l = 0; l < N_LIGHTS; l++) {
             double y = (double)number[color + 3 * l + LUMINANCE];
+            y -= lamps_luminance(&f->pass_guides[i], (int)l);
             pixel->y2[l] += w > 0.0 ? y * y / w : 0.0;
         }
         if (f->n_passes % 2 == 0) {
@@ -136,11 +143,13 @@ static float layer_variance(const film *f, size_t i, int layer)
 {
     const film_sum *sum = &f->pixels[i].sum;
     double y = sum->color[layer][LUMINANCE], w = fabs(sum->weight);
+    y -= lamps_luminance(&f->halves[i].guides, layer);
     double y2 = f->halves[i].y2[layer], n = (double)f->n_passes;
     if (f->n_cells > 0 && film_pass_counts(f, i)) {
         film_sum pass = {0};
         film_add_pass(&pass, &f->pass[i]);
         double more = pass.color[layer][LUMINANCE], by = fabs(pass.weight);
+        more -= lamps_luminance(&f->pass_guides[i], layer);
         y += more;
         w += by;
         y2 += by > 0.0 ? more * more / by : 0.0;
@@ -226,13 +235,6 @@ static void seen_depth(const film *f, size_t i, int half, float *out)
     less_first(out, &first, 1);
 }
 
-/* Lamps in mirrors have edges that nothing else has. */
-static void lamps_in_mirrors(const film *f, size_t i, int half, float *out)
-{
-    guide_sum sum = guides_of(f, i, half);
-    guide_color(f, sum.lights, (float)half_of(f, i, half).weight, out);
-}
-
 typedef struct feature {
     int n_channels;
     void (*read)(const film *f, size_t i, int half, float *out);
@@ -247,7 +249,6 @@ static const feature features[] = {
     {3, seen_albedo},
     {3, seen_normal},
     {1, seen_depth},
-    {3, lamps_in_mirrors},
 };
 
 /* ---- The picture ---- */
@@ -256,6 +257,18 @@ static const feature features[] = {
 typedef struct layer_room {
     float *half[2], *variance, *out;
 } layer_room;
+
+/* What is filtered of a layer. */
+static void light_of(const film *f, size_t i, int half, int layer, float *rgb)
+{
+    film_sum sum = half_of(f, i, half);
+    guide_sum guides = guides_of(f, i, half);
+    for (int c = 0; c < 3 && layer == LAYER_SPECULAR; c++)
+        sum.color[layer][c] -= (double)guides.lights[c];
+    film_to_rgb(f, sum.color[layer], sum.weight, rgb);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= f->scale;
+}
 
 typedef struct read_loop {
     const film *f;
@@ -276,11 +289,7 @@ static void read_pixels(size_t begin, size_t end, unsigned thread, void *data)
                 loop->feature->read(f, i, h, loop->room->half[h] + at);
                 continue;
             }
-            film_sum sum = half_of(f, i, h);
-            float *rgb = loop->room->half[h] + 3 * i;
-            film_to_rgb(f, sum.color[loop->layer], sum.weight, rgb);
-            for (int c = 0; c < 3; c++)
-                rgb[c] *= f->scale;
+            light_of(f, i, h, loop->layer, loop->room->half[h] + 3 * i);
         }
         if (!loop->feature)
             loop->room->variance[i] = layer_variance(f, i, loop->layer);
@@ -306,14 +315,21 @@ static bool add_features(const film *f, denoiser *d, layer_room *room, unsigned 
     return true;
 }
 
-/* What is not filtered. */
+/* What is not filtered: lights in sight, and in mirrors. Their edges are sharper than any
+   filter keeps them with a few samples a pixel, and beside them there may be nothing. */
 static void start_with_emission(const film *f, float *out)
 {
     for (size_t i = 0; i < n_pixels(f); i++) {
         film_sum sum = f->pixels[i].sum;
-        if (f->n_cells > 0 && film_pass_counts(f, i))
+        guide_sum guides = f->halves[i].guides;
+        if (f->n_cells > 0 && film_pass_counts(f, i)) {
             film_add_pass(&sum, &f->pass[i]);
-        film_to_rgb(f, sum.color[LAYER_EMISSION], sum.weight, out + 3 * i);
+            add_floats(&guides, &f->pass_guides[i], GUIDE_NUMBERS);
+        }
+        double *seen = sum.color[LAYER_EMISSION];
+        for (int c = 0; c < 3; c++)
+            seen[c] += (double)guides.lights[c];
+        film_to_rgb(f, seen, sum.weight, out + 3 * i);
         for (int c = 0; c < 3; c++)
             out[3 * i + (size_t)c] *= f->scale;
     }

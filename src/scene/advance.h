@@ -30,12 +30,27 @@ typedef struct path_segment {
     int wavelength;      /**< the wavelength that is left of it, or ALL_WAVELENGTHS */
     const view *eye;     /**< it has not scattered on its way from there: shapes that the
                             camera does not see let it pass. NULL: it has, or never was */
+    bool certain; /**< it comes from the eye, and no chance has chosen its way since */
 } path_segment;
 
 /** @brief A path that starts at the eye. */
 static inline path_segment path_segment_from_eye(const view *eye, const ray *r)
 {
-    return (path_segment){*r, spectrum_fill(1.0f), ALL_WAVELENGTHS, eye};
+    return (path_segment){*r, spectrum_fill(1.0f), ALL_WAVELENGTHS, eye, true};
+}
+
+/** @brief A path from the eye leaves a surface by a direction that was sampled there.
+ * @param probability with which these lobes were sampled at all: 1 where both sides are
+ * followed */
+static inline void path_segment_leave(path_segment *at, const surface_hit *hit,
+                                      const bsdf_sample *next, float probability)
+{
+    at->throughput *= next->weight / probability;
+    at->wavelength = next->wavelength;
+    at->ray = hit_ray(hit, next->wi);
+    at->eye = NULL;
+    at->certain = at->certain && (next->lobe & LOBE_SPECULAR) &&
+                  next->pdf * probability >= 1.0f && next->wavelength == ALL_WAVELENGTHS;
 }
 
 /** @brief Who travels. Functions may be NULL. */

@@ -34,8 +34,9 @@ typedef enum radiance_layer {
  * Sums, where there are several, weighed by how much of their light arrives. */
 typedef struct light_guide {
     spectrum albedo;
-    spectrum lights; /**< light that arrives from lights by mirrors and glass alone:
-                       radiance, whatever the weight */
+    spectrum lights; /**< what of LAYER_SPECULAR comes from lights by mirrors, and glass
+                       whose both sides are followed, without any chance: radiance,
+                       whatever the weight */
     vec3 normal;     /**< shading normal, toward where it is seen from */
     float depth;     /**< distance from the eye as the crow flies, m */
     float weight;    /**< 0: nothing is seen yet */

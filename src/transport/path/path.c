@@ -31,8 +31,8 @@ static void meet_light(void *data, const met_light *met)
         direct_met_weight(walk->scene, walk->how, &from, path->at.ray.direction, met) *
         left_by_photons(walk, path, met);
     path_add_from(walk, path, met->radiance * weight, met->light);
-    if (!path->at.eye && !(walk->out->guide.weight > 0.0f))
-        walk->out->guide.lights += path->at.throughput * met->radiance;
+    if (!path->at.eye && path->at.certain)
+        walk->out->guide.lights += path->at.throughput * met->radiance * weight;
 }
 
 static void meet_surface(void *data, const surface_hit *hit)
@@ -67,21 +67,19 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
                           sampler_1d(walk->random), &next);
     note_density(walk, path, hit, b, &next);
     path->looked = path_looks(walk, path, b);
-    path->at.throughput *= next.weight;
-    path->at.wavelength = next.wavelength;
+    path_segment_leave(&path->at, hit, &next, 1.0f);
     path->eta2 *= next.eta * next.eta;
     path->pdf = (next.lobe & LOBE_SPECULAR) ? 0.0f : next.pdf;
     path->from = hit->p;
     path->every_light = path_samples_every_light(path);
     path->by_either = path->looked > 0.0f && bsdf_has_both(b);
-    path->at.ray = hit_ray(hit, next.wi);
-    path->at.eye = NULL;
     camera_path_count(path, next.lobe);
     if (path->bounces < ROULETTE_BOUNCES)
         return !spectrum_is_black(path->at.throughput);
     float p = minf(most_survival(path->bounces),
                    spectrum_mean(path->at.throughput) * path->eta2);
     path->at.throughput /= p;
+    path->at.certain = false;
     return sampler_1d(walk->random) < p;
 }
 

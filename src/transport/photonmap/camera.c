@@ -86,8 +86,8 @@ static void meet_light(void *data, const met_light *met)
     float weight =
         direct_met_weight(pass->scene, pass->how, &from, branch->at.ray.direction, met);
     add_from(step->tree, branch, LAYER_EMISSION, met->radiance * weight, met->light);
-    if (!branch->at.eye && !branch->guided)
-        step->tree->out->guide.lights += branch->at.throughput * met->radiance;
+    if (!branch->at.eye && branch->at.certain)
+        step->tree->out->guide.lights += branch->at.throughput * met->radiance * weight;
 }
 
 static void meet_surface(void *data, const surface_hit *hit)
@@ -233,13 +233,10 @@ static bool bounce(camera_tree *tree, camera_branch *branch, const surface_hit *
     vec3 wo = -branch->at.ray.direction;
     if (!bsdf_sample_direction(b, wo, u_lobe, u, lobes, TRANSPORT_RADIANCE, &next))
         return false;
-    branch->at.throughput *= next.weight / probability;
-    branch->at.wavelength = next.wavelength;
+    path_segment_leave(&branch->at, hit, &next, probability);
     branch->eta2 *= next.eta * next.eta;
     branch->glossy_pdf = (next.lobe & LOBE_GLOSSY) ? next.pdf * probability : 0.0f;
     branch->from = hit->p;
-    branch->at.ray = hit_ray(hit, next.wi);
-    branch->at.eye = NULL;
     branch->n_followed++;
     return !spectrum_is_black(branch->at.throughput);
 }
@@ -253,6 +250,7 @@ static bool survives(camera_tree *tree, camera_branch *branch)
     if (!(sampler_1d(tree->random) < p))
         return false;
     branch->at.throughput /= p;
+    branch->at.certain = false;
     return true;
 }
 

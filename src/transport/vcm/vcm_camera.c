@@ -77,10 +77,10 @@ static void meet_light(void *data, const met_light *met)
     bool counted, alone = meets_alone(c, &counted);
     if (!counted || spectrum_is_black(met->radiance))
         return;
-    add(c, c->walk.counts, met->light,
-        alone ? met->radiance : met->radiance * met_weight(c, met->light, met->hit));
-    if (!c->walk.at.eye && !(c->out->guide.weight > 0.0f))
-        c->out->guide.lights += c->walk.at.throughput * met->radiance;
+    float weight = alone ? 1.0f : met_weight(c, met->light, met->hit);
+    add(c, c->walk.counts, met->light, met->radiance * weight);
+    if (!c->walk.at.eye && c->walk.at.certain)
+        c->out->guide.lights += c->walk.at.throughput * met->radiance * weight;
 }
 
 static void meet_surface(void *data, const surface_hit *hit)
@@ -303,6 +303,7 @@ static bool survives(camera_walk *c)
     float p = fminf(most_survival(c->walk.counts.n),
                     spectrum_mean(c->walk.at.throughput) * c->walk.eta2);
     c->walk.at.throughput /= p;
+    c->walk.at.certain = false;
     return sampler_1d(c->random) < p;
 }
 

@@ -81,14 +81,11 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
     else
         weights_bounce(&walk->weights, cosine, vcm_pdf(v, next.wi, walk->mode),
                        vcm_pdf_reverse(v, next.wi, walk->mode), &pass->ratios, v->alone);
-    walk->at.throughput *= next.weight;
-    walk->at.wavelength = next.wavelength;
+    path_segment_leave(&walk->at, v->hit, &next, 1.0f);
     walk->lobe = next.lobe;
     walk->mirrors_only &= (next.lobe & LOBE_SPECULAR) != 0;
     walk->eta2 *= next.eta * next.eta;
     walk->from = v->hit->p;
-    walk->at.ray = hit_ray(v->hit, next.wi);
-    walk->at.eye = NULL;
     walk->counts = vcm_count(walk->counts, (next.lobe & LOBE_DIFFUSE) != 0);
     return cosine > 0.0f && !spectrum_is_black(walk->at.throughput);
 }
