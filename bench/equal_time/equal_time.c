@@ -6,7 +6,9 @@
  * floor ─► each algorithm, 1, 4, 16 ... passes, some seeds ─► seconds, relMSE, FLIP
  *
  * Each picture is measured as it was rendered, and under its algorithm's name with a "+"
- * without its noise, with the seconds that taking it out took.
+ * as it is shown: without its noise, from two passes on, with the seconds that taking it
+ * out took. The default plans for what is shown: as rendered it is asked with denoise
+ * off.
  *
  * Of the scene's own words on how to render none counts: all settings are the default's
  * but the algorithm and the passes: a sample a pixel and three photons for two, as a
@@ -110,7 +112,7 @@ typedef struct seconds {
 
 /* One whole render. @return NULL: the algorithm refuses the scene */
 static NephImage *shot(const NephScene *scene, const kind *k, int64_t passes, int seed,
-                       seconds *took)
+                       bool denoise, seconds *took)
 {
     GError *error = NULL;
     NephSettings *how = neph_settings_new();
@@ -119,6 +121,7 @@ static NephImage *shot(const NephScene *scene, const kind *k, int64_t passes, in
     set_number(how, "photons", n_pixels(scene) * 3 / 2);
     set_number(how, "passes", passes);
     set_number(how, "seed", seed);
+    set(how, "denoise", denoise ? "on" : "off");
     set_all(how, k->settings);
     double start = processor_seconds();
     NephRender *render = neph_render_new(scene, how, &error);
@@ -217,7 +220,7 @@ static double caustic_error(const NephImage *image, const char *const names[3],
 static int64_t passes_for(const NephScene *scene, const kind *k, double wanted)
 {
     seconds few;
-    neph_image_free(shot(scene, k, STEP, 99, &few));
+    neph_image_free(shot(scene, k, STEP, 99, false, &few));
     return (int64_t)fmax(STEP * wanted / few.raw, 1.0);
 }
 
@@ -246,7 +249,7 @@ static NephImage *long_shot(const NephScene *scene, const char *name, const kind
     }
     fprintf(stderr, "equal_time: %s by %s for %.0f s\n", name, k->name, wanted);
     seconds spent;
-    NephImage *made = shot(scene, k, passes_for(scene, k, wanted), 4711, &spent);
+    NephImage *made = shot(scene, k, passes_for(scene, k, wanted), 4711, false, &spent);
     if (!made || !neph_image_write(made, path, 0.0f, &error))
         fail(path, error);
     return made;
@@ -262,22 +265,34 @@ static void print_point(const NephImage *image, const char *const names[3],
     fflush(stdout);
 }
 
+/* A render as it is, or as it is shown. @return seconds it took; negative: it is refused
+ */
+static double measure(const NephScene *scene, const char *name, const kind *k,
+                      int64_t passes, int seed, const NephImage *reference, bool as_shown)
+{
+    seconds took;
+    NephImage *image = shot(scene, k, passes, seed, as_shown, &took);
+    if (!image)
+        return -1.0;
+    bool denoised = channel(image, shown[0]);
+    printf("%s\t%s%s\t%d\t%lld", name, k->name, as_shown ? "+" : "", seed,
+           (long long)passes);
+    print_point(image, denoised ? shown : beauty, reference,
+                as_shown ? took.shown : took.raw);
+    neph_image_free(image);
+    return took.raw;
+}
+
 static void measure_kind(const NephScene *scene, const char *name, const kind *k,
                          const NephImage *reference, const options *o)
 {
     for (int seed = FIRST_SEED; seed < FIRST_SEED + o->seeds; seed++) {
-        seconds took = {0.0, 0.0};
-        for (int64_t passes = 1; took.raw * STEP < 1.5 * o->seconds; passes *= STEP) {
-            NephImage *image = shot(scene, k, passes, seed, &took);
-            if (!image)
+        double took = 0.0;
+        for (int64_t passes = 1; took * STEP < 1.5 * o->seconds; passes *= STEP) {
+            took = measure(scene, name, k, passes, seed, reference, false);
+            if (took < 0.0)
                 return;
-            printf("%s\t%s\t%d\t%lld", name, k->name, seed, (long long)passes);
-            print_point(image, beauty, reference, took.raw);
-            if (channel(image, shown[0])) {
-                printf("%s\t%s+\t%d\t%lld", name, k->name, seed, (long long)passes);
-                print_point(image, shown, reference, took.shown);
-            }
-            neph_image_free(image);
+            measure(scene, name, k, passes, seed, reference, true);
         }
     }
 }
@@ -322,7 +337,7 @@ static void measure_scene(const char *path, const options *o)
     if (!scene || !neph_scene_resize(scene, o->width, o->height, &error))
         fail(path, error);
     seconds spent;
-    NephImage *tried = shot(scene, &all_kinds[VCM], 1, 1, &spent);
+    NephImage *tried = shot(scene, &all_kinds[VCM], 1, 1, false, &spent);
     bool media = !tried;
     neph_image_free(tried);
     /* vcm has the least noise where anything is hard; its bias goes with the passes. */

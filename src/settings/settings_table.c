@@ -209,7 +209,8 @@ static const setting_row table[] = {
      "Takes the noise out of what files of eight bits and the window show, from two "
      "passes "
      "on; EXR files keep the picture as it is, and have this beside it as denoised.R, G "
-     "and B."},
+     "and B. Auto plans for what is shown: grain that is taken out weighs less than "
+     "errors of photons, which are smooth."},
     {"seed", SETTING_COUNT, AT(seed), "", 0, 9007199254740992.0, 0, NULL, "", "all",
      "Chooses the random numbers; the same seed gives the same image, bit for bit."},
     {"camera_seed", SETTING_COUNT, AT(camera_seed), "", 0, 9007199254740992.0, 0, NULL,
