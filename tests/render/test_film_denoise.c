@@ -72,6 +72,30 @@ static const char mirror[] = ROOM_CAMERA SIZE(16) "WorldBegin\n" ROOM_LAMP(
         "0.8 "
         "2 2 0.8 -2 2 0.8] \"integer indices\" [0 1 2 0 2 3]\n";
 
+/* A ball of chrome in a box that is open towards the eye: beside the lamp it shows the
+   dark outside. */
+#define OPEN_BOX                                                                         \
+    "Film \"rgb\" \"integer xresolution\" 128 \"integer yresolution\" 128 \"float "      \
+    "cropwindow\" [0.2 0.5 0.55 0.9] PixelFilter \"box\"\n"                              \
+    "Scale -1 1 1 LookAt .278 .273 -.8  .278 .273 0  0 1 0 Camera \"perspective\" "      \
+    "\"float fov\" 39.3\n"                                                               \
+    "WorldBegin\n"                                                                       \
+    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [17 12 4] "                    \
+    "Material \"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"trianglemesh\" \"integer " \
+    "indices\" [0 1 2 0 2 3] "                                                           \
+    "\"point3 P\" [.343 .5487 .227 .343 .5487 .332 .213 .5487 .332 .213 .5487 .227] "    \
+    "AttributeEnd\n"                                                                     \
+    "Material \"diffuse\" \"rgb reflectance\" [.7 .7 .7]\n"                              \
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3 4 5 6 4 6 7 8 9 10 8 10 "   \
+    "11 12 13 14 12 14 15 16 17 18 16 18 19] "                                           \
+    "\"point3 P\" [.5528 0 0 0 0 0 0 0 .5592 .5528 0 .5592 .5528 .5488 0 .5528 .5488 "   \
+    ".5592 0 .5488 .5592 0 .5488 0 "                                                     \
+    ".5528 0 .5592 0 0 .5592 0 .5488 .5592 .5528 .5488 .5592 0 0 .5592 0 0 0 0 .5488 0 " \
+    "0 .5488 .5592 "                                                                     \
+    ".5528 0 0 .5528 0 .5592 .5528 .5488 .5592 .5528 .5488 0]\n"                         \
+    "Translate .4 .1 .37 Material \"conductor\" \"spectrum reflectance\" [200 1 900 1] " \
+    "Shape \"sphere\" \"float radius\" .1\n"
+
 /* What a mirror shows of a lamp is the lamp, whose light is known. */
 static void test_lamp_in_mirror(void)
 {
@@ -92,21 +116,19 @@ static void test_lamp_in_mirror(void)
     }
 }
 
-/* So it is as sharp as a lamp in sight, also where few samples find its edge. */
+/* So it is as sharp as a lamp in sight, also where few samples find its edge: what is
+   shown differs by the noise of other light, .003 to .08, and not by a lamp smeared over
+   what is dark beside it, .5 to 1.3. */
 static void test_sharp_in_mirror(void)
 {
-    g_autoptr(view) v = view_of(mirror);
+    g_autoptr(view) v = view_of(OPEN_BOX);
     for (size_t k = 0; k < G_N_ELEMENTS(integrators); k++) {
-        g_autofree char *words = g_strdup_printf(
-            "denoise=on passes=3 spp=1 photons=500 integrator=%s", integrators[k]);
-        g_autoptr(image) img = render_with(v, words);
-        g_autoptr(image) shown = image_layer(img, "denoised", NULL);
-        for (size_t i = 0; i < pixels_of(img); i++) {
-            for (size_t c = 0; c < 3; c++) {
-                float raw = at(img, i, c);
-                g_assert_cmpfloat_with_epsilon(at(shown, i, c), raw,
-                                               1e-4f * (1.0f + raw));
-            }
+        for (int seed = 0; seed < 4; seed++) {
+            g_autofree char *words = g_strdup_printf(
+                "denoise=on passes=2 spp=1 seed=%d integrator=%s", seed, integrators[k]);
+            g_autoptr(image) img = render_with(v, words);
+            g_autoptr(image) shown = image_layer(img, "denoised", NULL);
+            g_assert_cmpfloat(against(shown, img).relmse, <, 0.2);
         }
     }
 }
