@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Renders every scene and makes the gallery of them.
 
-usage: tools/gallery.py PROGRAM FOLDER [--quick] [--seconds S] [SCENE...]
+usage: tools/gallery.py PROGRAM FOLDER [--quick] [--seconds S] [--clock] [SCENE...]
 
 Each scenes/*/*.pbrt with a WorldBegin is rendered as the program does it without being told
 anything but the time, and written to FOLDER as EXR and JPEG: S seconds of all processors together
-(150), or if quick 10 by the clock at half the size. A run that was stopped goes on where it was.
+(150), with --clock by the clock, or if quick 10 by the clock at half the size. A run that was stopped goes on where it was.
 FOLDER/index.html shows all, with settings, times and statistics; without --quick so do
 docs/gallery.md and the pictures beside the scenes, of the SCENEs alone where some are named.
 """
@@ -26,6 +26,7 @@ def arguments():
     parser.add_argument("scenes", nargs="*")
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--seconds", type=float)
+    parser.add_argument("--clock", action="store_true")
     return parser.parse_intermixed_args()
 
 
@@ -65,12 +66,12 @@ def film_size(path):
     return int(width[1]), int(height[1])
 
 
-def render(kept, path, quick, seconds):
+def render(kept, path, asked):
     width, height = film_size(path)
-    if quick:
-        return kept.render(path.stem, path, "--size", f"{width // 2}x{height // 2}", "--time",
-                           f"{seconds or 10:g}")
-    return kept.render(path.stem, path, processor=seconds or 150)
+    small = ["--size", f"{width // 2}x{height // 2}"] if asked.quick else []
+    if asked.quick or asked.clock:
+        return kept.render(path.stem, path, *small, "--time", f"{asked.seconds or 10:g}")
+    return kept.render(path.stem, path, processor=asked.seconds or 150)
 
 
 def first_sentences(path):
@@ -136,7 +137,7 @@ def main():
     made = []
     for i, path in enumerate(scenes):
         print(f"{i + 1} of {len(scenes)}", file=sys.stderr)
-        exr = render(kept, path, asked.quick, asked.seconds)
+        exr = render(kept, path, asked)
         kept.picture([exr], asked.folder / f"{path.stem}.jpg")
         made.append((path, exr))
     (asked.folder / "index.html").write_text(page(kept, made))
