@@ -265,22 +265,37 @@ static void print_point(const NephImage *image, const char *const names[3],
     fflush(stdout);
 }
 
-/* A render as it is, or as it is shown. @return seconds it took; negative: it is refused
- */
-static double measure(const NephScene *scene, const char *name, const kind *k,
-                      int64_t passes, int seed, const NephImage *reference, bool as_shown)
+/* A point of a picture as rendered, or as it is shown. */
+static void print_one(const NephImage *image, const char *name, const kind *k,
+                      int64_t passes, int seed, const NephImage *reference, bool as_shown,
+                      const seconds *took)
 {
-    seconds took;
-    NephImage *image = shot(scene, k, passes, seed, as_shown, &took);
-    if (!image)
-        return -1.0;
-    bool denoised = channel(image, shown[0]);
+    bool denoised = as_shown && channel(image, shown[0]);
     printf("%s\t%s%s\t%d\t%lld", name, k->name, as_shown ? "+" : "", seed,
            (long long)passes);
     print_point(image, denoised ? shown : beauty, reference,
-                as_shown ? took.shown : took.raw);
+                as_shown ? took->shown : took->raw);
+}
+
+/* Both points. @return seconds of the first; negative: the scene is refused */
+static double measure(const NephScene *scene, const char *name, const kind *k,
+                      int64_t passes, int seed, const NephImage *reference)
+{
+    seconds raw, shown_too;
+    bool plans = strstr(k->settings, "integrator=auto");
+    NephImage *image = shot(scene, k, passes, seed, !plans, &raw);
+    if (!image)
+        return -1.0;
+    print_one(image, name, k, passes, seed, reference, false, &raw);
+    if (plans) {
+        neph_image_free(image);
+        image = shot(scene, k, passes, seed, true, &shown_too);
+        if (!image)
+            return -1.0;
+    }
+    print_one(image, name, k, passes, seed, reference, true, plans ? &shown_too : &raw);
     neph_image_free(image);
-    return took.raw;
+    return raw.raw;
 }
 
 static void measure_kind(const NephScene *scene, const char *name, const kind *k,
@@ -289,10 +304,9 @@ static void measure_kind(const NephScene *scene, const char *name, const kind *k
     for (int seed = FIRST_SEED; seed < FIRST_SEED + o->seeds; seed++) {
         double took = 0.0;
         for (int64_t passes = 1; took * STEP < 1.5 * o->seconds; passes *= STEP) {
-            took = measure(scene, name, k, passes, seed, reference, false);
+            took = measure(scene, name, k, passes, seed, reference);
             if (took < 0.0)
                 return;
-            measure(scene, name, k, passes, seed, reference, true);
         }
     }
 }
