@@ -1,6 +1,6 @@
 /*
  * How much of a render no second thread helps with: from the start of the process to the
- * file, on one thread, what of its processor time is outside of all parallel_for. The
+ * file, on one thread, what of its processor time is outside of all parallel loops. The
  * linker's --wrap counts that. So the speed of n threads is known where others disturb
  * the clock: at most 1 / (serial + (1 - serial) / n); what it leaves out is threads that
  * wait for one another at the end of a loop, and memory that they share.
@@ -33,15 +33,36 @@ bool __real_parallel_for(size_t, size_t, unsigned, const cancel_flag *, parallel
 bool __wrap_parallel_for(size_t n, size_t chunk_size, unsigned threads,
                          const cancel_flag *cancel, parallel_body body, void *data);
 
+bool __real_parallel_work(size_t, size_t, workers, parallel_body, void *, GError **);
+bool __wrap_parallel_work(size_t n, size_t chunk_size, workers by, parallel_body body,
+                          void *data, GError **error);
+
+/* Of a loop that began then. */
+static void end_loop(double start, size_t n, size_t chunk_size)
+{
+    depth--;
+    if (depth == 0 && n > chunk_size) /* one piece is one thread's */
+        in_parallel += seconds() - start;
+}
+
 bool __wrap_parallel_for(size_t n, size_t chunk_size, unsigned threads,
                          const cancel_flag *cancel, parallel_body body, void *data)
 {
     double start = seconds();
     depth++;
     bool done = __real_parallel_for(n, chunk_size, threads, cancel, body, data);
-    depth--;
-    if (depth == 0 && n > chunk_size) /* one piece is one thread's */
-        in_parallel += seconds() - start;
+    end_loop(start, n, chunk_size);
+    return done;
+}
+
+/* Calls parallel_for within its own file, where nothing is wrapped. */
+bool __wrap_parallel_work(size_t n, size_t chunk_size, workers by, parallel_body body,
+                          void *data, GError **error)
+{
+    double start = seconds();
+    depth++;
+    bool done = __real_parallel_work(n, chunk_size, by, body, data, error);
+    end_loop(start, n, chunk_size);
     return done;
 }
 
