@@ -6,6 +6,8 @@
 #include "shape/mesh_repair.h"
 #include "texture/picture.h"
 
+#include <float.h>
+
 static void unref_picture(void *data)
 {
     picture_unref(data);
@@ -203,6 +205,25 @@ static bool add_area_light(scene_builder *b, shape *made, const shape_place *at,
     return true;
 }
 
+/* True if a shape stands so far off that floats do not tell its points apart: its pieces
+   would lie in one another, and every ray that comes near meet them all. As small as it
+   looks from anywhere else it is not missed; a lamp may be. */
+static bool is_lost(const scene_builder *b, const shape *made, const shape_place *at)
+{
+    const box3 box = made->kind->bounds(made->self);
+    float size = max_component3(box.high - box.low);
+    float far = max_component3(max3(abs3(box.low), abs3(box.high)));
+    float step = FLT_EPSILON * far;
+    bool kept = b->open_object != NO_INDEX || at->area_light || box3_is_empty(box);
+    if (kept || !(size < 2.0f * step)) /* bounds are rounded outward */
+        return false;
+    log_at(&b->build.log, LOG_WARNING, made->place,
+           "the shape is left out: it is %g m large, %g m from the origin, where floats "
+           "are %g m apart",
+           (double)size, (double)far, (double)step);
+    return true;
+}
+
 /* Takes a new shape (NULL: it failed), with its light if it shines. */
 static bool take_shape(scene_builder *b, shape *made, const shape_place *at,
                        GError **error)
@@ -217,7 +238,10 @@ static bool take_shape(scene_builder *b, shape *made, const shape_place *at,
         shape_free(made);
         return false;
     }
-    g_ptr_array_add(b->scene->shapes, made);
+    if (is_lost(b, made, at))
+        shape_free(made);
+    else
+        g_ptr_array_add(b->scene->shapes, made);
     return true;
 }
 

@@ -146,6 +146,15 @@ static void test_too_large(void)
            "%s:1:20: the camera extends to 1e+30" LIMIT);
 }
 
+/* A ball of which floats know one point is left out, and one of a few steps is not. */
+static void test_lost(void)
+{
+    g_autoptr(view) v = view_of(SEEN "Shape \"sphere\" AttributeBegin Translate 1e9 0 0 "
+                                     "Shape \"sphere\" AttributeEnd Translate 1e6 0 0 "
+                                     "Shape \"sphere\"");
+    g_assert_cmpuint(v->scene->shapes->len, ==, 2);
+}
+
 static void test_too_small(void)
 {
     refuse(SEEN "Shape \"disk\" \"float radius\" 2e-12",
@@ -221,6 +230,7 @@ int main(int argc, char **argv)
     }
     g_test_add_func("/scale/too-large", test_too_large);
     g_test_add_func("/scale/too-small", test_too_small);
+    g_test_add_func("/scale/lost", test_lost);
     g_test_add_func("/scale/strange-rays", test_strange_rays);
     g_test_add_func("/scale/instances", test_instances_of_any_size);
     g_test_add_func("/scale/normalize", test_normalize);
