@@ -4,6 +4,7 @@
  * is asked to.
  */
 #include "api_scene.h"
+#include "folder.h"
 #include "sanitizers.h"
 
 #include <time.h>
@@ -244,15 +245,6 @@ static NephImage *noise(int width, int height)
     return neph_image_new(width, height, rgb, NULL);
 }
 
-static size_t n_files(void)
-{
-    g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
-    size_t n = 0;
-    while (g_dir_read_name(dir))
-        n++;
-    return n;
-}
-
 static void assert_file_is(const char *path, const char *bytes, size_t size)
 {
     g_autofree char *found = NULL;
@@ -284,7 +276,7 @@ static void test_cancel_writing(const void *ending)
     g_assert_true(neph_image_write(image, path, 0.0f, NULL));
     gint64 took = g_get_monotonic_time() - start;
     g_assert_true(g_file_get_contents(path, &whole, &size, NULL));
-    size_t before = n_files();
+    size_t before = n_files_in(folder);
     double worst = 0.0;
     for (int i = 0; i < MOMENTS; i++) {
         g_assert_true(g_file_set_contents(path, "old", 3, NULL));
@@ -294,7 +286,7 @@ static void test_cancel_writing(const void *ending)
         g_assert_true(i > 0 || best > 0.0);
         if (best > 0.0)
             assert_file_is(path, "old", 3);
-        g_assert_cmpuint(n_files(), ==, before);
+        g_assert_cmpuint(n_files_in(folder), ==, before);
         g_test_message("at %d of %d of %.2f s: %.1f ms", i, MOMENTS, 1e-6 * (double)took,
                        1e3 * best);
         worst = fmax(worst, best);

@@ -5,6 +5,7 @@
 #include "base/json.h"
 #include "base/memory.h"
 #include "base/output.h"
+#include "folder.h"
 #include "json_check.h"
 
 #include <glib/gstdio.h>
@@ -16,15 +17,6 @@
 #include <unistd.h>
 
 static char *folder;
-
-static unsigned count_entries(void)
-{
-    g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
-    unsigned n = 0;
-    while (g_dir_read_name(dir))
-        n++;
-    return n;
-}
 
 static void test_checker_refuses(void)
 {
@@ -102,7 +94,7 @@ static void test_output_is_whole_or_absent(void)
     fputs("half", output_stream(out));
     g_assert_false(g_file_test(path, G_FILE_TEST_EXISTS));
     output_discard(out);
-    g_assert_cmpuint(count_entries(), ==, 0);
+    g_assert_cmpuint(n_files_in(folder), ==, 0);
 
     g_assert_true(output_write_text(path, "one", NULL));
     out = output_open(path, NULL);
@@ -114,7 +106,7 @@ static void test_output_is_whole_or_absent(void)
     g_autofree char *after = NULL;
     g_file_get_contents(path, &after, NULL, NULL);
     g_assert_cmpstr(after, ==, "two");
-    g_assert_cmpuint(count_entries(), ==, 1);
+    g_assert_cmpuint(n_files_in(folder), ==, 1);
     g_remove(path);
 }
 
@@ -197,7 +189,7 @@ static void test_output_refuses(void)
     }
     g_autofree char *good = g_build_filename(folder, "good", NULL);
     g_assert_true(output_possible(good, NULL));
-    g_assert_cmpuint(count_entries(), ==, 0);
+    g_assert_cmpuint(n_files_in(folder), ==, 0);
 }
 
 static void test_output_reports_a_full_disk(void)
@@ -224,13 +216,13 @@ static void test_output_abandons(void)
     }
     g_assert_true(output_write_text(whole, "whole", NULL));
     g_assert_true(output_close(open[1], NULL));
-    g_assert_cmpuint(count_entries(), ==, 4);
+    g_assert_cmpuint(n_files_in(folder), ==, 4);
     output_abandon_all();
-    g_assert_cmpuint(count_entries(), ==, 1);
+    g_assert_cmpuint(n_files_in(folder), ==, 1);
     for (int i = 0; i < 3; i++)
         output_discard(open[i]);
     g_assert_true(output_write_text(whole, "again", NULL));
-    g_assert_cmpuint(count_entries(), ==, 1);
+    g_assert_cmpuint(n_files_in(folder), ==, 1);
     g_remove(whole);
 }
 

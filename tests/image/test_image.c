@@ -5,6 +5,7 @@
 #include "image/image.h"
 
 #include "base/memory.h"
+#include "folder.h"
 
 #include <fcntl.h>
 #include <glib/gstdio.h>
@@ -35,16 +36,6 @@ static image *read_bytes(const void *bytes, size_t size, GError **error)
     return image_read(path, NULL, error);
 }
 
-static unsigned n_files(void)
-{
-    unsigned n = 0;
-    GDir *dir = g_dir_open(folder, 0, NULL);
-    while (g_dir_read_name(dir))
-        n++;
-    g_dir_close(dir);
-    return n;
-}
-
 /* Numbers between 2^-10 and 2^6, of every magnitude; seeded. */
 static image *noise_image(int width, int height, int n, const char *const *names)
 {
@@ -60,14 +51,14 @@ static image *write_and_read(const image *img, const char *name)
 {
     GError *error = NULL;
     g_autofree char *path = in_folder(name);
-    unsigned before = n_files();
+    unsigned before = n_files_in(folder);
     g_assert_true(image_can_write(path, &error));
-    g_assert_cmpuint(n_files(), ==, before);
+    g_assert_cmpuint(n_files_in(folder), ==, before);
     g_assert_true(image_write(img, path, NULL, &error));
     g_assert_no_error(error);
     image *back = image_read(path, NULL, &error);
     g_assert_no_error(error);
-    g_assert_cmpuint(n_files(), ==, before + 1);
+    g_assert_cmpuint(n_files_in(folder), ==, before + 1);
     g_assert_cmpint(back->width, ==, img->width);
     g_assert_cmpint(back->height, ==, img->height);
     g_unlink(path);
@@ -173,7 +164,7 @@ static void test_exr_refuses_what_it_cannot_name(void)
     error = NULL;
     g_assert_false(image_write(plain, path, NULL, &error));
     assert_refused(error, ERROR_FAILED, path);
-    g_assert_cmpuint(n_files(), ==, 0);
+    g_assert_cmpuint(n_files_in(folder), ==, 0);
 }
 
 static void test_pfm_keeps_every_bit(void)
@@ -486,7 +477,7 @@ static void test_write_refuses(void)
         g_assert_false(image_write(img, impossible[i], NULL, &error));
         assert_refused(error, ERROR_INPUT, impossible[i]);
     }
-    g_assert_cmpuint(n_files(), ==, 0);
+    g_assert_cmpuint(n_files_in(folder), ==, 0);
 }
 
 /* With no more than 2 kB to a file, every writer fails, and the old file is untouched. */
@@ -510,7 +501,7 @@ static void test_full_disk_keeps_old_file(void)
         g_assert_true(g_file_get_contents(path, &text, NULL, NULL));
         g_assert_cmpstr(text, ==, "old");
         g_unlink(path);
-        g_assert_cmpuint(n_files(), ==, 0);
+        g_assert_cmpuint(n_files_in(folder), ==, 0);
     }
     signal(SIGXFSZ, SIG_DFL);
 }
