@@ -28,10 +28,7 @@ float exposure_of(const NephImage *image, const exposure_wish *wish, bool silent
 
 bool has_eight_bits(const char *path)
 {
-    static const char *const endings[] = {".png", ".jpg", ".jpeg"};
-    g_autofree char *lower = g_ascii_strdown(path, -1);
-    bool has = false;
-    for (size_t i = 0; i < G_N_ELEMENTS(endings); i++)
-        has |= g_str_has_suffix(lower, endings[i]);
+    bool has;
+    neph_image_is_written(path, &has);
     return has;
 }

@@ -1,6 +1,6 @@
 /*
  * What the program says. Results go to stdout; notes, progress and errors to stderr, as
- * compilers have it and editors follow it: "file:line:column: error: what is wrong", or
+ * compilers have it and editors follow it: "FILE:LINE:COLUMN: error: what is wrong", or
  * "error: what is wrong" where it has no place; likewise "warning: " and "note: ".
  */
 #pragma once

@@ -191,13 +191,7 @@ static bool choose_classes(job *j, GError **error)
 /* By its ending; all else is a PLY file. */
 static bool is_picture(const char *path)
 {
-    static const char *const endings[] = {".png", ".jpg", ".jpeg",
-                                          ".exr", ".hdr", ".pfm"};
-    g_autofree char *lower = g_ascii_strdown(path ? path : "", -1);
-    bool is = false;
-    for (size_t i = 0; i < G_N_ELEMENTS(endings); i++)
-        is |= g_str_has_suffix(lower, endings[i]);
-    return is;
+    return path && neph_image_is_written(path, NULL);
 }
 
 static bool job_init(job *j, GError **error)

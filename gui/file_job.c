@@ -61,19 +61,10 @@ static bool write_scene(const job *j, GError **error)
            neph_camera_save(&j->camera, j->path, error);
 }
 
-static bool has_eight_bits(const char *path)
-{
-    static const char *const endings[] = {".png", ".jpg", ".jpeg"};
-    g_autofree char *lower = g_ascii_strdown(path, -1);
-    bool has = false;
-    for (size_t i = 0; i < G_N_ELEMENTS(endings); i++)
-        has |= g_str_has_suffix(lower, endings[i]);
-    return has;
-}
-
 static bool write_picture(const job *j, GError **error)
 {
-    if (!has_eight_bits(j->path))
+    bool eight_bits;
+    if (!neph_image_is_written(j->path, &eight_bits) || !eight_bits)
         return neph_image_write(j->picture->image, j->path, 0.0f, error);
     g_autoptr(NephImage) seen = display_image(j->picture->image, &j->shown, error);
     return seen && neph_image_write(seen, j->path, 0.0f, error);

@@ -190,23 +190,13 @@ static void take_over(session *s)
     pthread_mutex_unlock(&s->lock);
 }
 
-/* Until another scene is asked for, or none. */
-static bool still_wanted(void *data)
-{
-    session *s = data;
-    pthread_mutex_lock(&s->lock);
-    bool still = !s->wanted.quit && !s->wanted.path;
-    pthread_mutex_unlock(&s->lock);
-    return still;
-}
-
 static void load(session *s, const char *path)
 {
     g_autoptr(GError) error = NULL;
     scene_log *log = scene_log_new();
     const NephLoadOptions options = {.file = session_tell_file,
                                      .file_data = s,
-                                     .go_on = still_wanted,
+                                     .go_on = session_still_wants,
                                      .go_on_data = s,
                                      .log = scene_log_write,
                                      .log_data = log};

@@ -50,7 +50,7 @@ static NephRender *resumed(session *s, const char *path, const NephSettings *set
 {
     neph_scene_set_camera(seen, &s->order.camera, NULL);
     NephRender *render = neph_render_new(seen, settings, error);
-    if (render && !neph_render_resume(render, path, error))
+    if (render && !neph_render_resume_while(render, path, session_still_wants, s, error))
         g_clear_pointer(&render, neph_render_free);
     return render;
 }
@@ -87,6 +87,8 @@ bool session_go_on_from(session *s, const char *path)
     NephRender *render = settings && neph_scene_resize(seen, size[0], size[1], &error)
                              ? resumed(s, path, settings, seen, &error)
                              : NULL;
+    if (g_error_matches(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED))
+        return false;
     if (!render) {
         session_tell_error(s, g_steal_pointer(&error), false);
         return false;

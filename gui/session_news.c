@@ -73,6 +73,15 @@ void session_send_news(session *s)
     g_source_attach(idle, s->context);
 }
 
+bool session_still_wants(void *data)
+{
+    session *s = data;
+    pthread_mutex_lock(&s->lock);
+    bool still = !s->wanted.quit && !s->wanted.path;
+    pthread_mutex_unlock(&s->lock);
+    return still;
+}
+
 void session_tell_state(session *s, session_state state)
 {
     pthread_mutex_lock(&s->lock);

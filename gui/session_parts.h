@@ -61,6 +61,8 @@ struct session {
 
 /* ---- session_news.c: on any thread ---- */
 
+/** @brief Until another scene is asked for, or none. A NephGoOnFunc; data: session. */
+bool session_still_wants(void *data);
 /** @brief Lets go; whoever is last frees. */
 void session_unref(session *s);
 /** @brief With the lock held: what s->news says will be told. */

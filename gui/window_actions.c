@@ -88,17 +88,12 @@ static char *name_with(window *w, const char *ending)
 static void save_picture(GSimpleAction *action, GVariant *parameter, void *data)
 {
     (void)action, (void)parameter;
-    static const char *const images[] = {"*.png", "*.exr", "*.jpg",
-                                         "*.hdr", "*.pfm", NULL};
     window *w = data;
+    g_auto(GStrv) images = file_patterns(neph_image_written_extensions());
     g_autofree char *name = name_with(w, ".png");
     g_autofree char *folder = document_folder(w->document);
-    const file_question question = {"Save the picture",
-                                    true,
-                                    name,
-                                    folder,
-                                    "Pictures (png, exr, jpg, hdr, pfm)",
-                                    images};
+    const file_question question = {
+        "Save the picture", true, name, folder, "Pictures", (const char *const *)images};
     file_dialog_ask(w->gtk, &question, save_to, w);
 }
 

@@ -4,6 +4,7 @@
  */
 #include "job.h"
 
+#include "clock.h"
 #include "command.h"
 #include "dealer.h"
 #include "join.h"
@@ -19,12 +20,8 @@
 
 enum { USUAL_PASSES = 16, FIRST_NOISE_CHECK = 8 };
 
-/* Of the time asked for so much is kept for writing the picture: s, and a share. */
-static const double time_kept = 0.3, share_kept = 0.02;
-
 typedef struct job {
     const options *options;
-    double start; /* s, less what another job spent */
     NephScene *scene;
     NephRender *render;
     char **outputs; /* owned */
@@ -32,36 +29,35 @@ typedef struct job {
 
     /* The root's. */
     dealer dealer;
-    double passes, time, noise; /* where it ends; 0: anywhere */
-    double pass_start, pass_seconds;
-    double last_join; /* s */
+    job_clock clock;
+    double spent_before;  /* s: by the job that it goes on from */
+    bool has_pass;        /* a rank has rendered one */
+    bool has_gap;         /* not all passes before the last one were rendered */
+    double passes, noise; /* where it ends; 0: anywhere */
+    double last_join;     /* s */
     int64_t noise_check;
     NephStop stopped_by;
     progress shown;
 } job;
 
-static double now(void)
-{
-    return (double)g_get_monotonic_time() * 1e-6;
-}
-
 /* ---- When ---- */
 
-static double time_left(const job *j)
-{
-    return (1.0 - share_kept) * j->time - time_kept - (now() - j->start);
-}
-
-/* A pass that is dealt now is begun when the one under way ends. */
-static bool join_is_due(void *data)
+static bool join_is_due(int n_before, void *data)
 {
     const job *j = data;
     int64_t n = j->dealer.next;
     return (j->passes > 0.0 && (double)n >= j->passes) ||
            (j->noise > 0.0 && n >= j->noise_check) ||
-           (j->time > 0.0 && n > 0 && time_left(j) < 2.0 * j->pass_seconds) ||
+           (n > 0 && clock_is_over(&j->clock, j->render, n_before)) ||
            (j->options->checkpoint &&
-            now() - j->last_join > j->options->checkpoint_every);
+            clock_now() - j->last_join > j->options->checkpoint_every);
+}
+
+static void hear_pass(double seconds, void *data)
+{
+    job *j = data;
+    j->has_pass = true;
+    clock_note_pass(&j->clock, seconds);
 }
 
 /* The error falls as 1 / √passes. */
@@ -82,7 +78,7 @@ static NephStop decide(job *j)
         return NEPH_PASSES_DONE;
     if (noise <= j->noise)
         return NEPH_NOISE_REACHED;
-    if (j->time > 0.0 && time_left(j) < j->pass_seconds)
+    if (clock_is_over(&j->clock, j->render, 0))
         return NEPH_TIME_UP;
     if (j->noise > 0.0)
         plan_noise_check(j, noise);
@@ -91,49 +87,73 @@ static NephStop decide(job *j)
 
 /* ---- Passes ---- */
 
+/* The root: where time is up, once there is a picture. */
+static bool has_to_give_up(job *j)
+{
+    if (j->has_pass && clock_is_up(&j->clock, j->render))
+        dealer_give_up(&j->dealer);
+    return j->dealer.gave_up;
+}
+
 static bool look_on(double fraction, const NephStatistics *statistics, void *data)
 {
     (void)fraction;
     job *j = data;
+    const job_clock *c = &j->clock;
     if (ranks_me() != ROOT)
-        return true;
+        return !dealer_says_give_up();
     dealer_serve(&j->dealer);
+    if (has_to_give_up(j))
+        return false;
     NephStatistics all = *statistics;
     all.passes = j->dealer.next - 1;
     all.passes_wanted = (int64_t)j->passes;
-    all.time_total = now() - j->start;
+    all.time_total = clock_now() - c->start;
     double done = j->passes > 0.0 ? (double)all.passes / j->passes : 0.0;
-    if (j->time > 0.0)
-        done = fmax(done, all.time_total / j->time);
+    if (c->time > 0.0)
+        done = fmax(done, all.time_total / c->time);
     return progress_show(done, &all, &j->shown);
 }
 
-static void render_pass(job *j, int64_t index)
+/* @return s that it took; 0: it was given up */
+static double render_pass(job *j, int64_t index)
 {
     g_autoptr(GError) error = NULL;
-    double start = now();
-    if (!neph_render_pass(j->render, (uint32_t)index, look_on, j, &error))
+    double start = clock_now();
+    if (neph_render_pass(j->render, (uint32_t)index, look_on, j, &error))
+        return clock_now() - start;
+    if (!g_error_matches(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED))
         ranks_abort(error);
-    j->pass_seconds = fmax(now() - start, 0.5 * j->pass_seconds);
+    return 0.0;
+}
+
+static void render_as_told(job *j)
+{
+    double took = 0.0;
+    order next = question_answer(question_ask(0, took));
+    while (next.pass >= 0) {
+        question *then = question_ask(1, took);
+        if (!dealer_says_give_up())
+            took = render_pass(j, next.pass);
+        next = question_answer(then);
+    }
 }
 
 /* Until the root says join. */
 static void render_dealt(job *j)
 {
-    if (ranks_me() == ROOT) {
-        for (order next; (next = dealer_deal(&j->dealer)).pass >= 0;) {
-            render_pass(j, next.pass);
-            dealer_serve(&j->dealer);
-        }
-        dealer_wait(&j->dealer);
+    if (ranks_me() != ROOT) {
+        render_as_told(j);
         return;
     }
-    order next = question_answer(question_ask());
-    while (next.pass >= 0) {
-        question *then = question_ask();
-        render_pass(j, next.pass);
-        next = question_answer(then);
+    for (order next; (next = dealer_deal(&j->dealer, 0)).pass >= 0;) {
+        double took = render_pass(j, next.pass);
+        if (took > 0.0)
+            hear_pass(took, j);
+        dealer_serve(&j->dealer);
     }
+    while (!dealer_all_know(&j->dealer))
+        has_to_give_up(j);
 }
 
 /* ---- When the job is ended from outside ---- */
@@ -168,6 +188,10 @@ static void save(const job *j)
     const char *path = j->options->checkpoint;
     if (!path)
         return;
+    if (j->has_gap) {
+        tell("note", "%s is not written: time was up before all passes were done", path);
+        return;
+    }
     if (neph_render_save_checkpoint(j->render, path, &error))
         say_farewell_with(j, j->dealer.next);
     else
@@ -179,22 +203,75 @@ static bool goes_on(job *j)
 {
     int on = 1;
     if (ranks_me() == ROOT && j->dealer.next > 0) {
-        j->stopped_by = decide(j);
+        if (j->stopped_by == NEPH_GOES_ON)
+            j->stopped_by = decide(j);
         on = j->stopped_by == NEPH_GOES_ON;
     }
-    MPI_Bcast(&on, 1, MPI_INT, ROOT, MPI_COMM_WORLD);
+    ranks_share(&on, 1, MPI_INT);
     return on;
+}
+
+/* Of passes that were given up. */
+static void note_missing(job *j)
+{
+    NephStatistics s;
+    neph_render_statistics(j->render, &s);
+    j->has_gap = s.passes < j->dealer.next;
+    j->dealer.next = s.passes;
+    j->stopped_by = NEPH_TIME_UP;
+}
+
+static void join(job *j)
+{
+    bool gave_up = dealer_settle(&j->dealer);
+    double start = clock_now();
+    join_sums(j->render);
+    if (gave_up && ranks_me() == ROOT)
+        note_missing(j);
+    j->last_join = clock_now();
+    j->clock.join = fmax(j->clock.join, j->last_join - start);
 }
 
 static void render_all(job *j)
 {
     while (goes_on(j)) {
         render_dealt(j);
-        join_sums(j->render);
+        join(j);
         if (ranks_me() == ROOT)
             save(j);
-        j->last_join = now();
     }
+}
+
+/* To the render: what this job has spent so far. */
+static void tell_time(const job *j)
+{
+    double spent = clock_now() - j->clock.start - j->spent_before;
+    neph_render_set_time_around(j->render, spent, (const char *const *)j->outputs);
+}
+
+/* As "nephroid render" does, which ends in time by showing parts of a pass. */
+static bool look_on_alone(double fraction, const NephStatistics *statistics, void *data)
+{
+    return progress_show(fraction, statistics, &((job *)data)->shown);
+}
+
+static void render_alone(job *j)
+{
+    g_autoptr(GError) error = NULL;
+    NephStatistics s;
+    if (ranks_me() != ROOT)
+        return;
+    tell_time(j);
+    if (!neph_render_run(j->render, look_on_alone, j, &error))
+        ranks_abort(error);
+    neph_render_statistics(j->render, &s);
+    j->dealer.next = s.passes;
+    j->stopped_by = s.stopped_by;
+    if (s.passes > 0)
+        save(j);
+    if (ranks_count() > 1 && !j->options->quiet)
+        tell("note",
+             "time is too short for a pass of each rank: one of them has rendered");
 }
 
 /* ---- Before ---- */
@@ -217,7 +294,7 @@ static double number_of(const NephSettings *settings, const char *name)
     return g_ascii_strtod(text, NULL);
 }
 
-/* The root: those asked for; where time is given, as large as passes are that fit. */
+/* The root: those asked for. */
 static NephSettings *choose_settings(job *j, GError **error)
 {
     const options *o = j->options;
@@ -229,23 +306,12 @@ static NephSettings *choose_settings(job *j, GError **error)
     if (!asked || !overrides_apply(&o->settings, asked, error) ||
         (width && !neph_scene_resize(j->scene, width, height, error)))
         return NULL;
-    j->time = number_of(asked, "time");
+    j->clock.time = number_of(asked, "time");
     j->noise = number_of(asked, "noise");
     j->passes = floor(number_of(asked, "passes"));
-    if (!(j->passes > 0.0) && !(j->time > 0.0) && !(j->noise > 0.0))
+    if (!(j->passes > 0.0) && !(j->clock.time > 0.0) && !(j->noise > 0.0))
         j->passes = USUAL_PASSES;
-    if (!(j->time > 0.0))
-        return g_steal_pointer(&asked);
-    NephPlan plan;
-    g_autoptr(NephRender) trial = neph_render_new(j->scene, asked, error);
-    if (!trial)
-        return NULL;
-    neph_render_set_time_around(trial, now() - j->start, NULL);
-    if (!o->resume && !neph_render_plan(trial, &plan, error))
-        return NULL;
-    NephSettings *chosen = neph_render_settings(trial);
-    neph_settings_set(chosen, "time", "0", NULL);
-    return chosen;
+    return g_steal_pointer(&asked);
 }
 
 static void set_threads(const job *j, NephSettings *settings)
@@ -271,8 +337,9 @@ static NephSettings *share_settings(const job *j)
         *value++ = '\0';
         neph_settings_set(out, *line, value, NULL);
     }
+    neph_settings_set(out, "time", "0", NULL); /* of it the root knows */
     neph_scene_size(j->scene, &size[0], &size[1]);
-    MPI_Bcast(size, 2, MPI_INT, ROOT, MPI_COMM_WORLD);
+    ranks_share(size, 2, MPI_INT);
     neph_scene_resize(j->scene, size[0], size[1], NULL);
     set_threads(j, out);
     return out;
@@ -298,7 +365,7 @@ static bool resume(job *j, GError **error)
         return false;
     neph_render_statistics(j->render, &s);
     j->dealer.next = s.passes;
-    j->start -= s.time_total;
+    j->clock.start -= j->spent_before = s.time_total;
     if (!j->options->quiet)
         tell("note", "going on after %" G_GINT64_FORMAT " passes", s.passes);
     return true;
@@ -311,7 +378,10 @@ static bool begin_root(job *j, GError **error)
         return false;
     set_threads(j, settings);
     j->render = neph_render_new(j->scene, settings, error);
-    return j->render && resume(j, error);
+    if (!j->render)
+        return false;
+    tell_time(j);
+    return resume(j, error);
 }
 
 static void choose_outputs(job *j)
@@ -334,14 +404,28 @@ static bool prepare(job *j, GError **error)
     const NephLoadOptions how =
         loading_options((unsigned)j->threads, j->options->quiet || ranks_me() != ROOT);
     j->scene = neph_scene_load_with(j->options->scene, &how, error);
-    if (!ranks_agree(j->scene != NULL) ||
-        !ranks_agree(ranks_me() != ROOT || begin_root(j, error)))
+    if (!ranks_agree(j->scene != NULL))
         return false;
     choose_outputs(j);
+    if (!ranks_agree(ranks_me() != ROOT || begin_root(j, error)))
+        return false;
     g_autoptr(NephSettings) settings = share_settings(j);
     if (ranks_me() != ROOT)
         j->render = neph_render_new(j->scene, settings, error);
     return ranks_agree(j->render != NULL) && share_plan(j, error);
+}
+
+/* The root says it to all, which has planned. */
+static bool time_is_short(job *j)
+{
+    j->clock.join = join_seconds(j->render);
+    g_autoptr(NephSettings) settings = neph_render_settings(j->render);
+    double crowd = ranks_crowd(number_of(settings, "threads"));
+    if (j->clock.time > 0.0)
+        j->clock.pass = neph_render_pass_seconds(j->render) * crowd;
+    int is_short = clock_is_short(&j->clock, j->render);
+    ranks_share(&is_short, 1, MPI_INT);
+    return is_short;
 }
 
 /* ---- After ---- */
@@ -360,7 +444,7 @@ static int write_all(const job *j)
     }
     NephStatistics s;
     neph_render_statistics(j->render, &s);
-    s.time_total = now() - j->start;
+    s.time_total = clock_now() - j->clock.start;
     s.stopped_by = j->stopped_by;
     if (s.short_of_memory && !j->options->quiet)
         tell("note", "fewer photons a pass were sent than asked for: more would not fit "
@@ -376,9 +460,11 @@ static int write_all(const job *j)
 
 int job_run(const options *o, double start)
 {
-    job j = {
-        .options = o, .start = start, .last_join = now(), .threads = ranks_threads()};
-    j.dealer = (dealer){.is_due = join_is_due, .data = &j};
+    job j = {.options = o,
+             .clock.start = start,
+             .last_join = clock_now(),
+             .threads = ranks_threads()};
+    j.dealer = (dealer){.is_due = join_is_due, .hear = hear_pass, .data = &j};
     j.noise_check = MAX(FIRST_NOISE_CHECK, ranks_count());
     j.shown = progress_begin(o->quiet || ranks_me() != ROOT);
     g_autoptr(GError) error = NULL;
@@ -389,7 +475,7 @@ int job_run(const options *o, double start)
         say_farewell_with(&j, 0);
         if (ranks_me() == ROOT)
             sigaction(SIGTERM, &(struct sigaction){.sa_handler = on_end}, NULL);
-        render_all(&j);
+        time_is_short(&j) ? render_alone(&j) : render_all(&j);
         progress_end(&j.shown);
         if (ranks_me() == ROOT)
             result = write_all(&j);
@@ -397,6 +483,6 @@ int job_run(const options *o, double start)
     neph_render_free(j.render);
     neph_scene_free(j.scene);
     g_strfreev(j.outputs);
-    MPI_Bcast(&result, 1, MPI_INT, ROOT, MPI_COMM_WORLD);
+    ranks_share(&result, 1, MPI_INT);
     return result;
 }

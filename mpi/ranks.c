@@ -2,6 +2,7 @@
 
 #include "message.h"
 
+#include <math.h>
 #include <string.h>
 
 int ranks_me(void)
@@ -18,23 +19,51 @@ int ranks_count(void)
     return n;
 }
 
-int ranks_threads(void)
+/* All ranks call it: of this rank's machine. */
+static double sum_here(double number)
 {
     MPI_Comm here;
-    int n, processors = (int)g_get_num_processors();
+    double sum;
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
-    MPI_Comm_size(here, &n);
+    MPI_Allreduce(&number, &sum, 1, MPI_DOUBLE, MPI_SUM, here);
     MPI_Comm_free(&here);
-    return MAX(processors / n, 1);
+    return sum;
+}
+
+int ranks_threads(void)
+{
+    return MAX((int)g_get_num_processors() / (int)sum_here(1.0), 1);
+}
+
+double ranks_crowd(double threads)
+{
+    double processors = (double)g_get_num_processors();
+    return fmax(sum_here(threads > 0.0 ? threads : processors) / processors, 1.0);
+}
+
+enum { LONGEST_PAUSE = 1000 }; /* µs */
+
+void ranks_wait(MPI_Request *request)
+{
+    int done = 0;
+    for (gulong pause = 1; MPI_Test(request, &done, MPI_STATUS_IGNORE), !done;
+         pause = MIN(2 * pause, LONGEST_PAUSE))
+        g_usleep(pause);
+}
+
+void ranks_share(void *data, int n, MPI_Datatype type)
+{
+    MPI_Request request;
+    MPI_Ibcast(data, n, type, ROOT, MPI_COMM_WORLD, &request);
+    ranks_wait(&request);
 }
 
 /* In pieces whose sizes MPI can say. */
-static void share(char *data, uint64_t size)
+static void share_bytes(char *data, uint64_t size)
 {
     const uint64_t piece = 1 << 30;
     for (uint64_t done = 0; done < size; done += piece)
-        MPI_Bcast(data + done, (int)MIN(size - done, piece), MPI_CHAR, ROOT,
-                  MPI_COMM_WORLD);
+        ranks_share(data + done, (int)MIN(size - done, piece), MPI_CHAR);
 }
 
 GBytes *ranks_share_bytes(GBytes *bytes)
@@ -42,11 +71,11 @@ GBytes *ranks_share_bytes(GBytes *bytes)
     gsize size = 0;
     const void *mine = bytes ? g_bytes_get_data(bytes, &size) : NULL;
     uint64_t all = size;
-    MPI_Bcast(&all, 1, MPI_UINT64_T, ROOT, MPI_COMM_WORLD);
+    ranks_share(&all, 1, MPI_UINT64_T);
     char *out = g_malloc0(all + 1);
     if (mine)
         memcpy(out, mine, all);
-    share(out, all);
+    share_bytes(out, all);
     return g_bytes_new_take(out, all);
 }
 
@@ -60,7 +89,9 @@ char *ranks_share_text(const char *text)
 bool ranks_agree(bool well)
 {
     int mine = well, all;
-    MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    MPI_Request request;
+    MPI_Iallreduce(&mine, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD, &request);
+    ranks_wait(&request);
     return all;
 }
 

@@ -4,8 +4,9 @@
 usage: tools/doxygen_markdown.py FILE.md    (docs/Doxyfile's filter)
 
 Formulas between dollars get Doxygen's marks; headings within a page get the names that links
-use for them, with the file's own before them, since Doxygen knows them all in one. What is code
-stays, and so does the number of lines, so that warnings name the right one.
+use for them, with the file's own before them, since Doxygen knows them all in one. Files that are no
+pages are named from the project's root, under files/ where they are links (tools/doxygen_links.py
+puts them there). What is code stays, and so does the number of lines, so that warnings name the right one.
 """
 import pathlib
 import re
@@ -16,6 +17,8 @@ DISPLAYED = re.compile(r"\$\$(.+?)\$\$", re.S)
 INLINE = re.compile(r"(?<![\\$\w])\$(?!\s)((?:[^$`\n]|\n(?!\n))+?)(?<!\s)\$(?![\w$])")
 HEADING = re.compile(r"^(##+ +)(.*)$")
 LINK = re.compile(r"\]\(([\w./-]*\.md)?#([\w-]+)\)")
+FILE = re.compile(r"(!\[[^][]*)?\]\((?![a-z]+:)([\w./-]+\.(?!md\b)\w+)\)")
+ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def formulas(text):
@@ -41,13 +44,23 @@ def named_headings(text, stem):
         yield line
 
 
+def files(text, folder):
+    def from_root(match):
+        path = (folder / match[2]).resolve().relative_to(ROOT)
+        if match[1]:
+            return f"{match[1]}]({path})"
+        return f"](@ref {path})" if path.suffix in (".c", ".h") else f"](files/{path})"
+
+    return FILE.sub(from_root, text)
+
+
 def main():
     path = pathlib.Path(sys.argv[1])
     stem = path.parent.name if path.stem == "README" else path.stem
     text = "\n".join(named_headings(path.read_text(), stem))
     text = LINK.sub(lambda m: f"](#{pathlib.Path(m[1] or stem).stem}--{m[2]})", text)
     for i, part in enumerate(CODE.split(text)):
-        sys.stdout.write(part if i % 2 else formulas(part))
+        sys.stdout.write(part if i % 2 else formulas(files(part, path.parent)))
 
 
 if __name__ == "__main__":

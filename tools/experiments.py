@@ -9,13 +9,12 @@ sections are made anew. Every figure in the text is taken from the renders: noth
 Times are seconds of all processors together, so that a busy machine finds what a quiet one does.
 """
 import argparse
-import array
-import math
 import pathlib
 import re
 import subprocess
 
 import cornell
+from closed_forms import cardioid, nephroid, off_curve, patch, pixels
 from plot import log_log
 from renders import ROOT, Kept
 
@@ -25,6 +24,7 @@ CORNER, BALLS = "scenes/corner/corner.pbrt", "scenes/spheres/spheres.pbrt"
 RAW = ["--denoise", "off"]
 CLASSIC = [*RAW, "--integrator", "photonmap", "--passes", "1", "--spp", "4", "--set", "alpha=1"]
 ALL_BY_PHOTONS = [*CLASSIC, "--set", "direct_illumination=false"]
+PLAIN = [*ALL_BY_PHOTONS, "--set", "edges=false"]  # as in the texts: what probes edges is grain of its own
 EXPERIMENTS = []
 
 
@@ -73,11 +73,17 @@ class Report:
         return self.kept.compare(image, reference)["relmse"]
 
 
+def truth(r, name, scene, width, height, integrator):
+    """What a scene looks like, to compare with: by a render of 60 s."""
+    return r.kept.render(f"truth-{name}", scene, *RAW, *r.size(width, height), "--integrator", integrator,
+                         processor=15 if r.quick else 60)
+
+
 @experiment
 def emitted(r):
     """Photons emitted"""
     counts = [10 ** e for e in range(3, 6 if r.quick else 8)]
-    images = [r.kept.render("emitted", WATER, *ALL_BY_PHOTONS, "--spp", 1, *r.size(240, 192),
+    images = [r.kept.render("emitted", WATER, *PLAIN, *r.size(240, 192),
                             *setting("photons", n),
                             *for_each_class("nearest", min(max(2, n // 3000), 500)))
               for n in counts]
@@ -86,18 +92,28 @@ def emitted(r):
           "grain.")
     r.sheet("emitted", images, 3, "Water in a box by " + ", ".join(f"{n:,}" for n in counts)
             + " photons")
+    water = truth(r, "water", WATER, 240, 192, "sppm")
+    r.plot("emitted-error", [("one pass", counts, [r.relmse(i, water) for i in images])], "photons", "relMSE",
+           "Error against photons emitted")
+    r.say("Of two or three nearest photons the error is a matter of luck: the variance of two has no bound, that of "
+          "three is the light's square. What is left of many is bias, for edges are not looked at: the front wall is too bright at its foot, by "
+          "photons on its other side, and the rear one too dark along its upper edge.")
 
 
 @experiment
 def nearest(r):
     """Photons in an estimate"""
     counts = [10, 100, 1000] if r.quick else [10, 100, 1000, 10000]
-    images = [r.kept.render("nearest", WATER, *ALL_BY_PHOTONS, "--spp", 1, *r.size(240, 192),
+    images = [r.kept.render("nearest", WATER, *PLAIN, *r.size(240, 192),
                             *setting("photons", 600000), *for_each_class("nearest", n))
               for n in counts]
     r.say("With 200,000 photons a class, the nearest ten make an estimate, or more, tenfold from "
           "picture to picture: few are grain, many are blur. The best number is where the two errors meet.")
     r.sheet("nearest", images, 2, "The nearest " + ", ".join(f"{n:,}" for n in counts) + " photons")
+    water = truth(r, "water", WATER, 240, 192, "sppm")
+    r.plot("nearest-error", [("one pass", counts, [r.relmse(i, water) for i in images])],
+           "nearest photons", "relMSE", "Error against photons in an estimate")
+    r.say("The floor of the curve is wide: where grain falls, light that leaks through the thin walls rises.")
 
 
 @experiment
@@ -117,6 +133,18 @@ def kernels(r):
                             *setting("caustic_kernel", "cone"), *setting("caustic_cone_k", k))
               for k in cones]
     r.sheet("cones", images, 3, "The cone filter with k = 1, 1.5 and 3")
+    ring = truth(r, "ring", RING, 160, 160, "sppm")
+
+    def errors(*options):
+        return [r.relmse(r.kept.render("kernel-error", RING, *CLASSIC, *r.size(160, 160),
+                                       *setting("caustic_photons", 150000), *setting("caustic_nearest", n),
+                                       *options), ring) for n in near]
+
+    near = [30, 120, 480] if r.quick else [10, 30, 100, 300, 1000]
+    series = [(word, near, errors(*setting("caustic_kernel", word))) for word in words]
+    series += [(f"cone, k = {k}", near, errors(*setting("caustic_kernel", "cone"), *setting("caustic_cone_k", k)))
+               for k in cones[1:]]
+    r.plot("kernels-error", series, "nearest photons", "relMSE", "Error against photons in an estimate, by kernel")
 
 
 @experiment
@@ -127,7 +155,7 @@ def radius(r):
     images = [r.kept.render("radius", CORNER, *fixed, *setting("radius", x),
                             *setting("edges", "false")) for x in radii]
     with_edges = [r.kept.render("radius", CORNER, *fixed, *setting("radius", x)) for x in radii]
-    truth = r.kept.render("radius-truth", CORNER, *r.size(200, 150), "--integrator", "path",
+    corner = r.kept.render("radius-truth", CORNER, *r.size(200, 150), "--integrator", "path",
                           "--passes", 16, "--spp", 16)
     r.say("A wall of 4 mm parts a bright room from a dark one. As the radius grows, light comes "
           "through the wall, round the corners, and the shadow's edge goes soft: all of it is "
@@ -136,22 +164,24 @@ def radius(r):
     r.sheet("radius", [images[i] for i in shown] + [with_edges[i] for i in shown], 3,
             "Radius " + ", ".join(f"{radii[i]:g} m" for i in shown)
             + "; above without, below with what keeps estimates from reaching round edges")
-    many = [r.kept.render("radius", CORNER, *fixed, *setting("radius", x), "--passes",
-                          8) for x in radii]
-    errors = [[r.relmse(i, truth) for i in row] for row in (images, with_edges, many)]
+    passes = 8 if r.quick else 32
+    many = [r.kept.render("radius", CORNER, *fixed, *setting("radius", x), "--passes", passes)
+            for x in radii]
+    errors = [[r.relmse(i, corner) for i in row] for row in (images, with_edges, many)]
     r.plot("radius-error", [("as found", radii, errors[0]), ("edges probed", radii, errors[1]),
-                            ("probed, many passes", radii, errors[2])],
+                            (f"probed, {passes} passes", radii, errors[2])],
            "radius, m", "relMSE", "Error against radius: grain on the left, bias on the right")
-    r.say("What is left after so many passes of the same radius that grain hardly counts is the bias:")
-    r.table(["radius, m", "one pass", "one pass, edges probed", "many passes, edges probed"],
+    r.say(f"After {passes} passes of the same radius the grain's share is 1/{passes} of what it was, and "
+          "the bias is still all there:")
+    r.table(["radius, m", "one pass", "one pass, edges probed", f"{passes} passes, edges probed"],
             [(f"{x:g}", *[f"{row[i]:.4f}" for row in errors]) for i, x in enumerate(radii)])
 
 
 @experiment
 def gather_rays(r):
     """Final gathering"""
-    counts = [1, 8, 64]
-    base = [*CLASSIC, *r.size(240, 240), *setting("photons", 200000)]
+    counts = [1, 4, 16, 64]
+    base = [*CLASSIC, *r.size(256, 256), *setting("photons", 200000)]
     plain = r.kept.render("gather", BALLS, *base)
     images = [r.kept.render("gather", BALLS, *base, *setting("final_gather", "true"),
                             *setting("gather_rays", n)) for n in counts]
@@ -159,40 +189,47 @@ def gather_rays(r):
           "surroundings turn them into grain, which more rays smooth.")
     r.sheet("gather", [plain, *images[-2:]], 3, "Straight from the map; by "
             + " and ".join(map(str, counts[-2:])) + " rays")
+    balls = truth_of_balls(r)
+    errors = [r.relmse(i, balls) for i in images]
+    r.plot("gather-error", [("gathered", counts, errors),
+                            ("straight", counts, [r.relmse(plain, balls)] * len(counts))],
+           "gather rays", "relMSE", "Error against gather rays")
     r.table(["gather rays", "camera's time, s"],
-            [("none", f"{r.kept.statistics(plain)['time']['camera']:.2f}")]
-            + [(n, f"{r.kept.statistics(i)['time']['camera']:.2f}") for n, i in zip(counts, images)])
+            [(n, f"{r.kept.camera_seconds(i):.2f}") for n, i in zip(["none", *counts], [plain, *images])])
 
 
 @experiment
 def bounces(r):
     """Bounces"""
     limits = [0, 1, 3, 8]
-    images = [r.kept.render("bounces", BALLS, *CLASSIC, *r.size(240, 240), "--spp", 8,
+    images = [r.kept.render("bounces", BALLS, *CLASSIC, *r.size(256, 256), "--spp", 8,
                             *setting("photons", 300000), *setting("max_forward_bounces", n))
               for n in limits]
     r.say("With max_forward_bounces of 0, 1, 3 and 8: first no light comes through glass or from "
           "wall to wall, then colours begin to bleed.")
     r.sheet("bounces", images, 4, "Photons that scatter at most 0, 1, 3 and 8 times")
+    balls = truth_of_balls(r)
+    r.plot("bounces-error", [("one pass", [n + 1 for n in limits], [r.relmse(i, balls) for i in images])],
+           "max_forward_bounces + 1", "relMSE", "Error against bounces")
 
 
 @experiment
 def maps(r):
     """List, tree and grid"""
-    counts = [1000, 4000] if r.quick else [1000, 4000, 16000, 64000]
+    counts = [10 ** e for e in range(3, 5 if r.quick else 7)]
     rows, series = [], {word: ([], []) for word in ("list", "kdtree", "grid")}
     for n in counts:
         row = [f"{n:,}"]
         for word in series:
-            image = r.kept.render(f"map-{word}", BOX, *ALL_BY_PHOTONS, "--size", "64x64", "--spp", 1,
+            image = r.kept.render(f"map-{word}", BOX, *ALL_BY_PHOTONS, "--size", "128x128", "--spp", 1,
                                   "--threads", 1, *setting("photons", n), *setting("photon_map", word),
                                   *setting("radius", 0.1))
-            seconds = r.kept.statistics(image)["time"]["camera"]
+            seconds = r.kept.camera_seconds(image)
             series[word][0].append(n)
             series[word][1].append(seconds)
             row.append(f"{seconds:.3f}")
         rows.append(row)
-    r.say("The time of the camera's pass at 64 × 64, one thread, by the structure that photons are "
+    r.say("The time of the camera's pass at 128 × 128, one thread, by the structure that photons are "
           "looked up in. All three give the same picture; a list looks at every photon.")
     r.table(["photons", "list, s", "kdtree, s", "grid, s"], rows)
     r.plot("maps", [(word, *xy) for word, xy in series.items()], "photons", "seconds",
@@ -204,10 +241,12 @@ def bsdfs(r):
     """Four materials"""
     r.say("How aluminium foil, opaque purple plastic, green cloth and green glass scatter light that "
           "comes from 45 degrees, for red, green and blue.")
-    for name in ("aluminium-foil", "purple-plastic", "green-cloth", "green-glass"):
+    names = ("aluminium-foil", "purple-plastic", "green-cloth", "green-glass")
+    for name in names:
         r.kept.run("bsdf", name, "--scene", ROOT / "docs/report/materials.pbrt", "-o",
                    r.folder / "figures" / f"{name}.svg")
-        r.say(f"![{name}](figures/{name}.svg)")
+    cells = [f"![{name}](figures/{name}.svg)" for name in names]
+    r.table(["", ""], [cells[:2], cells[2:]])
 
 
 @experiment
@@ -255,8 +294,8 @@ def few(r):
     r.sheet("few", images, 3, "100, 1,000 and 10,000 photons emitted")
     r.table(["photons", "stored", "trace, s", "camera, s"],
             [(f"{n:,}", f"{sum(c['stored'] for c in said['photons'].values()):,}",
-              f"{said['time']['trace']:.4f}", f"{said['time']['camera']:.3f}")
-             for n, said in zip(counts, map(r.kept.statistics, images))])
+              f"{said['time']['trace']:.4f}", f"{r.kept.camera_seconds(i):.3f}")
+             for n, i, said in zip(counts, images, map(r.kept.statistics, images))])
 
 
 @experiment
@@ -293,61 +332,15 @@ def budget(r):
     """What to spend a second on"""
     counts = [1000, 10000, 100000] if r.quick else [1000, 10000, 100000, 1000000]
     seconds, size = 4 if r.quick else 8, r.size(256, 256)
-    truth = truth_of_balls(r)
+    balls = truth_of_balls(r)
     rows = []
     for n in counts:
         image = r.kept.render("budget", BALLS, *RAW, *size, "--integrator", "sppm", "--spp", 1,
                               *setting("photons", n), processor=seconds)
-        rows.append((f"{n:,}", r.kept.statistics(image)["passes"], f"{r.relmse(image, truth):.4f}"))
+        rows.append((f"{n:,}", r.kept.statistics(image)["passes"], f"{r.relmse(image, balls):.4f}"))
     r.say(f"{seconds} s of sppm each: many passes of few photons, or few passes of many. Photons are cheaper "
           "than camera rays with their estimates, up to where a pass is nothing but photons.")
     r.table(["photons a pass", "passes", "relMSE"], rows)
-
-
-def pixels(path):
-    """Width, height and numbers of a PFM file, from the bottom row up."""
-    with open(path, "rb") as file:
-        assert file.readline() == b"PF\n"
-        width, height = map(int, file.readline().split())
-        assert float(file.readline()) < 0
-        return width, height, array.array("f", file.read())
-
-
-def cardioid(t):
-    """What a unit circle's reflections of a lamp at (-1, 0) touch, cusp at t = 0."""
-    return (2.0 * math.cos(t) - math.cos(2.0 * t)) / 3.0, (2.0 * math.sin(t) - math.sin(2.0 * t)) / 3.0
-
-
-def nephroid(t):
-    """The same for parallel light along +x."""
-    return 0.75 * math.cos(t) - 0.25 * math.cos(3.0 * t), 0.75 * math.sin(t) - 0.25 * math.sin(3.0 * t)
-
-
-def on_curve(curve, y):
-    """x where a curve whose y grows with t from 0 to a quarter turn has this y."""
-    low, high = 0.0, 0.5 * math.pi
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if curve(middle)[1] < y else (low, middle)
-    return curve(low)[0]
-
-
-def brightest(image, row, first, last):
-    width, _, values = image
-    return max(range(first, last), key=lambda x: values[3 * (row * width + x) + 1])
-
-
-def off_curve(image, curve, radius):
-    """How far, in pixels, the brightest point of each row is from where the curve crosses it."""
-    width, height, _ = image
-    off = []
-    for row in range(height):
-        y = abs(row + 0.5 - 0.5 * height) / radius
-        if 0.15 < y < 0.6:
-            wall = 0.92 * math.sqrt(1.0 - y * y)
-            found = brightest(image, row, width // 2, int(width / 2 + wall * radius))
-            off.append(abs(found + 0.5 - 0.5 * width - radius * on_curve(curve, y)))
-    return sorted(off)
 
 
 @experiment
@@ -370,20 +363,6 @@ def curves(r):
           "brightest, and where the curve crosses the row:")
     r.sheet("curves", images, 2, "The cardioid and the nephroid, from above")
     r.table(["curve", "rows", "pixels off: median", "nine in ten below"], rows)
-
-
-def patch(image, paint, place, normal):
-    """XYZ of 3 x 3 pixels around a place: as published figures foretell, and as rendered."""
-    width, height, values = image
-    column, row = cornell.pixel(place, width)
-    foretold, rgb = [0.0] * 3, [0.0] * 3
-    for x, y in ((column + i % 3 - 1, row + i // 3 - 1) for i in range(9)):
-        lit = cornell.irradiance(cornell.seen(x, y, width, place, normal), normal)
-        at = 3 * ((height - 1 - y) * width + x)
-        for k in range(3):
-            foretold[k] += lit * paint[k] / 9
-            rgb[k] += values[at + k] / 9
-    return foretold, cornell.xyz_of_srgb(rgb)
 
 
 @experiment
@@ -425,17 +404,17 @@ def truth_of_balls(r):
 @experiment
 def convergence(r):
     """Error against time"""
-    times = [1, 2, 4] if r.quick else [1, 2, 4, 8]
+    times = [1, 2, 4] if r.quick else [2, 4, 8, 16]
     size = r.size(256, 256)
-    truth = truth_of_balls(r)
+    balls = truth_of_balls(r)
     series = []
     for integrator in ("path", "photonmap", "sppm", "vcm", "auto"):
         images = [r.kept.render(f"time-{integrator}", BALLS, *size, "--integrator", integrator,
                                 "--spp", 1, processor=t) for t in times]
         series.append((integrator, [r.kept.statistics(i)["processor"] for i in images],
-                       [r.relmse(i, truth) for i in images]))
+                       [r.relmse(i, balls) for i in images]))
     r.say("Two balls in a box, rough metal and glass, by each integrator for about the same time, as "
-          "rendered, against vcm for much longer.")
+          "rendered, against vcm for much longer. Taking the noise out of what is shown is part of the time.")
     r.plot("convergence", series, "seconds", "relMSE", "Error against time")
     r.table(["seconds, about", *[s[0] for s in series]],
             [[t, *[f"{s[2][i]:.4f}" for s in series]] for i, t in enumerate(times)])

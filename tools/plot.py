@@ -1,7 +1,7 @@
 """Plots as SVG, of both axes logarithmic."""
 import math
 
-WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 560, 360, 70, 130, 16, 50
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 600, 360, 70, 170, 16, 50
 COLOURS = ["#0b6e99", "#c4501b", "#4f8a10", "#8a3ab9", "#b58900", "#555555"]
 
 

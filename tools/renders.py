@@ -3,6 +3,7 @@ import hashlib
 import json
 import os
 import pathlib
+import resource
 import signal
 import subprocess
 import sys
@@ -14,8 +15,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 def children_seconds():
     """Processor time of the processes that were started and have ended."""
-    times = os.times()
-    return times.children_user + times.children_system
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def processor_seconds(process):
@@ -73,12 +74,14 @@ class Kept:
         if not self.is_new(path, scene):
             print(f"render {name}: {scene.name} {' '.join(options)}", file=sys.stderr, flush=True)
             part = path.with_name(path.stem + "-part.exr")
+            part.unlink(missing_ok=True)
             stats, before = path.with_suffix(".json"), children_seconds()
             words = ["render", str(scene), "-q", "-o", str(part), "--stats", str(stats), *options]
             if processor:
                 render_for([self.program, *words], processor)
-            else:
-                self.run(*words)
+            if not part.exists():  # made at once, or since its first pass took longer
+                before = children_seconds()
+                self.run(*words, *(["--passes", "1"] if processor else []))
             said = json.loads(stats.read_text())
             said["processor"] = children_seconds() - before
             stats.write_text(json.dumps(said))
@@ -101,6 +104,11 @@ class Kept:
 
     def statistics(self, path):
         return json.loads(path.with_suffix(".json").read_text())
+
+    def camera_seconds(self, path):
+        """The camera's part of the processor time that a render took."""
+        said = self.statistics(path)
+        return said["processor"] * said["time"]["camera"] / said["time"]["total"]
 
     def compare(self, path, reference):
         return json.loads(self.run("compare", path, reference, "--json"))

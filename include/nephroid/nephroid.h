@@ -8,7 +8,7 @@
  *
  * Objects are opaque and owned by who made them. A function that can fail returns false
  * or NULL and sets GError **error (domain NEPH_ERROR_DOMAIN, codes NephError); messages
- * about input begin with file:line:column. The library never exits and never prints.
+ * about input begin with FILE:LINE:COLUMN. The library never exits and never prints.
  * Calls on different objects may come from different threads; calls on one object from
  * one thread at a time, except neph_render_cancel, which may come from any. A scene may
  * be read (const NephScene *) by many at once, also while it renders; what changes its
@@ -165,6 +165,12 @@ NEPH_API char *neph_features_describe(void);
 NEPH_API const char *const *neph_scene_extensions(void);
 /** @brief The same of pictures that are read: ".exr" and so on. */
 NEPH_API const char *const *neph_image_extensions(void);
+/** @brief The same of pictures that neph_image_write writes. */
+NEPH_API const char *const *neph_image_written_extensions(void);
+/** @brief Whether neph_image_write writes a picture to such a path, by its ending.
+ * @param eight_bits may be NULL; whether that is as it is seen, with a tone curve and
+ * eight bits, and not linear */
+NEPH_API bool neph_image_is_written(const char *path, bool *eight_bits);
 /** @brief A loaded scene; immutable but for its size and camera. */
 typedef struct NephScene NephScene;
 /** @brief Loads a scene (pbrt, glTF, OBJ ...). log may be NULL. threads 0 = all. On
@@ -188,9 +194,9 @@ typedef struct NephLoadOptions {
     NephFileFunc file; /**< told each file just before it is first opened, be it there or
                           not, also where reading then fails; may be NULL */
     void *file_data;
-    NephGoOnFunc go_on; /**< asked while a model (OBJ, STL, 3MF, Collada, FBX) is imported
-                           by the program that does that; stopped, loading ends with
-                           NEPH_ERROR_CANCELLED; may be NULL */
+    NephGoOnFunc go_on; /**< asked again and again while the scene is read and made ready;
+                           stopped, loading ends soon with NEPH_ERROR_CANCELLED; may be
+                           NULL */
     void *go_on_data;
     bool at_time; /**< the scene as it is at a time: that many seconds later the shutter
                      opens, and animations of glTF are where they are then; else these
@@ -450,12 +456,21 @@ NEPH_API char **neph_render_repeat(const NephRender *render);
  * is still there. */
 NEPH_API bool neph_render_save_checkpoint(NephRender *render, const char *path,
                                           GError **error);
+/** @brief The same, as long as go_on says so; else false with NEPH_ERROR_CANCELLED, and
+ * the old file is still there. */
+NEPH_API bool neph_render_save_checkpoint_while(NephRender *render, const char *path,
+                                                NephGoOnFunc go_on, void *data,
+                                                GError **error);
 /** @brief Before the run: takes over the passes of a checkpoint. What comes then is what
  * an unbroken render gives, bit for bit. Of its settings only `passes`, `time`, `noise`
  * and `threads` may be others; `time` counts from the beginning of the first process.
  * NEPH_ERROR_INPUT with the reason if the file is damaged, cut off, or of another
  * program, scene, camera, size or settings; the render is then as new. */
 NEPH_API bool neph_render_resume(NephRender *render, const char *path, GError **error);
+/** @brief The same, as long as go_on says so; else false with NEPH_ERROR_CANCELLED, and
+ * the render is as new. */
+NEPH_API bool neph_render_resume_while(NephRender *render, const char *path,
+                                       NephGoOnFunc go_on, void *data, GError **error);
 /** @brief The settings that a checkpoint's render was asked for, and the size of its
  * picture, which may be NULL. Owned by the caller; NULL with NEPH_ERROR_INPUT. */
 NEPH_API NephSettings *neph_checkpoint_settings(const char *path, int *width, int *height,
@@ -517,10 +532,10 @@ NEPH_SIZED char *neph_statistics_text(const NephStatistics *statistics, bool jso
 
 /* ---- One picture by many processes ---- */
 
-/* Each process loads the scene and makes a render of the same settings (`time` 0). One of
-   them plans, the others take its plan, and all render passes that it deals out, each
-   number once. Their sums are added up in that one. The picture is that of one process,
-   but for the order in which sums are rounded. */
+/* Each process loads the scene and makes a render of the same settings (`time` 0 but in
+   the one that plans). One of them plans, the others take its plan, and all render passes
+   that it deals out, each number once. Their sums are added up in that one. The picture
+   is that of one process, but for the order in which sums are rounded. */
 
 /** @brief The plan, made now if it was not, for neph_render_take_plan in other processes;
  * g_bytes_unref. NULL with an error, as neph_render_plan. */
@@ -551,6 +566,15 @@ NEPH_SIZED void neph_render_add_statistics(NephRender *render,
                                            const NephStatistics *more);
 /** @brief Forgets sums and counts, which another process has; what is planned stays. */
 NEPH_API void neph_render_forget(NephRender *render);
+/** @brief For who deals passes and keeps the setting `time`: once there is a plan, what a
+ * pass is expected to take by the trial that it was made with, or else by one made now,
+ * s; 0: unknown. */
+NEPH_API double neph_render_pass_seconds(NephRender *render);
+/** @brief And what comes after the last one, by what is known so far: to take the noise
+ * out, unless that takes too much of `time` and is left (NephStatistics.left_noisy), and
+ * to write to the files of neph_render_set_time_around, s. It is found with the plan, and
+ * anew by neph_render_pass in the beginning and when half of the time is over. */
+NEPH_API double neph_render_seconds_after(const NephRender *render);
 /** @brief The settings that passes are rendered by: those asked for, or after
  * neph_render_plan what was chosen to fit into `time`. Owned by the caller. */
 NEPH_API NephSettings *neph_render_settings(const NephRender *render);

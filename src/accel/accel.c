@@ -10,6 +10,7 @@
  */
 #include "accel/embree_device.h"
 #include "base/memory.h"
+#include "base/wanted.h"
 
 #include <string.h>
 
@@ -36,6 +37,9 @@ struct accel {
     size_t reserved; /* bytes of what Embree does not tell of */
     placed *instances;
     double shutter[2]; /* s: when rays of time 0 and 1 are */
+
+    GThread *builder;     /* while it is built: who asked for it ... */
+    atomic_bool unwanted; /* ... and wants it no more */
 };
 
 /* ---- Building ---- */
@@ -58,12 +62,23 @@ static float units_for(box3 bounds)
     return ldexpf(1.0f, CLAMP(USUAL_EXTENT - ilogbf(far), -120, 120));
 }
 
+/* Embree's threads ask, too: the caller is told of it on its own. */
+static bool goes_on(void *data, double fraction)
+{
+    accel *a = data;
+    (void)fraction;
+    if (g_thread_self() == a->builder && !still_wanted(NULL))
+        atomic_store(&a->unwanted, true);
+    return !atomic_load(&a->unwanted);
+}
+
 /* In units that suit its bounds. */
 static void group_open(accel *a, accel_group *group)
 {
     group->scene = rtcNewScene(a->embree.device);
     group->per_metre = units_for(group->bounds);
     rtcSetSceneFlags(group->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneProgressMonitorFunction(group->scene, goes_on, a);
 }
 
 static accel_group *group_of(accel *a, const shape *s)
@@ -103,7 +118,7 @@ static void find_bounds(accel *a, accel_group *group)
 
 static void attach_shapes(accel *a, accel_group *group)
 {
-    for (unsigned i = 0; i < group->n; i++) {
+    for (unsigned i = 0; i < group->n && still_wanted(NULL); i++) {
         given_shape *given = &a->shapes[group->shapes[i]];
         given->per_metre = group->per_metre;
         if (!given->shape->is_invisible)
@@ -152,18 +167,21 @@ static void open_world(accel *a, const accel_input *in)
 static void build(accel *a, const accel_input *in)
 {
     sort_shapes(a, in);
-    for (size_t i = 0; i < a->n_objects; i++)
+    for (size_t i = 0; i < a->n_objects && still_wanted(NULL); i++)
         build_object(a, &a->objects[i]);
+    if (!still_wanted(NULL))
+        return;
     open_world(a, in);
     attach_shapes(a, &a->world);
-    for (size_t i = 0; i < in->n_instances; i++) {
+    for (size_t i = 0; i < in->n_instances && still_wanted(NULL); i++) {
         placed *p = &a->instances[i];
         p->world_per_metre = a->world.per_metre;
         if (a->objects[p->is->object].n > 0)
             attach(&a->world, placed_geometry(a->embree.device, p),
                    a->world.n + (unsigned)i);
     }
-    rtcCommitScene(a->world.scene);
+    if (still_wanted(NULL))
+        rtcCommitScene(a->world.scene);
 }
 
 /* Embree 3.13 mallocs 260 bytes a geometry and 1.2 kB a scene, 4.1 kB with one geometry.
@@ -195,8 +213,10 @@ accel *accel_build(const accel_input *in, unsigned threads, GError **error)
     memcpy(a->shutter, in->shutter, sizeof a->shutter);
     if (a->instances && reserve_things(a, in->n_shapes, error) &&
         embree_device_open(&a->embree, "the search structure", threads, error)) {
+        a->builder = g_thread_self();
         build(a, in);
-        if (embree_device_check(&a->embree, error))
+        a->builder = NULL;
+        if (still_wanted(error) && embree_device_check(&a->embree, error))
             return a;
     }
     accel_free(a);

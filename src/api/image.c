@@ -14,6 +14,17 @@ const char *const *neph_image_extensions(void)
     return image_extensions();
 }
 
+const char *const *neph_image_written_extensions(void)
+{
+    return image_written_extensions();
+}
+
+bool neph_image_is_written(const char *path, bool *eight_bits)
+{
+    bool has;
+    return image_is_written(path, eight_bits ? eight_bits : &has);
+}
+
 NephImage *neph_image_wrap(image *img)
 {
     if (!img)

@@ -1,6 +1,7 @@
 #include "api/objects.h"
 
 #include "api/asking.h"
+#include "base/wanted.h"
 #include "format/convert/convert.h"
 #include "format/format.h"
 
@@ -44,7 +45,9 @@ NephScene *neph_scene_load_with(const char *path, const NephLoadOptions *options
                               .sources = s->sources,
                               .cancel =
                                   asking_begin(&a, options->go_on, options->go_on_data)};
+    const cancel_flag *before = wanted_by(how.cancel);
     s->view = format_load_view(path, &how, error);
+    wanted_by(before);
     if (s->view)
         s->scene = s->view->scene;
     else
@@ -73,7 +76,9 @@ bool neph_scene_convert_with(const char *in, const char *out,
                               .sources = sources,
                               .cancel =
                                   asking_begin(&a, options->go_on, options->go_on_data)};
+    const cancel_flag *before = wanted_by(how.cancel);
     bool done = format_convert(in, out, &how, error);
+    wanted_by(before);
     scene_sources_free(sources);
     return done;
 }

@@ -31,11 +31,11 @@ typedef struct source_place {
     int column;       /**< from 1 */
 } source_place;
 
-/** @brief "file:line:column: ", "file: " of a whole file, or "" of no place; owned by the
+/** @brief "FILE:LINE:COLUMN: ", "file: " of a whole file, or "" of no place; owned by the
  * caller. */
 char *source_place_text(source_place place);
 
-/** @brief Sets an ERROR_INPUT whose message begins with "file:line:column: ". */
+/** @brief Sets an ERROR_INPUT whose message begins with "FILE:LINE:COLUMN: ". */
 void error_at(GError **error, source_place place, const char *format, ...)
     G_GNUC_PRINTF(3, 4);
 

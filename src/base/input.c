@@ -6,6 +6,7 @@
 #include "base/input.h"
 
 #include "base/memory.h"
+#include "base/wanted.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -14,6 +15,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
+
+enum { PIECE = 1 << 22 }; /* bytes that are read or inflated at once */
 
 /** Inflated bytes; grows by doubling. */
 typedef struct growing {
@@ -39,7 +42,7 @@ static bool make_room(growing *out, GError **error)
 /** One call of inflate; Z_OK to go on, Z_STREAM_END, or an error. */
 static int step(z_stream *z, growing *out)
 {
-    size_t room = MIN(out->capacity - out->size, (size_t)1 << 30);
+    size_t room = MIN(out->capacity - out->size, (size_t)PIECE);
     z->next_out = (Bytef *)out->data + out->size;
     z->avail_out = (uInt)room;
     int status = inflate(z, Z_NO_FLUSH);
@@ -54,7 +57,7 @@ static bool inflate_all(z_stream *z, const char *data, size_t size, growing *out
     size_t read = 0;
     int status = Z_OK;
     for (;;) {
-        if (!make_room(out, error))
+        if (!still_wanted(error) || !make_room(out, error))
             return false;
         size_t piece = MIN(size - read, (size_t)1 << 30);
         z->next_in = (Bytef *)data + read;
@@ -116,8 +119,8 @@ int input_descriptor(const char *path, size_t *size, GError **error)
 static ssize_t fill(int fd, char *to, size_t size)
 {
     size_t done = 0;
-    while (done < size) {
-        ssize_t n = read(fd, to + done, MIN(size - done, (size_t)1 << 30));
+    while (done < size && still_wanted(NULL)) {
+        ssize_t n = read(fd, to + done, MIN(size - done, (size_t)PIECE));
         if (n < 0 && errno == EINTR)
             continue;
         if (n < 0)
@@ -135,6 +138,10 @@ static bool read_all(input *in, int fd, size_t size, const char *path, GError **
     if (!in->data)
         return false;
     ssize_t n = fill(fd, in->data, size);
+    if (n >= 0 && !still_wanted(error)) {
+        input_close(in);
+        return false;
+    }
     if (n >= 0) {
         in->size = (size_t)n;
         return true;

@@ -263,14 +263,16 @@ static size_t bytes_for(size_t bytes)
     return ((bytes + ALIGNMENT) & ~(size_t)(ALIGNMENT - 1)) + ALIGNMENT;
 }
 
-void *big_alloc(size_t n, size_t size, const char *what, GError **error)
+/* @param fails as if there were no memory */
+static void *make_array(size_t n, size_t size, const char *what, bool fails,
+                        GError **error)
 {
     size_t bytes = 0;
     bool fits = !__builtin_mul_overflow(n, size, &bytes) && bytes <= SIZE_MAX / 2;
     size_t total = bytes_for(fits ? bytes : SIZE_MAX / 2);
     if (!memory_reserve(total, what, error))
         return NULL;
-    const array_head head = {total, must_fail() ? 0 : take(total)};
+    const array_head head = {total, fails ? 0 : take(total)};
     if (!head.base) {
         memory_release(total);
         refuse(total, what, error);
@@ -280,6 +282,11 @@ void *big_alloc(size_t n, size_t size, const char *what, GError **error)
         use_huge_pages((char *)(head.base & ~(uintptr_t)IS_MAPPED), total - ALIGNMENT);
     atomic_fetch_add(&in_arrays, is_mapped(&head) ? 0 : total);
     return array_of(&head);
+}
+
+void *big_alloc(size_t n, size_t size, const char *what, GError **error)
+{
+    return make_array(n, size, what, must_fail(), error);
 }
 
 void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *what,
@@ -293,16 +300,25 @@ void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *w
     return grown;
 }
 
+/* Where there is no room for it beside itself, it stays; nobody need be told. */
+static void *moved(void *array, size_t n, size_t size)
+{
+    void *fit = make_array(n, size, "", false, NULL);
+    if (!fit)
+        return array;
+    memcpy(fit, array, n * size);
+    big_free(array);
+    return fit;
+}
+
 /* Of what is the system's in whole pages, of malloc's by moving it. */
 void *big_fit(void *array, size_t n, size_t size)
 {
     if (!array)
         return NULL;
     array_head *head = (array_head *)array - 1;
-    if (!is_mapped(head)) {
-        void *fit = big_grow(array, n, n, size, "", NULL);
-        return fit ? fit : array;
-    }
+    if (!is_mapped(head))
+        return moved(array, n, size);
     size_t page = (size_t)sysconf(_SC_PAGESIZE), before = head->bytes;
     size_t kept = (bytes_for(n * size) + page - 1) & ~(page - 1);
     if (kept >= before ||
@@ -311,6 +327,22 @@ void *big_fit(void *array, size_t n, size_t size)
     memory_release(before - kept);
     head->bytes = kept;
     return array;
+}
+
+void big_zero(void *array, size_t bytes)
+{
+    const array_head *head = (const array_head *)array - 1;
+    const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
+    char *end = (char *)array + bytes;
+    char *first = (char *)(((uintptr_t)array + page - 1) & ~(page - 1));
+    char *last = (char *)((uintptr_t)end & ~(page - 1));
+    if (!is_mapped(head) || first >= last ||
+        madvise(first, (size_t)(last - first), MADV_DONTNEED) != 0) {
+        memset(array, 0, bytes);
+        return;
+    }
+    memset(array, 0, (size_t)(first - (char *)array));
+    memset(last, 0, (size_t)(end - last));
 }
 
 void big_free(void *array)

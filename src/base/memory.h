@@ -32,6 +32,9 @@ void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *w
  * have moved; NULL for NULL */
 void *big_fit(void *array, size_t n, size_t size);
 
+/** @brief Makes the first bytes of an array zero; large ones get fresh pages, which takes
+ * no time until they are written to. */
+void big_zero(void *array, size_t bytes);
 /** @brief Frees what big_alloc or big_grow gave; NULL is allowed. */
 void big_free(void *array);
 

@@ -161,7 +161,7 @@ static const feature_note notes[] = {
     {"Texture", "imagemap", "approximated", "`EWA` filters as `trilinear` does",
      "maxanisotropy", NULL},
     {"LightSource", "infinite", "approximated",
-     "pictures are mixed bilinearly; `portal` needs a `filename`", NULL, NULL},
+     "pictures are mixed bilinearly; `L` behind a `portal` is a colour", NULL, NULL},
 };
 
 static const feature_note *find_note(const char *directive, const char *kind)

@@ -5,6 +5,7 @@
 
 #include "base/input.h"
 #include "base/intern.h"
+#include "base/wanted.h"
 #include "format/reader.h"
 
 #include <string.h>
@@ -99,6 +100,12 @@ static scene *load(scene_builder *b, const char *path, unsigned threads, GError 
     GError *inner = NULL;
     bool read = format_read(b, path, &inner);
     scene *made = read ? scene_builder_commit(b, threads, &inner) : NULL;
+    if (!still_wanted(NULL)) { /* whatever came of it */
+        g_clear_pointer(&made, scene_free);
+        g_clear_error(&inner);
+        error_set(error, ERROR_CANCELLED, "%s: cancelled", path);
+        return NULL;
+    }
     if (made) {
         warn_of_darkness(made, path, &b->build.log);
         return made;

@@ -22,7 +22,8 @@ typedef struct load_options {
     double time;               /**< ... s; 0 else */
     const log_sink *log;       /**< may be NULL */
     scene_sources *sources;    /**< told the files that are read; borrowed, may be NULL */
-    const cancel_flag *cancel; /**< heard while a model is imported; may be NULL */
+    const cancel_flag *cancel; /**< heard while a model is imported, and by wanted.h
+                                  where that is set, too; may be NULL */
 } load_options;
 
 /** @brief An empty builder that reads as the options say. */
@@ -36,7 +37,7 @@ view *format_load_view(const char *path, const load_options *options, GError **e
  * @param threads for the acceleration structure; 0 = all
  * @param log may be NULL
  * @return the scene, owned by the caller; NULL with ERROR_INPUT whose message holds up to
- * 20 lines "file:line:column: expected ..., found ...", or with ERROR_FAILED
+ * 20 lines "FILE:LINE:COLUMN: expected ..., found ...", or with ERROR_FAILED
  */
 scene *format_load(const char *path, unsigned threads, const log_sink *log,
                    GError **error);

@@ -182,17 +182,37 @@ image *image_read_bytes(const char *name, GBytes *bytes,
     return img;
 }
 
+enum { MOST_EXTENSIONS = 32 };
+
+/* Of all codecs, or of those that write. */
+static void list_extensions(bool written, const char *all[MOST_EXTENSIONS])
+{
+    size_t n = 0;
+    for (size_t i = 0; i < G_N_ELEMENTS(codecs); i++)
+        for (const char *const *e = codecs[i]->extensions; *e; e++) {
+            g_assert(n + 1 < MOST_EXTENSIONS);
+            if (!written || codecs[i]->write)
+                all[n++] = *e;
+        }
+}
+
 const char *const *image_extensions(void)
 {
     static gsize made;
-    static const char *all[32];
+    static const char *all[MOST_EXTENSIONS];
     if (g_once_init_enter(&made)) {
-        size_t n = 0;
-        for (size_t i = 0; i < G_N_ELEMENTS(codecs); i++)
-            for (const char *const *e = codecs[i]->extensions; *e; e++) {
-                g_assert(n + 1 < G_N_ELEMENTS(all));
-                all[n++] = *e;
-            }
+        list_extensions(false, all);
+        g_once_init_leave(&made, 1);
+    }
+    return all;
+}
+
+const char *const *image_written_extensions(void)
+{
+    static gsize made;
+    static const char *all[MOST_EXTENSIONS];
+    if (g_once_init_enter(&made)) {
+        list_extensions(true, all);
         g_once_init_leave(&made, 1);
     }
     return all;
@@ -221,6 +241,14 @@ static const image_codec *codec_of_name(const char *path, GError **error)
         error_set(error, ERROR_INPUT, "%s: an image's name must end in one of %s", path,
                   known->str);
     return found;
+}
+
+bool image_is_written(const char *path, bool *eight_bits)
+{
+    g_autoptr(GString) known = g_string_new(NULL);
+    const image_codec *found = find_writer(path, known);
+    *eight_bits = found && found->eight_bits;
+    return found != NULL;
 }
 
 bool image_can_write(const char *path, GError **error)

@@ -45,6 +45,7 @@ typedef struct image_codec {
      * is only read. */
     bool (*write)(const image *img, const image_sink *sink,
                   const image_write_options *options, GError **error);
+    bool eight_bits; /**< what is written is as it is seen: tone curve, eight bits */
 } image_codec;
 
 #define CODEC(name, file) extern const image_codec codec_##name;

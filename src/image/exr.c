@@ -8,6 +8,7 @@
 #include "image/exr.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/wanted.h"
 #include "image/codec.h"
 #include "image/exr_file.h"
 
@@ -187,13 +188,19 @@ static float *make_image(const exr_description *part, void *data)
     return r->img->pixels;
 }
 
+static bool is_wanted(void)
+{
+    return still_wanted(NULL);
+}
+
 static bool read_file(exr_reading *r, GError **error)
 {
     char message[300] = "its header does not end";
+    const exr_target to = {make_image, r, is_wanted};
     exr_result result = EXR_DAMAGED;
     if (attributes_fit(r->source))
-        result = exr_file_read(r->source->path, r->source->bytes, r->source->size,
-                               make_image, r, message);
+        result = exr_file_read(r->source->path, r->source->bytes, r->source->size, &to,
+                               message);
     if (result == EXR_DAMAGED)
         source_damaged(r->source, codec_exr.name, message, error);
     else if (result == EXR_NO_MEMORY)
@@ -447,4 +454,5 @@ static bool write_exr(const image *img, const image_sink *sink,
 }
 
 static const char *const extensions[] = {".exr", NULL};
-const image_codec codec_exr = {"OpenEXR", extensions, recognises, read_exr, write_exr};
+const image_codec codec_exr = {"OpenEXR", extensions, recognises,
+                               read_exr,  write_exr,  false};

@@ -29,13 +29,16 @@ namespace
 class memory_stream : public Imf::IStream
 {
   public:
-    memory_stream(const char *path, const uint8_t *bytes_, size_t size_)
-        : Imf::IStream(path), bytes(bytes_), size(size_)
+    memory_stream(const char *path, const uint8_t *bytes_, size_t size_,
+                  bool (*is_wanted_)(void))
+        : Imf::IStream(path), bytes(bytes_), size(size_), is_wanted(is_wanted_)
     {
     }
 
     bool read(char out[], int n) override
     {
+        if (!is_wanted())
+            throw std::runtime_error("cancelled");
         if (n < 0 || static_cast<size_t>(n) > size - at)
             throw std::runtime_error("it ends early");
         std::memcpy(out, bytes + at, static_cast<size_t>(n));
@@ -58,6 +61,7 @@ class memory_stream : public Imf::IStream
   private:
     const uint8_t *bytes;
     size_t size, at = 0;
+    bool (*is_wanted)(void);
 };
 
 /* A header's contents as the caller gets them; it holds what they point to. */
@@ -153,7 +157,7 @@ int flat_part(const Imf::MultiPartInputFile &file)
     return -1;
 }
 
-exr_result read_stream(memory_stream &stream, exr_place_function place, void *data)
+exr_result read_stream(memory_stream &stream, const exr_target *to)
 {
     const int this_thread_only = 0;
     const bool reconstruct = false;
@@ -163,7 +167,7 @@ exr_result read_stream(memory_stream &stream, exr_place_function place, void *da
         return EXR_ONLY_DEEP;
     const Imf::Header &header = file.header(n);
     described what(header);
-    float *pixels = place(&what.part, data);
+    float *pixels = to->place(&what.part, to->data);
     if (!pixels)
         return EXR_NOT_WANTED;
     read_pixels(file, n, aim(what.part, header, pixels));
@@ -173,11 +177,11 @@ exr_result read_stream(memory_stream &stream, exr_place_function place, void *da
 } // namespace
 
 exr_result exr_file_read(const char *path, const uint8_t *bytes, size_t size,
-                         exr_place_function place, void *data, char message[300])
+                         const exr_target *to, char message[300])
 {
     try {
-        memory_stream stream(path, bytes, size);
-        return read_stream(stream, place, data);
+        memory_stream stream(path, bytes, size, to->is_wanted);
+        return read_stream(stream, to);
     } catch (const std::bad_alloc &) {
         return EXR_NO_MEMORY;
     } catch (const std::exception &why) {

@@ -45,13 +45,20 @@ typedef enum exr_result {
     EXR_NO_MEMORY,
 } exr_result;
 
+/** @brief Where a file goes. */
+typedef struct exr_target {
+    exr_place_function place;
+    void *data;              /**< for it */
+    bool (*is_wanted)(void); /**< asked again and again: false ends reading */
+} exr_target;
+
 /** @brief Reads a file in memory, all channels as float; of a tiled part the largest
  * level. The lengths that the header states must lie within the file. Calls on several
  * threads at once are allowed.
  * @param path for messages
  * @param message gets why the file is damaged */
 exr_result exr_file_read(const char *path, const uint8_t *bytes, size_t size,
-                         exr_place_function place, void *data, char message[300]);
+                         const exr_target *to, char message[300]);
 
 #ifdef __cplusplus
 }

@@ -9,6 +9,7 @@
  * pbrt's reader does too. An EXPOSURE line is kept in the image's header, not applied.
  * Ward, "Real Pixels", Graphics Gems II, 1991.
  */
+#include "base/wanted.h"
 #include "image/codec.h"
 
 #include <math.h>
@@ -189,6 +190,8 @@ static bool read_pixels(reader *r, const layout *l, image *img, GError **error)
     g_autofree uint8_t *scanline = g_try_malloc_n((gsize)r->length, 4);
     r->scanline = scanline;
     for (int s = 0; scanline && s < l->n_lines; s++) {
+        if (!still_wanted(error))
+            return false;
         if (!read_scanline(r)) {
             source_damaged(r->source, codec_hdr.name, "its pixels are not whole", error);
             return false;
@@ -341,5 +344,5 @@ static bool write_hdr(const image *img, const image_sink *sink,
 }
 
 static const char *const extensions[] = {".hdr", ".pic", NULL};
-const image_codec codec_hdr = {"Radiance HDR", extensions, recognises, read_hdr,
-                               write_hdr};
+const image_codec codec_hdr = {"Radiance HDR", extensions, recognises,
+                               read_hdr,       write_hdr,  false};

@@ -87,6 +87,12 @@ bool image_write(const image *img, const char *path, const image_write_options *
 /** @brief What names of files that can be read end in, with the dot; NULL-terminated,
  * static. */
 const char *const *image_extensions(void);
+/** @brief The same of those that can be written. */
+const char *const *image_written_extensions(void);
+
+/** @brief Whether image_write knows the path's extension.
+ * @param eight_bits whether what it writes there is as it is seen, with eight bits */
+bool image_is_written(const char *path, bool *eight_bits);
 
 /** @brief About how long image_write would take for the image, s: writes it to memory. */
 double image_write_seconds(const image *img, const char *path);

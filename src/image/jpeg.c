@@ -7,6 +7,7 @@
  * guessed at in grey.
  */
 #include "base/memory.h"
+#include "base/wanted.h"
 #include "image/codec.h"
 
 #include <jpeglib.h> /* after stdio.h */
@@ -22,6 +23,7 @@ typedef struct jpeg_job {
     jmp_buf jump;
     char message[JMSG_LENGTH_MAX];
     struct jpeg_error_mgr errors;
+    struct jpeg_progress_mgr progress; /* of reading */
     struct jpeg_decompress_struct in;
     struct jpeg_compress_struct out;
     const image_source *source;
@@ -80,6 +82,13 @@ static bool guarded(jpeg_job *job, void (*body)(jpeg_job *job))
 
 /* ---- reading ---- */
 
+static void on_progress(j_common_ptr info)
+{
+    jpeg_job *job = info->client_data;
+    if (!still_wanted(NULL))
+        longjmp(job->jump, 1);
+}
+
 static bool recognises(const image_source *source)
 {
     const uint8_t *b = source->bytes;
@@ -90,6 +99,8 @@ static void read_header(jpeg_job *job)
 {
     jpeg_create_decompress(&job->in);
     job->in.client_data = job;
+    job->progress.progress_monitor = on_progress;
+    job->in.progress = &job->progress;
     jpeg_mem_src(&job->in, job->source->bytes, job->source->size);
     jpeg_read_header(&job->in, TRUE);
     if (job->in.num_components == 1)
@@ -222,4 +233,5 @@ static bool write_jpeg(const image *img, const image_sink *sink,
 }
 
 static const char *const extensions[] = {".jpg", ".jpeg", NULL};
-const image_codec codec_jpeg = {"JPEG", extensions, recognises, read_jpeg, write_jpeg};
+const image_codec codec_jpeg = {"JPEG",    extensions, recognises,
+                                read_jpeg, write_jpeg, true};

@@ -3,6 +3,7 @@
  * tells the byte order (negative: little endian), then rows of floats, bottom row first.
  * Debevec, "PFM Portable FloatMap Image Format", netpbm manual page pfm(5).
  */
+#include "base/wanted.h"
 #include "image/codec.h"
 
 #include <math.h>
@@ -108,7 +109,7 @@ static image *read_pfm(const image_source *source, const image_read_options *opt
     }
     int width = (int)header.width, height = (int)header.height;
     image *img = image_new(width, height, 3, rgba_names, error);
-    for (int y = 0; img && y < height; y++)
+    for (int y = 0; img && y < height && still_wanted(NULL); y++)
         read_row(&header, source->bytes + header.data + (size_t)y * row_size,
                  img->pixels + (size_t)(height - 1 - y) * (size_t)width * 3);
     return img;
@@ -137,4 +138,4 @@ static bool write_pfm(const image *img, const image_sink *sink,
 }
 
 static const char *const extensions[] = {".pfm", NULL};
-const image_codec codec_pfm = {"PFM", extensions, recognises, read_pfm, write_pfm};
+const image_codec codec_pfm = {"PFM", extensions, recognises, read_pfm, write_pfm, false};

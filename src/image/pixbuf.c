@@ -5,16 +5,22 @@
  * itself must be possible.
  */
 #include "base/memory.h"
+#include "base/wanted.h"
 #include "image/codec.h"
 
 #include <gdk-pixbuf/gdk-pixbuf.h>
 
-enum { N_CODES = 256 };
+enum { N_CODES = 256, PIECE = 1 << 20 };
 
 /* The loader with the whole file in it, closed. */
 static bool load(GdkPixbufLoader *loader, const image_source *source, GError **error)
 {
-    bool written = gdk_pixbuf_loader_write(loader, source->bytes, source->size, error);
+    bool written = true;
+    for (size_t at = 0, n; at < source->size && written; at += n) {
+        n = MIN(source->size - at, (size_t)PIECE);
+        written = still_wanted(error) &&
+                  gdk_pixbuf_loader_write(loader, source->bytes + at, n, error);
+    }
     bool closed = gdk_pixbuf_loader_close(loader, written ? error : NULL);
     return written && closed && gdk_pixbuf_loader_get_pixbuf(loader);
 }
@@ -30,7 +36,7 @@ static image *to_image(const GdkPixbuf *from, const image_read_options *options,
         return NULL;
     const uint8_t *bytes = gdk_pixbuf_read_pixels(from);
     float *to = img->pixels;
-    for (int y = 0; y < height; y++) {
+    for (int y = 0; y < height && still_wanted(NULL); y++) {
         const uint8_t *row = bytes + (size_t)y * (size_t)gdk_pixbuf_get_rowstride(from);
         for (int i = 0; i < width * n; i++)
             *to++ = i % n < 3 ? table[row[i]] : (float)row[i] / (N_CODES - 1);
@@ -150,5 +156,5 @@ static image *read_tga(const image_source *source, const image_read_options *opt
 
 static const char *const bmp_names[] = {".bmp", NULL};
 static const char *const tga_names[] = {".tga", NULL};
-const image_codec codec_bmp = {"BMP", bmp_names, is_bmp, read_bmp, NULL};
-const image_codec codec_tga = {"TGA", tga_names, is_tga, read_tga, NULL};
+const image_codec codec_bmp = {"BMP", bmp_names, is_bmp, read_bmp, NULL, true};
+const image_codec codec_tga = {"TGA", tga_names, is_tga, read_tga, NULL, true};

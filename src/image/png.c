@@ -5,6 +5,7 @@
  * the caller's; the function that sets the jump has no variables of its own.
  */
 #include "base/memory.h"
+#include "base/wanted.h"
 #include "image/codec.h"
 
 #include <math.h>
@@ -98,7 +99,12 @@ static void read_header(png_job *job)
 
 static void read_rows(png_job *job)
 {
-    png_read_image(job->png, job->rows);
+    for (int pass = png_set_interlace_handling(job->png); pass > 0; pass--)
+        for (int y = 0; y < job->height; y++) {
+            if (!still_wanted(NULL))
+                png_error(job->png, "cancelled");
+            png_read_row(job->png, job->rows[y], NULL);
+        }
     png_read_end(job->png, NULL);
 }
 
@@ -140,7 +146,7 @@ static void convert(const png_job *job, const float *table, float *pixels)
 {
     size_t n = (size_t)job->n_values, row_values = n * (size_t)job->width;
     float largest = job->depth == 16 ? 65535.0f : 255.0f;
-    for (int y = 0; y < job->height; y++)
+    for (int y = 0; y < job->height && still_wanted(NULL); y++)
         for (size_t i = 0; i < row_values; i++) {
             unsigned code = code_at(job, job->rows[y], i);
             bool alpha = i % n == 3;
@@ -260,4 +266,4 @@ static bool write_png(const image *img, const image_sink *sink,
 }
 
 static const char *const extensions[] = {".png", NULL};
-const image_codec codec_png = {"PNG", extensions, recognises, read_png, write_png};
+const image_codec codec_png = {"PNG", extensions, recognises, read_png, write_png, true};

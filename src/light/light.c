@@ -43,7 +43,7 @@ static const char *name_of_source(size_t i)
 static const light_kind *find_kind(const char *name, const params *p, bool on_shape)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++)
-        if (strcmp(name_of(i, on_shape), name) == 0 &&
+        if (*name && strcmp(name_of(i, on_shape), name) == 0 &&
             (!kinds[i]->is_meant || kinds[i]->is_meant(p)))
             return kinds[i];
     return NULL;

@@ -7,9 +7,12 @@
  * the side that n = (p3 - p0) x (p1 - p0) points away from, as in pbrt-v4. Points are
  * then lit from places uniform on the portal, and photons pass it: Φ = A ∫ L cosθ dω.
  */
+#include "color/observer.h"
 #include "light/light_kinds.h"
 #include "params/build_context.h"
 #include "texture/sphere_map.h"
+
+#include <string.h>
 
 /* Without one, area is 0. */
 typedef struct environment_portal {
@@ -142,9 +145,55 @@ static bool sum_up(image_environment *l, const params *p, GError **error)
     return true;
 }
 
+/* L as a colour: pbrt-v4, too, has pictures alone behind portals. */
+static bool read_color(const params *p, const color_space **space, float rgb[3],
+                       GError **error)
+{
+    const param *q = params_find(p, "L");
+    g_autoptr(curve) c = NULL;
+    if (!q) {
+        error_at(error, p->place,
+                 "a portal needs 'filename' or 'L' of what shines behind it, found none");
+        return false;
+    }
+    if (!params_curve(p, "L", CURVE_EMISSION, &c, error))
+        return false;
+    *space = p->space;
+    if (q->type == PARAM_RGB) {
+        memcpy(rgb, q->numbers, 3 * sizeof *rgb);
+        return true;
+    }
+    const observer *eye = observer_get();
+    float xyz[3] = {0}, all = 0.0f;
+    for (int k = 0; k < GRID_N; k++) {
+        for (int i = 0; i < 3; i++)
+            xyz[i] += curve_at(c, (float)(GRID_FIRST + k)) * eye->xyz[i][k];
+        all += eye->xyz[1][k];
+    }
+    for (int i = 0; i < 3; i++)
+        xyz[i] /= all;
+    color_space_from_xyz(*space, xyz, rgb);
+    for (int i = 0; i < 3; i++)
+        rgb[i] = maxf(rgb[i], 0.0f);
+    return true;
+}
+
+static bool read_constant(image_environment *l, const params *p, GError **error)
+{
+    enum { SIDE = 64 }; /* what is summed over its texels is exact enough */
+    const color_space *space;
+    float rgb[3];
+    picture *pic = read_color(p, &space, rgb, error)
+                       ? picture_of_color(SIDE, space, rgb, error)
+                       : NULL;
+    return pic && sphere_map_init(&l->map, pic, p->place, error);
+}
+
 static bool read_picture(image_environment *l, const build_context *context,
                          const params *p, GError **error)
 {
+    if (!params_has(p, "filename"))
+        return read_constant(l, p, error);
     if (params_has(p, "L")) {
         error_at(error, params_find(p, "L")->place,
                  "an infinite light has either 'L' or 'filename'");
@@ -162,9 +211,9 @@ static bool read_picture(image_environment *l, const build_context *context,
     return true;
 }
 
-static bool has_filename(const params *p)
+static bool has_picture(const params *p)
 {
-    return params_has(p, "filename");
+    return params_has(p, "filename") || params_has(p, "portal");
 }
 
 static void *create(const build_context *context, const params *p,
@@ -337,7 +386,7 @@ static spectrum environment(const void *self, vec3 p, vec3 d, const wavelengths 
 const light_kind light_image_environment = {
     .name = "infinite",
     .parameters = "L filename scale illuminance portal",
-    .is_meant = has_filename,
+    .is_meant = has_picture,
     .is_environment = true,
     .is_parallel = true,
     .create = create,

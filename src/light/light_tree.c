@@ -1,5 +1,7 @@
 #include "light/light_tree.h"
 
+#include "base/wanted.h"
+
 #include <stdlib.h>
 
 typedef struct tree_node {
@@ -74,6 +76,8 @@ static void fill_node(light_tree *tree, int at, int parent, tree_item *items, in
         tree->place[items[0].light] = at;
         return;
     }
+    if (!still_wanted(NULL))
+        return;
     sort_along_widest_axis(items, n);
     int child = (int)tree->nodes->len;
     g_array_set_size(tree->nodes, (guint)child + 2);

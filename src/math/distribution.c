@@ -1,6 +1,7 @@
 #include "math/distribution.h"
 
 #include "base/memory.h"
+#include "base/wanted.h"
 
 /* The last index from low to high - 1 whose step begins at or before target; that of low
    does. */
@@ -26,7 +27,7 @@ static bool make_cuts(distribution *d, GError **error)
     d->cuts = big_alloc(d->n_cuts + 1, sizeof *d->cuts, "a sampling table", error);
     if (!d->cuts)
         return false;
-    for (size_t i = 0; i < d->n_cuts; i++) {
+    for (size_t i = 0; i < d->n_cuts && still_wanted_at(i, NULL); i++) {
         double target = (double)i / (double)d->n_cuts * total;
         d->cuts[i] = (uint32_t)find_step(d, target, i > 0 ? d->cuts[i - 1] : 0, d->n);
     }

@@ -1,6 +1,7 @@
 #include "math/distribution2.h"
 
 #include "base/memory.h"
+#include "base/wanted.h"
 
 #include <glib.h>
 
@@ -12,7 +13,8 @@ bool distribution2_init(distribution2 *d, const float *weights, size_t width,
     d->columns = big_alloc(height, sizeof *d->columns, "a sampling table", error);
     bool done = totals && d->columns;
     for (size_t y = 0; y < height && done; y++) {
-        done = distribution_init(&d->columns[y], weights + y * width, width, error);
+        done = still_wanted(error) &&
+               distribution_init(&d->columns[y], weights + y * width, width, error);
         totals[y] = done ? (float)distribution_total(&d->columns[y]) : 0.0f;
     }
     done = done && distribution_init(&d->rows, totals, height, error);

@@ -72,7 +72,7 @@ void params_free(params *p)
     g_free(p);
 }
 
-static param *look_up(const params *p, const char *name)
+param *params_look_up(const params *p, const char *name)
 {
     for (guint i = 0; i < p->list->len; i++) {
         param *q = p->list->pdata[i];
@@ -85,7 +85,7 @@ static param *look_up(const params *p, const char *name)
 static param *add(params *p, source_place place, param_type type, const char *name,
                   size_t n, GError **error)
 {
-    if (look_up(p, name)) {
+    if (params_look_up(p, name)) {
         error_at(error, place, "expected each parameter once, found '%s' again", name);
         return NULL;
     }
@@ -160,14 +160,14 @@ bool params_add_copy(params *p, const param *q, GError **error)
 
 void params_remove(params *p, const char *name)
 {
-    param *q = look_up(p, name);
+    param *q = params_look_up(p, name);
     if (q)
         g_ptr_array_remove(p->list, q);
 }
 
 const param *params_find(const params *p, const char *name)
 {
-    param *q = look_up(p, name);
+    param *q = params_look_up(p, name);
     if (q)
         q->used = true;
     return q;
@@ -175,7 +175,7 @@ const param *params_find(const params *p, const char *name)
 
 bool params_has(const params *p, const char *name)
 {
-    return look_up(p, name) != NULL;
+    return params_look_up(p, name) != NULL;
 }
 
 /* In pbrt-v3 the type belongs to the name: what has another is not known. */
@@ -292,7 +292,7 @@ bool params_choice(const params *p, const char *name, const char *const *words, 
             return true;
         }
     g_autofree char *known = g_strjoinv(", ", (char **)words);
-    error_at(error, look_up(p, name)->place,
+    error_at(error, params_look_up(p, name)->place,
              "parameter '%s': expected one of %s, found '%s'", name, known, word);
     return false;
 }
@@ -306,7 +306,7 @@ bool params_path(const params *p, const char *name, char **out, GError **error)
     if (!given)
         return true;
     if (!*given) {
-        error_at(error, look_up(p, name)->place,
+        error_at(error, params_look_up(p, name)->place,
                  "parameter '%s': expected a file name, found an empty string", name);
         return false;
     }

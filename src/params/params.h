@@ -79,6 +79,9 @@ void params_remove(params *p, const char *name);
 /** @brief The parameter of that name, marked used; NULL if there is none. */
 const param *params_find(const params *p, const char *name);
 bool params_has(const params *p, const char *name); /**< does not mark it used */
+/** @brief The parameter, to be changed by who reads the file; does not mark it used.
+ * @return NULL: there is none */
+param *params_look_up(const params *p, const char *name);
 
 /*
  * Asking. Each marks the parameter used. Absent: *out is left as it is and true returned.

@@ -1,8 +1,8 @@
 #include "render/footprint.h"
 
 #include "base/memory.h"
-#include "render/film_halves.h"
-#include "render/film_planes.h"
+#include "render/film/film_halves.h"
+#include "render/film/film_planes.h"
 #include "render/photon_share.h"
 
 #include <math.h>

@@ -10,7 +10,7 @@
  */
 #pragma once
 
-#include "render/film.h"
+#include "render/film/film.h"
 #include "transport/transport.h"
 
 /** @brief What a look is of; what is pointed to must outlive it. */

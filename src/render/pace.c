@@ -193,6 +193,15 @@ settings pace_choose(const settings *how, const pace_costs *costs, double n_pixe
     return out;
 }
 
+double pace_pass_seconds(const pace_costs *costs, const settings *asked,
+                         const settings *chosen, double n_pixels)
+{
+    double photons = (double)settings_photons(asked);
+    double share = photons > 0.0 ? (double)settings_photons(chosen) / photons : 1.0;
+    return costs->pass + share * costs->photons +
+           costs->sample * n_pixels * (double)chosen->spp;
+}
+
 /* ---- Writing ---- */
 
 /* Before there is a picture: noise in a third of the channels, the others even, is about

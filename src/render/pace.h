@@ -8,7 +8,7 @@
  */
 #pragma once
 
-#include "render/film.h"
+#include "render/film/film.h"
 #include "transport/transport.h"
 
 /** @brief What a pass takes, s. */
@@ -29,6 +29,11 @@ bool pace_measure(const transport_plan *plan, const film *f, double left,
  * many passes there are, these stay as they are. */
 settings pace_choose(const settings *how, const pace_costs *costs, double n_pixels,
                      double left);
+
+/** @brief What a pass by chosen settings will take, s.
+ * @param asked those that the costs were measured for */
+double pace_pass_seconds(const pace_costs *costs, const settings *asked,
+                         const settings *chosen, double n_pixels);
 
 /** @brief About how long it takes to make the picture and write it to files of these
  * names, s: tries it with a few rows, and with more while there are seconds left of the

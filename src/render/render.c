@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "render/film_planes.h"
+#include "render/film/film_planes.h"
 #include "render/footprint.h"
 #include "render/pace.h"
 #include "render/render_state.h"
@@ -21,8 +21,9 @@ render *render_new(const view *v, const settings *how, GError **error)
     bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
     r->statistics.passes_wanted = open_end ? 0 : (int64_t)ceil(settings_most_passes(how));
     size_t before = memory_resident();
-    if (film_open(&r->film, v, how->denoise, error) &&
-        footprint_check(r->beside = before + film_bytes_in_all(&r->film), error))
+    bool open = film_open(&r->film, v, how->denoise, error);
+    r->film.coarse = how->denoise_windows == WINDOWS_COARSE;
+    if (open && footprint_check(r->beside = before + film_bytes_in_all(&r->film), error))
         return r;
     render_free(r);
     return NULL;
@@ -60,6 +61,7 @@ static bool set_pace(render *r, GError **error)
         return false;
     left = how->time - r->after - (clock_seconds() - r->start);
     r->plan.how = pace_choose(how, &costs, n_pixels, left);
+    r->expected_pass = pace_pass_seconds(&costs, how, &r->plan.how, n_pixels);
     return r->paced = true;
 }
 
@@ -176,8 +178,7 @@ static void end_run(render *r)
         st->stopped_by = RENDER_CANCELLED;
 }
 
-/* What was done before, in this process or another, counts. */
-static void start_clock(render *r)
+void render_start_clock(render *r)
 {
     r->start = clock_seconds() - MAX(r->statistics.time_total, r->earlier + r->before);
 }
@@ -186,7 +187,7 @@ bool render_run(render *r, render_progress progress, void *data, GError **error)
 {
     r->progress = progress;
     r->progress_data = data;
-    start_clock(r);
+    render_start_clock(r);
     r->given_up = false;
     render_time_writing(r);
     r->cancel.progress = render_on_progress;
@@ -237,6 +238,23 @@ void render_set_time_around(render *r, double before, const char *const *paths)
     r->paths = g_strdupv((char **)paths);
 }
 
+double render_seconds_after(const render *r)
+{
+    return r->after;
+}
+
+double render_pass_seconds(render *r)
+{
+    const settings *how = &r->plan.how;
+    pace_costs costs;
+    double n_pixels = (double)r->film.width * (double)r->film.height;
+    double left = how->time - r->after - (clock_seconds() - r->start);
+    if (!(r->expected_pass > 0.0) && how->time > 0.0 &&
+        pace_measure(&r->plan, &r->film, left, &r->cancel, &costs, NULL))
+        r->expected_pass = pace_pass_seconds(&costs, how, how, n_pixels);
+    return r->expected_pass;
+}
+
 GStrv render_repeat(const render *r)
 {
     settings same = r->plan.how;
@@ -262,7 +280,8 @@ bool render_get_plan(render *r, render_plan *out, GError **error)
     if (!r->prepared && r->cancel.progress) /* it is being made */
         return false;
     if (!r->prepared) {
-        start_clock(r);
+        render_start_clock(r);
+        render_time_writing(r);
         if (!render_prepare(r, error))
             return false;
         r->statistics.time_total = clock_seconds() - r->start;

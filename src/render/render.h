@@ -67,6 +67,11 @@ image *render_image_while(const render *r, const cancel_flag *cancel, GError **e
  * what it takes to write the picture to these files is kept for after it.
  * @param paths NULL-terminated, copied */
 void render_set_time_around(render *r, double before, const char *const *paths);
+/** @brief What that takes by what is known now, with taking the noise out, s. */
+double render_seconds_after(const render *r);
+/** @brief What a pass is expected to take, s, by the trial that its plan was made with
+ * for `time`, or one made now; 0: unknown. */
+double render_pass_seconds(render *r);
 /** @brief The settings "name=value" that make a render without `time` and `noise` give
  * the same picture: passes, and what was chosen otherwise than asked for. Owned by the
  * caller; NULL: no pass is done. */

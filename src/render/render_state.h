@@ -25,8 +25,9 @@ struct render {
     photon_supply supply; /* from there */
     void *kept_pass;      /* of a file of one pass: that of all; NULL: not made yet */
     char **paths;
-    double after;    /* s that writing to these takes */
-    double timed_at; /* s: when it was asked last */
+    double after;         /* s that writing to these takes */
+    double expected_pass; /* s that one takes, by a trial; 0: there was none */
+    double timed_at;      /* s: when it was asked last */
     uint32_t passes_done;
     render_statistics statistics;
     cancel_flag cancel;
@@ -78,5 +79,7 @@ void render_forget_photons(render *r);
 
 /* ---- render.c ---- */
 
+/** @brief Its clock goes on: what was done before, in this process or another, counts. */
+void render_start_clock(render *r);
 /** @brief Decides all that is decided before the first pass, if it is not. */
 bool render_prepare(render *r, GError **error);

@@ -1,6 +1,6 @@
 #include "render/stop.h"
 
-#include "render/film.h"
+#include "render/film/film.h"
 
 #include <math.h>
 

@@ -4,6 +4,7 @@
  *
  *   bounds ─► lights, prepared for them ─► acceleration structure ─► groups, solids
  */
+#include "base/wanted.h"
 #include "scene/builder.h"
 
 #include "base/memory.h"
@@ -42,7 +43,7 @@ static bool find_lights(scene *s, GError **error)
         return false;
     }
     bool done = true;
-    for (guint i = 0; i < n; i++) {
+    for (guint i = 0; i < n && (done = done && still_wanted(error)); i++) {
         const light *l = s->lights->pdata[i];
         if (l->kind->prepare)
             l->kind->prepare(l->self, s->center, s->radius);
@@ -56,8 +57,9 @@ static bool find_lights(scene *s, GError **error)
                      scene_check_reach(strength.bound.box, "the light", l->place, error));
     }
     s->lines = light_lines_density(&lines);
-    s->light_tree = light_tree_new(bounds, (int)n);
-    done = done && distribution_init(&s->light_power, power, n, error);
+    s->light_tree = light_tree_new(bounds, done ? (int)n : 0);
+    done = done && still_wanted(error) &&
+           distribution_init(&s->light_power, power, n, error);
     big_free(power);
     big_free(bounds);
     return done && check_strength(s, error);

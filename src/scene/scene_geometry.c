@@ -7,6 +7,8 @@
  */
 #include "scene/scene_geometry.h"
 
+#include "base/wanted.h"
+
 /* ---- Bounds ---- */
 
 box3 scene_placed_bounds(const scene *s, const instance *is, box3 box)
@@ -28,7 +30,7 @@ static box3 *object_bounds(const scene *s)
     box3 *boxes = g_aligned_alloc(MAX(s->n_objects, 1), sizeof *boxes, 16);
     for (guint i = 0; i < s->n_objects; i++)
         boxes[i] = box3_empty();
-    for (guint i = 0; i < s->shapes->len; i++) {
+    for (guint i = 0; i < s->shapes->len && still_wanted(NULL); i++) {
         const shape *on = s->shapes->pdata[i];
         if (on->object != NO_INDEX)
             boxes[on->object] = box3_union(boxes[on->object], on->kind->bounds(on->self));
@@ -39,12 +41,12 @@ static box3 *object_bounds(const scene *s)
 box3 scene_world_bounds(const scene *s)
 {
     box3 *boxes = object_bounds(s), all = box3_empty();
-    for (guint i = 0; i < s->shapes->len; i++) {
+    for (guint i = 0; i < s->shapes->len && still_wanted(NULL); i++) {
         const shape *on = s->shapes->pdata[i];
         if (on->object == NO_INDEX)
             all = box3_union(all, on->kind->bounds(on->self));
     }
-    for (guint i = 0; i < s->instances->len; i++) {
+    for (guint i = 0; i < s->instances->len && still_wanted(NULL); i++) {
         const instance *is = scene_instance(s, (int)i);
         all = box3_union(all, scene_placed_bounds(s, is, boxes[is->object]));
     }
@@ -98,7 +100,7 @@ static bool check_extent(box3 bounds, GError **error)
 bool scene_find_bounds(scene *s, GError **error)
 {
     s->bounds = scene_world_bounds(s);
-    if (!check_reach(s, error) || !check_extent(s->bounds, error))
+    if (!still_wanted(error) || !check_reach(s, error) || !check_extent(s->bounds, error))
         return false;
     bool is_empty = box3_is_empty(s->bounds);
     s->center = is_empty ? vec3_make(0.0f, 0.0f, 0.0f) : box3_center(s->bounds);

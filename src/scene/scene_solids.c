@@ -7,6 +7,7 @@
  */
 #include "scene/scene_solids.h"
 
+#include "base/wanted.h"
 #include "scene/advance.h"
 
 enum { N_WAYS = 3 };
@@ -159,7 +160,7 @@ void scene_find_solids(scene *s)
     if (!anything_absorbs(s))
         return;
     rank_solids(s);
-    for (guint i = 0; i < s->lights->len; i++) {
+    for (guint i = 0; i < s->lights->len && still_wanted(NULL); i++) {
         light *l = s->lights->pdata[i];
         l->inside = solids_of_light(s, l);
     }

@@ -26,6 +26,9 @@ typedef enum map_choice {
     N_MAPS,
     MAP_AUTO = N_MAPS /**< the one that serves the settings best */
 } map_choice;
+/** How many windows the denoiser works in; by itself it takes fewer where time is short.
+ */
+typedef enum denoise_choice { WINDOWS_AUTO, WINDOWS_FINE, WINDOWS_COARSE } denoise_choice;
 typedef enum roulette_choice { ROULETTE_MEAN, ROULETTE_MAX } roulette_choice;
 typedef enum emission_choice {
     EMISSION_UNIFORM,
@@ -85,9 +88,10 @@ typedef struct settings {
     int roulette;         /**< roulette_choice */
     int caustic_emission; /**< emission_choice */
     bool multiple_samples;
-    int vcm_strategies; /**< vcm_choice */
-    double alpha;       /**< Knaus & Zwicker 2011 */
-    bool denoise;       /**< with a picture without noise beside */
+    int vcm_strategies;  /**< vcm_choice */
+    double alpha;        /**< Knaus & Zwicker 2011 */
+    bool denoise;        /**< with a picture without noise beside */
+    int denoise_windows; /**< denoise_choice */
     int64_t seed;
     int64_t camera_seed; /**< beside seed, of camera samples alone */
     int64_t threads;     /**< 0: one per processor */
@@ -150,5 +154,5 @@ bool settings_set(settings *s, const char *name, const char *value, GError **err
  * caller. */
 char *settings_get(const settings *s, const setting_row *row);
 /** @brief Reads a file of "name = value" lines, '#' comments. Errors name
- * file:line:column. */
+ * FILE:LINE:COLUMN. */
 bool settings_load(settings *s, const char *path, GError **error);

@@ -6,6 +6,7 @@
 #include "shape/mesh_closed.h"
 
 #include "base/memory.h"
+#include "base/wanted.h"
 #include "math/sampler.h"
 
 #include <stdlib.h>
@@ -41,7 +42,7 @@ static uint32_t *weld(const mesh *m, GError **error)
         return NULL;
     }
     memset(table, 0xff, size * sizeof *table);
-    for (size_t i = 0; i < m->n_vertices; i++) {
+    for (size_t i = 0; i < m->n_vertices && still_wanted_at(i, NULL); i++) {
         const float *p = m->positions + 3 * i;
         size_t at = hash_place(p) & (size - 1);
         while (table[at] != NO_VERTEX &&
@@ -61,11 +62,37 @@ static int compare_edges(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
+/* Sorted runs [first, middle) and [middle, end) become one. */
+static void merge_runs(const uint64_t *from, size_t first, size_t middle, size_t end,
+                       uint64_t *to)
+{
+    size_t a = first, b = middle;
+    for (size_t i = first; i < end && still_wanted_at(i, NULL); i++)
+        to[i] = b == end || (a < middle && from[a] <= from[b]) ? from[a++] : from[b++];
+}
+
+/* In runs, since qsort can not be stopped. @return which of the two has them sorted */
+static uint64_t *sort_edges(uint64_t *edges, size_t n, uint64_t *beside)
+{
+    const size_t run = 1 << 16;
+    uint64_t *from = edges, *to = beside;
+    for (size_t i = 0; i < n && still_wanted(NULL); i += run)
+        qsort(edges + i, MIN(run, n - i), sizeof *edges, compare_edges);
+    for (size_t length = run; length < n; length *= 2) {
+        for (size_t i = 0; i < n; i += 2 * length)
+            merge_runs(from, i, MIN(i + length, n), MIN(i + 2 * length, n), to);
+        uint64_t *sorted = to;
+        to = from;
+        from = sorted;
+    }
+    return from;
+}
+
 /* Edges as pairs of vertices, the lower one first; those of no length are left out. */
 static size_t list_edges(const mesh *m, const uint32_t *first, uint64_t *edges)
 {
     size_t n = 0;
-    for (size_t i = 0; i < m->n_triangles; i++)
+    for (size_t i = 0; i < m->n_triangles && still_wanted_at(i, NULL); i++)
         for (int k = 0; k < 3; k++) {
             uint32_t a = first[m->indices[3 * i + (size_t)k]];
             uint32_t b = first[m->indices[3 * i + (size_t)((k + 1) % 3)]];
@@ -110,15 +137,17 @@ bool mesh_body_of(const mesh *m, mesh_body *out, GError **error)
 {
     *out = (mesh_body){0};
     uint32_t *first = weld(m, error);
-    uint64_t *edges =
-        first ? big_alloc(3 * m->n_triangles, sizeof *edges, "mesh edges", error) : NULL;
-    if (edges) {
+    size_t most = 3 * m->n_triangles;
+    uint64_t *edges = first ? big_alloc(most, sizeof *edges, "mesh edges", error) : NULL;
+    uint64_t *beside =
+        edges ? big_alloc(most, sizeof *beside, "mesh edges", error) : NULL;
+    if (beside) {
         size_t n = list_edges(m, first, edges);
-        qsort(edges, n, sizeof *edges, compare_edges);
-        out->closed = all_even(edges, n);
+        out->closed = all_even(sort_edges(edges, n, beside), n);
         out->volume = out->closed ? volume_of(m) : 0.0;
     }
-    bool done = edges != NULL;
+    bool done = beside && still_wanted(error);
+    big_free(beside);
     big_free(edges);
     big_free(first);
     return done;

@@ -14,6 +14,7 @@
  * around, exact where the curve is straight.
  */
 #include "base/memory.h"
+#include "base/wanted.h"
 #include "math/distribution.h"
 #include "shape/curve_segment.h"
 #include "shape/instance.h"
@@ -222,7 +223,7 @@ static bool init_area(curve_shape *c, const params *p, GError **error)
     size_t n = c->n_segments * AREA_CELLS;
     double total = 0.0;
     float *areas = big_alloc(n, sizeof *areas, "curve areas", error);
-    for (size_t i = 0; areas && i < n; i++) {
+    for (size_t i = 0; areas && i < n && still_wanted_at(i, NULL); i++) {
         double u = ((double)(i % AREA_CELLS) + 0.5) / AREA_CELLS;
         curve_point at = segment_at(&c->segments[i / AREA_CELLS], u);
         double around = c->type == CURVE_RIBBON ? 2.0 : 2.0 * G_PI;

@@ -20,6 +20,7 @@
  * Two triangles that are a rectangle are sampled as one (rectangle.h).
  */
 #include "base/memory.h"
+#include "base/wanted.h"
 #include "shape/mesh_params.h"
 #include "shape/mesh_triangle.h"
 #include "shape/rectangle.h"
@@ -47,7 +48,7 @@ typedef struct mesh_shape {
 static bool check_numbers(const float *numbers, size_t n, size_t width, const char *what,
                           source_place place, GError **error)
 {
-    for (size_t i = 0; numbers && i < n * width; i++) {
+    for (size_t i = 0; numbers && i < n * width && still_wanted_at(i, NULL); i++) {
         if (!isfinite(numbers[i])) {
             error_at(error, place, "%s %zu of the mesh is not finite", what, i / width);
             return false;
@@ -66,7 +67,7 @@ static bool check_mesh(const mesh *m, source_place place, GError **error)
         error_at(error, place, "the mesh has more than 2^32 vertices or triangles");
         return false;
     }
-    for (size_t i = 0; i < 3 * m->n_triangles; i++) {
+    for (size_t i = 0; i < 3 * m->n_triangles && still_wanted_at(i, NULL); i++) {
         if (m->indices[i] >= m->n_vertices) {
             error_at(error, place,
                      "index %u of triangle %zu is out of range: the mesh has %zu "
@@ -93,7 +94,7 @@ static void store3(float *to, vec3 v)
 
 static void move_to_world(mesh *m, const shape_place *at)
 {
-    for (size_t i = 0; i < m->n_vertices; i++) {
+    for (size_t i = 0; i < m->n_vertices && still_wanted_at(i, NULL); i++) {
         float *p = m->positions + 3 * i;
         store3(p, transform_point(&at->to_world, vec3_make(p[0], p[1], p[2])));
         if (m->normals) {
@@ -127,7 +128,7 @@ static bool init_triangles(mesh_shape *s, GError **error)
     if (!areas)
         return false;
     s->planes = big_alloc(n, sizeof *s->planes, "triangle normals", error);
-    for (size_t i = 0; s->planes && i < n; i++) {
+    for (size_t i = 0; s->planes && i < n && still_wanted_at(i, NULL); i++) {
         triangle t;
         triangle_get(&s->m, i, &t);
         areas[i] = (float)triangle_area(&t);
@@ -155,7 +156,7 @@ void *mesh_shape_create(mesh *m, const shape_place *at, source_place place,
     s->m = *m;
     *m = (mesh){0};
     s->flip = at->reverse_orientation != transform_swaps_handedness(&at->to_world);
-    if (check_mesh(&s->m, place, error)) {
+    if (check_mesh(&s->m, place, error) && still_wanted(error)) {
         move_to_world(&s->m, at);
         if (check_numbers(s->m.positions, s->m.n_vertices, 3, "transformed position",
                           place, error) &&

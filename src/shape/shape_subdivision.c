@@ -15,6 +15,7 @@
  * to the side from which faces look clockwise.
  */
 #include "base/memory.h"
+#include "base/wanted.h"
 #include "shape/mesh_params.h"
 #include "shape/mesh_triangle.h"
 #include "shape/shape_kinds.h"
@@ -370,7 +371,7 @@ static void *create(const params *p, const shape_place *at, GError **error)
     bool done = read_control(p, &c, &levels, error) &&
                 check_levels(p, &c, levels, error) && connect(&c, p->place, error);
     for (int i = 0; i < levels && done; i++)
-        done = refine(&c, p->place, error);
+        done = still_wanted(error) && refine(&c, p->place, error);
     done = done && make_mesh(&c, &m, error);
     control_clear(&c);
     if (done)

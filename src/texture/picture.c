@@ -1,5 +1,6 @@
 #include "texture/picture.h"
 
+#include "base/wanted.h"
 #include "params/build_context.h"
 
 #include <string.h>
@@ -55,6 +56,19 @@ static picture *picture_of(picture *pic, image *taken, GError **error)
         return pic;
     picture_unref(pic);
     return NULL;
+}
+
+picture *picture_of_color(int side, const color_space *space, const float rgb[3],
+                          GError **error)
+{
+    image *img = image_new(side, side, 3, image_rgb_names, error);
+    if (!img)
+        return NULL;
+    for (int i = 0; i < 3 * side * side; i++)
+        img->pixels[i] = rgb[i % 3];
+    picture *pic = g_rc_box_new0(picture);
+    *pic = (picture){.channels = {0, 1, 2, -1}, .space = space};
+    return picture_of(pic, img, error);
 }
 
 static picture *read_path(const build_context *context, const char *path,
@@ -135,7 +149,7 @@ bool picture_has_alpha(const picture *pic)
     const texels *t = pic->levels[0];
     if (pic->channels[3] < 0)
         return false;
-    for (size_t i = 0; i < texels_count(t); i++)
+    for (size_t i = 0; i < texels_count(t) && still_wanted_at(i, NULL); i++)
         if (texels_value(t, i, pic->channels[3]) < 1.0f)
             return true;
     return false;
@@ -162,7 +176,7 @@ static size_t count_unlit(const picture *pic)
 {
     const texels *t = pic->levels[0];
     size_t n = 0;
-    for (size_t i = 0; i < texels_count(t); i++)
+    for (size_t i = 0; i < texels_count(t) && still_wanted_at(i, NULL); i++)
         n += !is_light(texels_value(t, i, pic->channels[0])) ||
              !is_light(texels_value(t, i, pic->channels[1])) ||
              !is_light(texels_value(t, i, pic->channels[2]));

@@ -53,6 +53,9 @@ picture *picture_read_light(const build_context *context, const params *p,
 /** @brief Wraps an image of one channel, which is taken, also on failure. @return NULL:
  * no memory */
 picture *picture_from_grey(image *taken, GError **error);
+/** @brief An image of one colour. @return NULL: no memory */
+picture *picture_of_color(int side, const color_space *space, const float rgb[3],
+                          GError **error);
 /** @brief Builds the pyramid. */
 bool picture_build_levels(picture *pic, GError **error);
 void picture_unref(picture *pic); /**< NULL is allowed */

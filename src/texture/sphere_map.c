@@ -1,6 +1,7 @@
 #include "texture/sphere_map.h"
 
 #include "base/memory.h"
+#include "base/wanted.h"
 
 #include <glib.h>
 
@@ -109,7 +110,7 @@ static bool build(sphere_map *map, source_place place, GError **error)
     float *weights = big_alloc(width * height, sizeof *weights, "a light", error);
     if (!weights)
         return false;
-    for (int y = 0; y < img->height; y++)
+    for (int y = 0; y < img->height && still_wanted(NULL); y++)
         for (int x = 0; x < img->width; x++) {
             float rgb[3];
             picture_texel_mean(map->pic, map->layout->wrap, x, y, rgb);
@@ -192,7 +193,7 @@ static float block_mean(const sphere_map *map, const int box[4], float rgb[3])
 {
     const texels *img = map->pic->levels[0];
     double sum[3] = {0}, weight = 0.0;
-    for (int y = box[2]; y < box[3]; y++)
+    for (int y = box[2]; y < box[3] && still_wanted(NULL); y++)
         for (int x = box[0]; x < box[1]; x++) {
             vec2 st = {((float)x + 0.5f) / (float)img->width,
                        ((float)y + 0.5f) / (float)img->height};

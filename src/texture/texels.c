@@ -1,6 +1,7 @@
 #include "texture/texels.h"
 
 #include "base/memory.h"
+#include "base/wanted.h"
 
 #include <string.h>
 
@@ -43,7 +44,8 @@ static bool encode_with(texels *t, const float *pixels, code_book *books)
 {
     int n = t->n_channels;
     uint8_t *to = t->codes;
-    for (size_t i = 0; i < texels_count(t); i++, pixels += n, to += n)
+    for (size_t i = 0; i < texels_count(t) && still_wanted_at(i, NULL);
+         i++, pixels += n, to += n)
         for (int c = 0; c < n; c++) {
             int code = code_of(&books[c], pixels[c], t->tables[c]);
             if (code < 0)
@@ -105,7 +107,7 @@ texels *texels_mended(const texels *t, float (*mend)(float), GError **error)
         texels_free(copy);
         return NULL;
     }
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n && still_wanted_at(i, NULL); i++)
         copy->values[i] = mend(texels_value(t, i / n_channels, (int)(i % n_channels)));
     return copy;
 }
@@ -122,7 +124,7 @@ static void fill_halved(texels *small, const texels *large)
 {
     size_t width = (size_t)large->width;
     float *to = small->values;
-    for (int y = 0; y < small->height; y++)
+    for (int y = 0; y < small->height && still_wanted(NULL); y++)
         for (int x = 0; x < small->width; x++, to += small->n_channels) {
             size_t xs[2], ys[2];
             children(x, large->width, xs);

@@ -9,6 +9,8 @@ typedef struct lookout {
     const view *view;
     wavelengths w;
     bsdf_options options;
+    uint64_t key;
+    visible_point *points; /* one a ray; of no size where it met nothing that gathers */
 } lookout;
 
 /* Follows a camera ray to the first surface that gathers. */
@@ -46,25 +48,43 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
     return false;
 }
 
-size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point *out)
+static void find_some(size_t begin, size_t end, unsigned thread, void *data)
 {
-    const camera *c = &plan->view->camera;
-    lookout from = {.scene = plan->scene,
-                    .view = plan->view,
-                    .w = scene_trial_wavelengths(plan->scene, 0)};
-    from.options.deterministic = !plan->how.multiple_samples;
-    from.options.metal_is_followed = photon_follows_metals(&plan->how);
-    uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x6c6f6f6bu);
-    size_t found = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        sampler random = sampler_make(key, i);
+    (void)thread;
+    const lookout *from = data;
+    const camera *c = &from->view->camera;
+    for (size_t i = begin; i < end; i++) {
+        sampler random = sampler_make(from->key, i);
         vec2 u = sampler_2d(&random);
         vec2 raster = {u.x * (float)c->width, u.y * (float)c->height};
         vec2 u_lens = sampler_2d(&random);
         ray r = camera_ray(c, raster, u_lens, sampler_1d(&random));
-        found += find_one(&from, &r, &random, &out[found]);
+        if (!find_one(from, &r, &random, &from->points[i]))
+            from->points[i].pixel = 0.0f;
     }
-    return found;
+}
+
+/* Moves those that were found to the front. @return how many. */
+static size_t keep_found(visible_point *points, uint32_t n)
+{
+    size_t kept = 0;
+    for (uint32_t i = 0; i < n; i++)
+        if (points[i].pixel > 0.0f)
+            points[kept++] = points[i];
+    return kept;
+}
+
+size_t find_visible_points(const transport_plan *plan, uint32_t n, visible_point *out)
+{
+    lookout from = {.scene = plan->scene,
+                    .view = plan->view,
+                    .w = scene_trial_wavelengths(plan->scene, 0),
+                    .key = hash_mix((uint64_t)plan->how.seed, 0x6c6f6f6bu),
+                    .points = out};
+    from.options.deterministic = !plan->how.multiple_samples;
+    from.options.metal_is_followed = photon_follows_metals(&plan->how);
+    parallel_for(n, LEAST_TRIALS, (unsigned)plan->how.threads, NULL, find_some, &from);
+    return keep_found(out, n);
 }
 
 void plan_look(transport_plan *plan)

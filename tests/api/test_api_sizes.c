@@ -61,20 +61,57 @@ static void fill_estimate(const filler *f, void *out, size_t size)
     neph_photons_estimate_sized(f->photons, at, along, 1.0, out, size);
 }
 
+/* Between fields are bytes that mean nothing. */
+typedef struct gap {
+    size_t from, to;
+} gap;
+
+#define AFTER(type, field) (offsetof(type, field) + sizeof(((type *)NULL)->field))
+#define STATISTICS_GAPS                                                                  \
+    {                                                                                    \
+        {AFTER(NephStatistics, can_look), offsetof(NephStatistics, part)},               \
+        {                                                                                \
+            AFTER(NephStatistics, short_of_memory), sizeof(NephStatistics)               \
+        }                                                                                \
+    }
+
+#define NO_GAPS                                                                          \
+    {                                                                                    \
+        {0, 0},                                                                          \
+        {                                                                                \
+            0, 0                                                                         \
+        }                                                                                \
+    }
+
 static const struct {
     const char *name;
     void (*fill)(const filler *f, void *out, size_t size);
     size_t size;
+    gap gaps[2];
 } kinds[] = {
-    {"camera", fill_camera, sizeof(NephCamera)},
-    {"statistics", fill_statistics, sizeof(NephStatistics)},
-    {"photon statistics", fill_photon_statistics, sizeof(NephStatistics)},
-    {"plan", fill_plan, sizeof(NephPlan)},
-    {"surface", fill_surface, sizeof(NephSurfacePoint)},
-    {"difference", fill_difference, sizeof(NephImageDifference)},
-    {"photon", fill_photon, sizeof(NephPhoton)},
-    {"estimate", fill_estimate, sizeof(NephEstimate)},
+    {"camera", fill_camera, sizeof(NephCamera), NO_GAPS},
+    {"statistics", fill_statistics, sizeof(NephStatistics), STATISTICS_GAPS},
+    {"photon statistics", fill_photon_statistics, sizeof(NephStatistics),
+     STATISTICS_GAPS},
+    {"plan", fill_plan, sizeof(NephPlan), NO_GAPS},
+    {"surface", fill_surface, sizeof(NephSurfacePoint), NO_GAPS},
+    {"difference", fill_difference, sizeof(NephImageDifference), NO_GAPS},
+    {"photon", fill_photon, sizeof(NephPhoton), NO_GAPS},
+    {"estimate", fill_estimate, sizeof(NephEstimate), NO_GAPS},
 };
+
+static bool is_same(const unsigned char *a, const unsigned char *b, size_t n,
+                    const gap gaps[2])
+{
+    for (size_t i = 0; i < n; i++) {
+        bool means = true;
+        for (int k = 0; k < 2; k++)
+            means &= !(i >= gaps[k].from && i < gaps[k].to);
+        if (means && a[i] != b[i])
+            return false;
+    }
+    return true;
+}
 
 static void check_kind(const filler *f, size_t kind)
 {
@@ -85,7 +122,7 @@ static void check_kind(const filler *f, size_t kind)
     for (size_t n = 1; n <= size + MORE; n++) {
         memset(other, GUARD, sizeof other);
         kinds[kind].fill(f, other, n);
-        if (memcmp(whole, other, MIN(n, size)) != 0)
+        if (!is_same(whole, other, MIN(n, size), kinds[kind].gaps))
             g_error("%s: %zu bytes are not those of %zu", kinds[kind].name, n, size);
         for (size_t i = size; i < n; i++)
             g_assert_cmpuint(other[i], ==, 0);

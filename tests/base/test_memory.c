@@ -57,6 +57,34 @@ static void test_limit(void)
 }
 
 /* What is behind the first elements goes back to the limit, and to the system. */
+/* Zero as far as asked, of small arrays and of large ones, and no further. */
+static void test_zero(void)
+{
+    static const size_t sizes[] = {100, 5000, 131072, 400000, 9000000};
+    for (size_t i = 0; i < G_N_ELEMENTS(sizes); i++) {
+        size_t n = sizes[i], zeroed = n - 37, left = memory_left();
+        unsigned char *array = big_alloc(n, 1, "test", NULL);
+        memset(array, 7, n);
+        big_zero(array, zeroed);
+        for (size_t k = 0; k < n; k++)
+            g_assert_cmpuint(array[k], ==, k < zeroed ? 0 : 7);
+        big_free(array);
+        g_assert_cmpuint(memory_left(), ==, left);
+    }
+}
+
+/* It is no mistake where an array stays as large as it was: that is not told, and the
+   n-th allocation that is to fail is another one. */
+static void test_fit_fails_unheard(void)
+{
+    char *array = big_alloc(1000, 1, "test", NULL);
+    big_alloc_fail_at(1);
+    array = big_fit(array, 500, 1);
+    g_assert_cmpuint(big_alloc_fail_left(), ==, 1);
+    big_alloc_fail_at(0);
+    big_free(array);
+}
+
 static void test_fit(void)
 {
     static const size_t sizes[] = {100, 3000, 200 * KIB, 9 * MIB};
@@ -367,6 +395,8 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/memory/limit", test_limit);
     g_test_add_func("/memory/fit", test_fit);
+    g_test_add_func("/memory/fit/unheard", test_fit_fails_unheard);
+    g_test_add_func("/memory/zero", test_zero);
     g_test_add_func("/memory/threads", test_threads);
     g_test_add_func("/memory/cgroups", test_cgroups);
     g_test_add_func("/memory/machine", test_machine);

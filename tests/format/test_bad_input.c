@@ -68,10 +68,8 @@ static void test_values(void)
            "%s:4:31: parameter 'radius': expected a number, found 'nan'");
     refuse(WORLD "Shape \"sphere\" \"float radius\" 1e99\n",
            "%s:4:31: parameter 'radius': expected a number, found '1e99'");
-    refuse(WORLD "Shape \"trianglemesh\" \"integer indices\" [0 1.5 2]\n",
-           "%s:4:43: parameter 'indices': expected a whole number, found '1.5'");
-    refuse(WORLD "Shape \"trianglemesh\" \"integer indices\" [0 1 99999999999]\n",
-           "%s:4:45: parameter 'indices': expected a whole number, found '99999999999'");
+    refuse(WORLD "Shape \"trianglemesh\" \"integer indices\" [0 1.x 2]\n",
+           "%s:4:43: parameter 'indices': expected a whole number, found '1.x'");
     refuse(WORLD "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1]\n",
            "%s:4:22: parameter 'P': expected a multiple of 3 numbers, found 4");
     refuse(WORLD "AreaLightSource \"diffuse\" \"bool twosided\" \"true\"\n",
@@ -92,6 +90,9 @@ static void test_kinds_and_parameters(void)
     refuse("Option \"seed\" many\n" WORLD,
            "%s:1:8: expected a value for option 'seed', found 'many'");
     refuse("Option \"seed\" [\n" WORLD, "%s:1:15: expected a value, found '['");
+    refuse(WORLD "LightSource \"\"\n",
+           "%s:4:1: expected a light source of kind point, spot, distant, goniometric, "
+           "projection, infinite, found ''");
     refuse(WORLD "AreaLightSource \"sparkle\"\n",
            "%s:4:17: expected AreaLightSource \"diffuse\", found \"sparkle\"");
     refuse(WORLD "Texture \"t\" \"rgb\" \"constant\"\n",
@@ -161,10 +162,9 @@ static void test_options(void)
 {
     refuse("Integrator \"photonmap\" \"integer pases\" 3\n" WORLD,
            "%s:1:24: unknown parameter 'pases' of Integrator \"photonmap\"");
-    refuse(
-        "Integrator \"photonmap\" \"integer passes\" -1\n" WORLD,
-        "%s:1:24: setting 'passes': expected a number from 0 to 1000000000, found "
-        "'-1'");
+    refuse("Integrator \"photonmap\" \"integer passes\" -1\n" WORLD,
+           "%s:1:24: setting 'passes': expected a number from 0 to 1000000000, found "
+           "'-1'");
     refuse("Integrator \"photonmap\" \"float radius\" [1 2]\n" WORLD,
            "%s:1:24: parameter 'radius': expected one value, found 2");
     refuse("Camera \"perspective\"\nWorldBegin\nLightSource \"point\" \"string group\" "
@@ -227,9 +227,6 @@ static void test_geometry(void)
            "%s:4:1: a shape that shines must have an area");
     refuse(WORLD "Shape \"sphere\" \"float radius\" -1\n",
            "%s:4:16: the sphere's radius must be positive, found -1");
-    refuse(WORLD "Shape \"trianglemesh\" \"point3 P\" [0 0 0  1 0 0  0 1 0]\n"
-                 "  \"integer indices\" [0 1 3]\n",
-           "%s:5:3: index 3 of triangle 0 is out of range: the mesh has 3 vertices");
     refuse(WORLD "Scale 1e30 1e30 1e30 Shape \"sphere\" \"float radius\" 1e30\n",
            "%s:4:22: the shape has no area (or an infinite one)");
 }

@@ -295,6 +295,21 @@ static void test_hidden(void)
     g_assert_cmpuint(s->shapes->len + s->instances->len, ==, 2); /* an object, once */
 }
 
+/* Who packs a mesh and does not require that it is unpacked says the same plainly. */
+static void test_packed_beside(void)
+{
+    static const char middle[] =
+        "\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],\"materials\":[{}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":2,"
+        "\"material\":0,\"extensions\":{\"KHR_draco_mesh_compression\":{"
+        "\"bufferView\":1,\"attributes\":{\"POSITION\":0}}}}]}]," NODES;
+    g_autoptr(scene) packed = load(middle, NULL);
+    g_autoptr(scene) plain = load("\"materials\":[{}]," MESH("0") NODES, NULL);
+    g_assert_cmpuint(packed->shapes->len, >, 0);
+    g_assert_cmpuint(packed->shapes->len, ==, plain->shapes->len);
+    g_assert_cmpfloat(packed->radius, ==, plain->radius);
+}
+
 /* ---- What is refused ---- */
 
 static void test_refused(void)
@@ -414,6 +429,7 @@ int main(int argc, char **argv)
     g_test_add_func("/gltf/defaults", test_defaults);
     g_test_add_func("/gltf/required", test_required);
     g_test_add_func("/gltf/hidden", test_hidden);
+    g_test_add_func("/gltf/packed-beside", test_packed_beside);
     g_test_add_func("/gltf/refused", test_refused);
     g_test_add_func("/gltf/not-json", test_not_json);
     g_test_add_func("/gltf/damaged", test_damaged);

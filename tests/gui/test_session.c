@@ -153,6 +153,59 @@ static void test_endless_import(void)
     g_unlink(model);
 }
 
+static double cpu_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void write_large(const char *path)
+{
+    GString *text = g_string_new("Camera \"perspective\"\nWorldBegin\nLightSource "
+                                 "\"infinite\"\n");
+    for (int i = 0; i < 200000; i++)
+        g_string_append_printf(text,
+                               "AttributeBegin Translate %d %d %d Material \"diffuse\" "
+                               "\"rgb reflectance\" [0.5 0.4 0.3]\nShape \"sphere\" "
+                               "\"float radius\" 0.4 AttributeEnd\n",
+                               i % 100, i / 100 % 100, i / 10000);
+    g_assert_true(g_file_set_contents(path, text->str, (gssize)text->len, NULL));
+    g_string_free(text, TRUE);
+}
+
+/* Nor does a scene that takes long to read: the other one, and the end, take the time of
+ * themselves. */
+static void test_long_reading(void)
+{
+    heard h = {0};
+    g_autofree char *large = g_build_filename(folder, "large.pbrt", NULL);
+    write_large(large);
+    double start = cpu_seconds();
+    neph_scene_free(neph_scene_load(large, 1, NULL, NULL, NULL));
+    double whole = cpu_seconds() - start;
+    session *s = session_new(listen, &h);
+    start = cpu_seconds();
+    session_load(s, scene_file);
+    wait_until(is_done, &h);
+    double small = cpu_seconds() - start;
+    h.scenes = 0;
+    session_load(s, large);
+    wait_until(is_loading, &h);
+    start = cpu_seconds();
+    session_load(s, scene_file);
+    wait_until(is_done, &h);
+    g_assert_cmpint(h.errors, ==, 0);
+    g_assert_cmpint(h.scenes, ==, 1);
+    session_load(s, large);
+    wait_until(is_loading, &h);
+    end(s, &h);
+    g_test_message("%.2f s, alone %.2f; the large one %.2f s", cpu_seconds() - start,
+                   small, whole);
+    g_assert_cmpfloat(cpu_seconds() - start, <, small + 0.5 * whole);
+    g_unlink(large);
+}
+
 /* While the view moves only quick looks come; when it stands still, the whole. */
 static void test_moving(void)
 {
@@ -386,6 +439,7 @@ int main(int argc, char **argv)
     g_test_add_func("/session/same-picture", test_same_picture);
     g_test_add_func("/session/missing", test_missing);
     g_test_add_func("/session/endless-import", test_endless_import);
+    g_test_add_func("/session/long-reading", test_long_reading);
     g_test_add_func("/session/moving", test_moving);
     g_test_add_func("/session/checkpoint", test_checkpoint);
     g_test_add_func("/session/checkpoint-refused", test_checkpoint_refused);

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Every scene can be read, has its README, and includes the geometry that the script makes.
+# Every scene can be read, has its README, and includes the geometry that the script makes. One pixel
+# of each is rendered, by paths, for which nothing is tried before: that takes a tenth of what `info` does.
 # usage: test_scenes.sh ROOT PROGRAM; speaks TAP.
 root=$1
 program=$2
@@ -15,6 +16,9 @@ report() {
     fi
 }
 
+work=$(mktemp -d) || exit 99
+trap 'rm -rf "$work"' EXIT
+
 # Those whose model is fetched are read where it is.
 can_be_read() {
     local folder=${1%/*}
@@ -23,7 +27,7 @@ can_be_read() {
     */dragons/*) [ -f "$folder/dragon.ply" ] || return 0 ;;
     */sponza/*) [ -f "$folder/walls.ply" ] || return 0 ;;
     esac
-    "$program" info "$1" >/dev/null
+    "$program" render "$1" -q --size 1x1 --integrator path --spp 1 --passes 1 -o "$work/pixel.pfm"
 }
 
 mapfile -t scenes < <(grep -l '^WorldBegin' "$root"/scenes/*/*.pbrt)
@@ -42,8 +46,6 @@ report readmes $status
 PYTHONDONTWRITEBYTECODE=1 python3 "$root/tools/scene_geometry.py" --check | sed 's/^/# /'
 report geometry "${PIPESTATUS[0]}"
 
-work=$(mktemp -d) || exit 99
-trap 'rm -rf "$work"' EXIT
 echo 'WorldBegin Shape "sphere" "float radius" -1' >"$work/fault.pbrt"
 ! can_be_read "$work/fault.pbrt" 2>/dev/null
 report planted-fault $?

@@ -506,10 +506,33 @@ static void test_full_disk_keeps_old_file(void)
     signal(SIGXFSZ, SIG_DFL);
 }
 
+/* What is written is what a writer is found for, and eight bits are those of a screen. */
+static void test_endings(void)
+{
+    static const struct {
+        const char *path;
+        bool written, eight_bits;
+    } cases[] = {{"a.png", true, true},      {"a/b.JPEG", true, true},
+                 {"a.exr", true, false},     {"a.hdr", true, false},
+                 {"a.pfm", true, false},     {"a.bmp", false, false},
+                 {"a.png.ply", false, false}};
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        bool eight_bits;
+        g_assert_true(image_is_written(cases[i].path, &eight_bits) == cases[i].written);
+        g_assert_true(eight_bits == cases[i].eight_bits);
+    }
+    for (const char *const *e = image_written_extensions(); *e; e++) {
+        bool eight_bits;
+        g_assert_true(image_is_written(*e, &eight_bits));
+        g_assert_true(g_strv_contains(image_extensions(), *e));
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     folder = g_dir_make_tmp("nephroid-image-XXXXXX", NULL);
+    g_test_add_func("/image/endings", test_endings);
     g_test_add_func("/image/new", test_new_refuses_absurd_sizes);
     g_test_add_func("/image/channels-and-header", test_channels_and_header);
     g_test_add_func("/image/srgb", test_srgb);

@@ -54,7 +54,7 @@ Shape "sphere" "float radius" 0.5
 AttributeEnd
 TEXT
 
-echo 1..14
+echo 1..18
 for how in auto/1 auto/2 auto/4 vcm/3 sppm/2; do
     integrator=${how%/*} n=${how#*/}
     rm -f many.exr
@@ -88,12 +88,55 @@ report resumed-by-others $?
 "$one" render box.pbrt -q --resume kept --passes 3000 -o alone.exr >log 2>&1 && same whole.exr alone.exr
 report resumed-by-one $?
 
-ranks 2 --time 4 --size 200x160 -o time.exr
-status=$?
-[ $status = 0 ] && [ -s time.exr ] && grep -q 'stopped by time' log
-report time $?
+# in_time N SIZE: from the root's start to the written picture no more than 5 % and 0.5 s over.
+# Where other programs hold the machine up the best of some tries counts, and the picture is
+# written to memory where that can be: a disk may be busy for any time.
+in_time() {
+    local out=time.exr
+    [ ! -w /dev/shm ] || out=$(mktemp -p /dev/shm --suffix=.exr)
+    in_time_to "$1" "$2" "$out"
+    local status=$?
+    rm -f "$out"
+    return $status
+}
 
-ranks 2 --noise 0.2 -o noise.exr && grep -q 'stopped by noise' log
+in_time_to() { # N SIZE FILE
+    for _ in 1 2 3 4 5; do
+        : >"$3"
+        ranks "$1" --time 4 --size "$2" -o "$3" --stats time.json || return 1
+        [ -s "$3" ] && grep -q 'stopped by time' log &&
+            awk '/"total"/ { exit !($2 + 0 > 1 && $2 + 0 <= 1.05 * 4 + 0.5) }' time.json && return 0
+        grep '"total"' time.json >>log
+    done
+    return 1
+}
+
+for how in 1/200x160 2/200x160 4/200x160 2/800x600; do
+    in_time "${how%/*}" "${how#*/}"
+    report "time/$how" $?
+done
+
+# What is left of a job whose time was too short for whole passes is a picture of parts of one.
+ranks 2 -q --time 1 --size 2000x1500 -o parts.exr --stats parts.json
+[ $? = 0 ] && [ -s parts.exr ] && awk '/"passes"/ { n = $2 + 0 } /"part"/ { part = $2 + 0 }
+    END { exit !(n + part > 0) }' parts.json
+report time/parts $?
+
+number_in() { # NAME FILE
+    awk -v name="\"$1\":" '$1 == name { print $2 + 0; exit }' "$2"
+}
+
+# The noise of all ranks' passes is that of one process' as many passes, and ends the job as
+# soon as it is looked at with enough of them.
+ranks 3 --noise 0.2 --passes 100000 -o noise.exr --stats noise.json && grep -q 'stopped by noise' log
+ended=$?
+passes=$(number_in passes noise.json)
+"$one" render box.pbrt -q --passes "$passes" --set planned_passes=100000 -o alone.exr --stats alone.json >>log 2>&1
+"$one" render box.pbrt -q --noise 0.2 --passes 100000 -o soon.exr --stats soon.json >>log 2>&1
+found="$(number_in noise noise.json) $(number_in noise alone.json) $passes $(number_in passes soon.json)"
+echo "noise of many, of one, passes of many, of one: $found" >>log
+[ $ended = 0 ] && same alone.exr noise.exr && echo "$found" |
+    awk '{ exit !($1 > 0 && $1 <= 0.2 && ($1 - $2) ^ 2 < 1e-8 && $3 >= $4 && $3 <= 2 * $4 + 8) }'
 report noise $?
 
 # The root's plan is that of all: its memory is short, and the others send as few photons as it.

@@ -3,7 +3,7 @@
  * file that is not what it was, or of something else, is refused with the reason.
  */
 #include "base/memory.h"
-#include "render/film_planes.h"
+#include "render/film/film_planes.h"
 #include "render/kept/checkpoint.h"
 #include "rooms.h"
 

@@ -6,7 +6,7 @@
 #include "rooms.h"
 
 #include "color/balance.h"
-#include "render/film.h"
+#include "render/film/film.h"
 
 static view *wall(const char *film_text, const char *camera_text)
 {

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "image/compare.h"
 #include "image/layers.h"
-#include "render/film_halves.h"
+#include "render/film/film_halves.h"
 #include "render/render_state.h"
 
 #include <glib/gstdio.h>
@@ -62,6 +62,23 @@ static void test_less_noise(void)
         g_assert_cmpfloat(e.denoised, <, 0.7 * before);
         before = e.denoised;
     }
+}
+
+/* Fewer windows say something else, and hardly anything worse. */
+static void test_windows(void)
+{
+    static const char how[] = "denoise=on integrator=path spp=4 passes=4 ";
+    g_autoptr(view) v = view_of(HALL);
+    g_autoptr(image) reference =
+        render_with(v, "integrator=path spp=16 passes=60 seed=9");
+    g_autofree char *few = g_strconcat(how, "denoise_windows=coarse", NULL);
+    g_autofree char *many = g_strconcat(how, "denoise_windows=fine", NULL);
+    g_autoptr(image) coarse = render_with(v, few), fine = render_with(v, many);
+    errors of_few = errors_of(coarse, reference), of_many = errors_of(fine, reference);
+    g_test_message("fine %g, coarse %g", of_many.denoised, of_few.denoised);
+    g_assert_cmpfloat(of_few.raw, ==, of_many.raw);
+    g_assert_cmpfloat(of_few.denoised, !=, of_many.denoised);
+    g_assert_cmpfloat(of_few.denoised, <, 1.25 * of_many.denoised);
 }
 
 static const char *const integrators[] = {"path", "vcm", "photonmap", "auto"};
@@ -271,6 +288,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/film-denoise/less-noise", test_less_noise);
+    g_test_add_func("/film-denoise/windows", test_windows);
     g_test_add_func("/film-denoise/lamp-in-mirror", test_lamp_in_mirror);
     g_test_add_func("/film-denoise/sharp-in-mirror", test_sharp_in_mirror);
     g_test_add_func("/film-denoise/algorithms", test_algorithms);

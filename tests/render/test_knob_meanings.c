@@ -337,6 +337,7 @@ static const struct {
     {"vcm_strategies", "/vcm/strategies"},
     {"alpha", "/knob-meanings/alpha"},
     {"denoise", "/film-denoise/raw-stays /film-denoise/less-noise"},
+    {"denoise_windows", "/film-denoise/windows /pace/windows"},
     {"seed", "/knob-meanings/seed"},
     {"camera_seed", "/knob-meanings/camera-seed"},
     {"threads", "/base/parallel/once /transport/threads"},

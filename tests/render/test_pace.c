@@ -303,6 +303,38 @@ static void test_plans(void)
     g_assert_cmpfloat(radius[1], <, 0.8 * radius[0]);
 }
 
+static bool stops_after_three(double fraction, const render_statistics *st, void *data)
+{
+    (void)fraction;
+    (void)data;
+    return st->passes < 3;
+}
+
+/* Where there is little time noise is taken out in fewer windows, unless told
+   otherwise, and who repeats the render does so too. */
+static void test_windows(void)
+{
+    static const struct {
+        const char *words;
+        int windows;
+    } cases[] = {{"time=1", WINDOWS_COARSE},
+                 {"time=1 denoise_windows=fine", WINDOWS_FINE},
+                 {"time=3600", WINDOWS_AUTO}};
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(192) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autofree char *words =
+            g_strconcat("integrator=path spp=1 denoise=on ", cases[i].words, NULL);
+        g_autoptr(render) r = render_of(v, words);
+        render_run(r, stops_after_three, NULL, NULL);
+        g_assert_cmpint(render_settings(r).denoise_windows, ==, cases[i].windows);
+        g_auto(GStrv) again = render_repeat(r);
+        g_assert_true(
+            g_strv_contains((const char *const *)again, "denoise_windows=coarse") ==
+            (cases[i].windows == WINDOWS_COARSE));
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -314,6 +346,7 @@ int main(int argc, char **argv)
     g_test_add_data_func("/pace/repeats/path", "path", test_repeats);
     g_test_add_data_func("/pace/repeats/photonmap", "photonmap", test_repeats);
     g_test_add_data_func("/pace/repeats/vcm", "vcm", test_repeats);
+    g_test_add_func("/pace/windows", test_windows);
     g_test_add_func("/pace/too-large", test_too_large);
     g_test_add_func("/pace/grids", test_grids);
     g_test_add_func("/pace/begun-grid", test_begun_grid);

@@ -138,6 +138,9 @@ static const plan_case costs[] = {
      "integrator=photonmap photons=100 passes=1 spp=4 seed=3"},
     {"picture", STUDIO(48) SMALL_LAMP GLASS_BALL,
      "integrator=auto passes=4 spp=4 seed=3"},
+    {"dull", STUDIO(64) ROOM_LAMP(""), "integrator=auto passes=2 spp=4 seed=3"},
+    {"glass", STUDIO(64) ROOM_LAMP("") GLASS_BALL,
+     "integrator=auto passes=2 spp=4 seed=3"},
     {"tiny", STUDIO(8) POINT GLASS_BALL, "integrator=auto passes=1 spp=4 seed=3"},
 };
 

@@ -3,7 +3,7 @@
 local titles = {
   front = "photon-mapping-the-report",
   counterparts = "what-three-texts-show-and-what-stands-here-for-it",
-  report = "why-it-is-right-five-proofs",
+  report = "why-it-is-right-six-proofs",
   results = "results",
   discussion = "discussion",
   gallery = "gallery",

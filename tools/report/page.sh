@@ -4,9 +4,15 @@ set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 docs=$here/../../docs
+read_as=(--from gfm+tex_math_dollars --to html5 --mathml --lua-filter "$here/links.lua")
 
-pandoc --from gfm+tex_math_dollars --to html5 --standalone --self-contained --mathml \
-    --toc --toc-depth=2 --css "$here/page.css" --lua-filter "$here/links.lua" \
-    --resource-path "$docs:$docs/report" --metadata pagetitle="Nephroid: the report" \
-    "$docs/report/front.md" "$docs/report.md" "$docs/report/results.md" "$docs/report/discussion.md" \
+# What it begins with stands before the table of contents.
+front=$(mktemp)
+trap 'rm -f "$front"' EXIT
+pandoc "${read_as[@]}" "$docs/report/front.md" >"$front"
+
+pandoc "${read_as[@]}" --standalone --self-contained --toc --toc-depth=2 --css "$here/page.css" \
+    --include-before-body "$front" --resource-path "$docs:$docs/report" \
+    --metadata pagetitle="Nephroid: the report" --metadata lang=en \
+    "$docs/report.md" "$docs/report/results.md" "$docs/report/discussion.md" \
     "$docs/report/counterparts.md" "$docs/gallery.md" "$docs/journal.md"

@@ -1,7 +1,9 @@
 #include "render/kept/checkpoint.h"
 
+#include "api/asking.h"
 #include "api/render/fingerprint.h"
 #include "api/render/render.h"
+#include "base/wanted.h"
 
 static render_identity identity_of(NephRender *r)
 {
@@ -10,16 +12,49 @@ static render_identity identity_of(NephRender *r)
     return (render_identity){(char *)neph_version(), r->fingerprint};
 }
 
+/* Ends what was asked whether to go on: who it was that has been stopped is not known,
+   and of the scene's files not all may have been read. */
+static bool end(NephRender *r, bool done, const cancel_flag *before, GError **error)
+{
+    bool wanted = done || still_wanted(NULL);
+    wanted_by(before);
+    if (wanted)
+        return done;
+    g_clear_pointer(&r->fingerprint, g_free);
+    g_clear_error(error);
+    error_set(error, ERROR_CANCELLED, "cancelled");
+    return false;
+}
+
+bool neph_render_save_checkpoint_while(NephRender *r, const char *path,
+                                       NephGoOnFunc go_on, void *data, GError **error)
+{
+    asking a;
+    const cancel_flag *before = wanted_by(asking_begin(&a, go_on, data));
+    const render_identity who = identity_of(r);
+    bool done =
+        still_wanted(error) && render_save_checkpoint(r->render, &who, path, error);
+    return end(r, done, before, error);
+}
+
 bool neph_render_save_checkpoint(NephRender *r, const char *path, GError **error)
 {
+    return neph_render_save_checkpoint_while(r, path, NULL, NULL, error);
+}
+
+bool neph_render_resume_while(NephRender *r, const char *path, NephGoOnFunc go_on,
+                              void *data, GError **error)
+{
+    asking a;
+    const cancel_flag *before = wanted_by(asking_begin(&a, go_on, data));
     const render_identity who = identity_of(r);
-    return render_save_checkpoint(r->render, &who, path, error);
+    bool done = still_wanted(error) && render_resume(r->render, &who, path, error);
+    return end(r, done, before, error);
 }
 
 bool neph_render_resume(NephRender *r, const char *path, GError **error)
 {
-    const render_identity who = identity_of(r);
-    return render_resume(r->render, &who, path, error);
+    return neph_render_resume_while(r, path, NULL, NULL, error);
 }
 
 NephSettings *neph_checkpoint_settings(const char *path, int *width, int *height,

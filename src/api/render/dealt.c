@@ -70,6 +70,16 @@ void neph_render_forget(NephRender *r)
     render_forget(r->render);
 }
 
+double neph_render_seconds_after(const NephRender *r)
+{
+    return render_seconds_after(r->render);
+}
+
+double neph_render_pass_seconds(NephRender *r)
+{
+    return render_pass_seconds(r->render);
+}
+
 NephSettings *neph_render_settings(const NephRender *r)
 {
     NephSettings *out = neph_settings_new();

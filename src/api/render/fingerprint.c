@@ -1,6 +1,7 @@
 #include "api/render/fingerprint.h"
 
 #include "base/input.h"
+#include "base/wanted.h"
 #include "format/pbrt/pbrt_sum.h"
 
 #include <stdio.h>
@@ -31,7 +32,7 @@ static void add_file(GChecksum *sum, const char *path)
     if (!from)
         return;
     size_t n, size = 0;
-    for (; (n = fread(piece, 1, PIECE, from)) > 0; size += n)
+    for (; still_wanted(NULL) && (n = fread(piece, 1, PIECE, from)) > 0; size += n)
         g_checksum_update(sum, piece, (gssize)n);
     fclose(from);
     const double end = (double)size;

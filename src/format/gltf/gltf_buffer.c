@@ -120,23 +120,35 @@ static const uint8_t *buffer_bytes(gltf *g, const json_value *part, size_t *size
     return bytes;
 }
 
+/* Meshopt's, if the buffer that has the same unpacked is a name alone. */
+static bool is_packed(gltf *g, const json_value *part)
+{
+    json_value extensions, array;
+    gint64 index;
+    json_value packed = gltf_extension(part, "EXT_meshopt_compression", &extensions);
+    if (!json_exists(&packed))
+        return false;
+    json_value buffer = gltf_refer(g, part, "buffer", "buffers", &array, &index);
+    json_value uri = json_member(&buffer, "uri");
+    if (json_exists(&uri) || gltf_failed(g))
+        return false;
+    json_fail(&packed, "meshes packed by meshopt are not supported");
+    return true;
+}
+
 /* A view's bytes. *stride is 0 if it says nothing. */
 static const uint8_t *view_bytes(gltf *g, const json_value *part, size_t *size,
                                  size_t *stride)
 {
     size_t whole;
-    const uint8_t *bytes = buffer_bytes(g, part, &whole);
+    const uint8_t *bytes = is_packed(g, part) ? NULL : buffer_bytes(g, part, &whole);
     gint64 offset = MAX(0, json_whole(part, "byteOffset", G_MAXINT64 / 4));
     gint64 length = json_whole(part, "byteLength", G_MAXINT64 / 4);
     gint64 step = json_whole(part, "byteStride", 252);
     if (gltf_failed(g) || !bytes)
         return NULL;
-    json_value extensions,
-        packed = gltf_extension(part, "EXT_meshopt_compression", &extensions);
-    if (json_exists(&packed))
-        json_fail(&packed, "meshes packed by meshopt are not supported");
-    else if (length < 0 || (guint64)offset > whole ||
-             (guint64)length > whole - (guint64)offset)
+    if (length < 0 || (guint64)offset > whole ||
+        (guint64)length > whole - (guint64)offset)
         json_fail(part, "expected a part of a buffer of %zu bytes", whole);
     else {
         *size = (size_t)length;

@@ -258,13 +258,25 @@ static void add_primitive(gltf *g, const json_value *primitive, gint64 number,
     mesh_clear(&m);
 }
 
+/* A file that does not require Draco says the same without it; the accessors have data
+ * of their own then. */
+static bool has_plain_data(gltf *g, const json_value *primitive)
+{
+    json_value attributes = json_member(primitive, "attributes"), array;
+    gint64 index;
+    json_value points =
+        gltf_refer(g, &attributes, "POSITION", "accessors", &array, &index);
+    json_value data = json_member(&points, "bufferView");
+    return json_exists(&data);
+}
+
 /* Points and lines have no surface. */
 static bool has_surface(gltf *g, const json_value *primitive)
 {
     json_value extensions,
         packed = gltf_extension(primitive, "KHR_draco_mesh_compression", &extensions);
     gint64 mode = json_whole(primitive, "mode", 6);
-    if (json_exists(&packed))
+    if (json_exists(&packed) && !has_plain_data(g, primitive))
         json_fail(&packed, "meshes packed by Draco are not supported");
     if (mode < 0 || mode >= MODE_TRIANGLES)
         return true;

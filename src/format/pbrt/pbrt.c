@@ -2,6 +2,7 @@
  * The pbrt-v4 reader: walks the directives of a file and of those it includes. Errors are
  * collected, so that a scene with five mistakes takes one run to mend, not five.
  */
+#include "base/wanted.h"
 #include "format/pbrt/pbrt_parser.h"
 
 #include "base/input.h"
@@ -80,7 +81,7 @@ static const directive *find_directive(const token *t)
 /** Skips words up to the next directive or the end. */
 static void resynchronise(pbrt_parser *parser)
 {
-    for (;;) {
+    while (!pbrt_should_stop(parser)) {
         token t = lexer_peek(parser->words);
         if (t.kind == TOKEN_END || (t.kind == TOKEN_WORD && find_directive(&t)))
             return;
@@ -90,10 +91,15 @@ static void resynchronise(pbrt_parser *parser)
 
 static bool phase_fits(pbrt_parser *parser, const directive *d, source_place place)
 {
-    if (d->phase == BEFORE_WORLD && parser->in_world)
+    bool is_late = d->phase == BEFORE_WORLD && parser->in_world;
+    bool is_early = d->phase == IN_WORLD && !parser->in_world;
+    if (parser->is_v3 && (is_late || is_early))
+        pbrt_warning(parser, place, "%s %s WorldBegin is left out, as pbrt-v3 does",
+                     d->name, is_late ? "after" : "before");
+    else if (is_late)
         pbrt_error(parser, place, "expected %s before WorldBegin, found it after",
                    d->name);
-    else if (d->phase == IN_WORLD && !parser->in_world)
+    else if (is_early)
         pbrt_error(parser, place, "expected WorldBegin before %s, found none", d->name);
     else
         return true;
@@ -120,8 +126,11 @@ static void read_words(pbrt_parser *parser, lexer *words)
 {
     lexer *outer = parser->words;
     parser->words = words;
-    while (!pbrt_should_stop(parser) && lexer_peek(words).kind != TOKEN_END)
+    while (!pbrt_should_stop(parser) && !parser->has_ended &&
+           lexer_peek(words).kind != TOKEN_END) {
         read_directive(parser);
+        still_wanted(parser->fatal ? NULL : &parser->fatal);
+    }
     parser->words = outer;
 }
 
@@ -196,9 +205,11 @@ static void parser_init(pbrt_parser *parser, scene_builder *to, const char *path
         g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     parser->interfaces = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     parser->empty_media = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    parser->v3_media = g_hash_table_new(g_str_hash, g_str_equal);
     parser->missing_media = g_hash_table_new(g_str_hash, g_str_equal);
     parser->awaited_media = g_array_new(FALSE, FALSE, sizeof(medium_name));
     parser->v3_names = g_ptr_array_new_with_free_func(g_free);
+    parser->v3_newest = g_hash_table_new(g_direct_hash, g_direct_equal);
     parser->v3_objects = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     parser->late = pbrt_late_new();
     parser->awaited_materials = g_array_new(FALSE, FALSE, sizeof(medium_name));
@@ -223,9 +234,11 @@ static void parser_clear(pbrt_parser *parser)
     g_array_unref(parser->awaited_materials);
     g_ptr_array_unref(parser->late);
     g_hash_table_unref(parser->v3_objects);
+    g_hash_table_unref(parser->v3_newest);
     g_ptr_array_unref(parser->v3_names);
     g_array_unref(parser->awaited_media);
     g_hash_table_unref(parser->missing_media);
+    g_hash_table_unref(parser->v3_media);
     g_hash_table_unref(parser->empty_media);
     g_hash_table_unref(parser->interfaces);
     g_hash_table_unref(parser->given_materials);
@@ -234,6 +247,15 @@ static void parser_clear(pbrt_parser *parser)
     g_ptr_array_unref(parser->errors);
     g_ptr_array_unref(parser->open_files);
     g_free(parser->base_directory);
+}
+
+/* pbrt-v3 renders at WorldEnd; what follows is another picture. */
+static void check_rest(pbrt_parser *parser, lexer *words)
+{
+    token t = lexer_peek(words);
+    if (parser->has_ended && t.kind != TOKEN_END)
+        pbrt_warning(parser, t.place,
+                     "what follows WorldEnd is another picture, which is left out");
 }
 
 /** What can only be said once everything has been read. */
@@ -246,6 +268,7 @@ static void check_end(pbrt_parser *parser, source_place end)
     pbrt_make_late(parser);
     pbrt_check_materials(parser);
     pbrt_check_media(parser);
+    pbrt_settle_integrator(parser);
     if (pbrt_should_stop(parser))
         return;
     if (!parser->in_world)
@@ -262,6 +285,7 @@ static void read_main(pbrt_parser *parser, const char *path, const input *in)
     lexer words = lexer_new(path, in->data, in->size);
     g_ptr_array_add(parser->open_files, canonical);
     read_words(parser, &words);
+    check_rest(parser, &words);
     if (!pbrt_should_stop(parser))
         check_end(parser, lexer_peek(&words).place);
 }

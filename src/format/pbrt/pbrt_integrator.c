@@ -335,9 +335,24 @@ static void apply_path(pbrt_parser *parser, const path_integrator *kind,
                  kind->name);
     }
     note(parser, in->place,
-         "integrator '%s' becomes %s with %g passes of %" G_GINT64_FORMAT " samples a pixel and maxdepth %d%s",
+         "integrator '%s' becomes %s with %g passes of %" G_GINT64_FORMAT
+         " samples a pixel and maxdepth %d%s",
          kind->name, kind->integrator, settings_most_passes(s), s->spp, depth,
          kind->hint);
+}
+
+/* pbrt's bidirectional paths scatter in media, vcm's do not. */
+void pbrt_settle_integrator(pbrt_parser *parser)
+{
+    const pending *in = &parser->integrator;
+    const path_integrator *of = in->kind ? find_path_integrator(in->kind) : NULL;
+    const scene *made = parser->builder->scene;
+    if (!of || !of->strategies || !scene_has_media(made) ||
+        made->settings.integrator != INTEGRATOR_VCM)
+        return;
+    set(parser, in->place, "integrator", "auto");
+    note(parser, in->place, "integrator '%s' becomes auto, which sees the scene's media",
+         of->name);
 }
 
 void pbrt_apply_integrator(pbrt_parser *parser)

@@ -39,6 +39,8 @@ static bool add_medium(pbrt_parser *parser, const char *name, const char *type, 
 {
     GError *error = NULL;
     g_autofree char *kind = g_strdup(type);
+    if (parser->is_v3 && !pbrt_v3_knows(parser, V3_MEDIUM, type, p->place))
+        return false;
     if (parser->is_v3)
         pbrt_v3_translate(V3_MEDIUM, &kind, p, &parser->builder->build.log, NULL);
     bool is_empty = lenient_medium(&parser->builder->build, name, kind, p, &error);
@@ -48,6 +50,20 @@ static bool add_medium(pbrt_parser *parser, const char *name, const char *type, 
     if (error)
         pbrt_report(parser, error);
     return index != NO_INDEX;
+}
+
+/* In pbrt-v3 a medium may be given again: what comes later is in the new one. */
+static const char *new_name(pbrt_parser *parser, const char *name, source_place at)
+{
+    if (!is_made(parser, name))
+        return name;
+    g_autofree char *own =
+        g_strdup_printf("%s, %u", name, parser->builder->scene->media->len + 1);
+    log_at(&parser->builder->build.log, LOG_NOTE, at,
+           "pbrt-v3: \"%s\" is given again; what follows has the new one", name);
+    const char *kept = intern(own);
+    g_hash_table_insert(parser->v3_media, (char *)intern(name), (char *)kept);
+    return kept;
 }
 
 static void make_named_medium(pbrt_parser *parser, const char *name, source_place at,
@@ -62,9 +78,9 @@ static void make_named_medium(pbrt_parser *parser, const char *name, source_plac
     else if (!kind)
         pbrt_error(parser, at, "expected \"string type\" of medium '%s', found none",
                    name);
-    else if (is_made(parser, name))
+    else if (is_made(parser, name) && !parser->is_v3)
         pbrt_error(parser, at, "expected a new medium's name, found \"%s\" again", name);
-    else if (add_medium(parser, name, kind, p))
+    else if (add_medium(parser, new_name(parser, name, at), kind, p))
         return;
     g_hash_table_add(parser->empty_media, g_strdup(name));
 }
@@ -86,12 +102,16 @@ static int find_medium(pbrt_parser *parser, const medium_name *m)
 {
     if (!m->name)
         return NO_INDEX;
-    if (!is_made(parser, m->name) &&
-        g_hash_table_add(parser->missing_media, (char *)m->name))
+    const char *own = g_hash_table_lookup(parser->v3_media, m->name);
+    bool is_new = !is_made(parser, m->name) &&
+                  g_hash_table_add(parser->missing_media, (char *)m->name);
+    if (is_new && parser->is_v3)
+        pbrt_warning(parser, m->place, "there is no medium \"%s\"", m->name);
+    else if (is_new)
         pbrt_error(parser, m->place,
                    "expected the name of a medium made before it is used, found \"%s\"",
                    m->name);
-    return builder_find_medium(parser->builder, m->name);
+    return builder_find_medium(parser->builder, own ? own : m->name);
 }
 
 bool pbrt_awaits_media(const pbrt_parser *parser)

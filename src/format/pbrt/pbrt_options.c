@@ -337,6 +337,7 @@ bool pbrt_world_begin(pbrt_parser *parser, source_place place)
 
 bool pbrt_world_end(pbrt_parser *parser, source_place place)
 {
+    parser->has_ended = true;
     if (!parser->is_v3)
         pbrt_error(parser, place, "WorldEnd is of pbrt-v3, the scene of pbrt-v4");
     return true;

@@ -1,12 +1,14 @@
 /*
  * Parameter lists: "type name" followed by one value or a bracketed list.
  */
+#include "base/wanted.h"
 #include "format/pbrt/pbrt_parser.h"
 
 #include "base/memory.h"
 #include "format/number.h"
 #include "format/spectrum_file.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef enum value_class { NUMBERS, INTEGERS, BOOLS, STRINGS, SPECTRA } value_class;
@@ -31,7 +33,8 @@ static const type_row types[] = {
 
 /** A parameter being read. */
 typedef struct declaration {
-    const type_row *type;
+    const type_row *type; /**< NULL: none that pbrt-v3 knows, to be passed over */
+    bool is_xyz;
     char *name;
     token token;
 } declaration;
@@ -51,7 +54,7 @@ bool pbrt_is_declaration(const token *t)
     g_autofree char *text = token_string(t);
     g_strstrip(text);
     text[strcspn(text, " \t")] = '\0';
-    return find_type(text) || strcmp(text, "color") == 0;
+    return find_type(text) || strcmp(text, "color") == 0 || strcmp(text, "xyz") == 0;
 }
 
 static bool read_declaration(pbrt_parser *parser, declaration *d)
@@ -59,11 +62,16 @@ static bool read_declaration(pbrt_parser *parser, declaration *d)
     d->token = lexer_next(parser->words);
     g_autofree char *text = token_string(&d->token);
     g_auto(GStrv) words = g_strsplit_set(g_strstrip(text), " \t", 2);
+    if (parser->is_v3 && g_strv_length(words) == 1 && *words[0]) {
+        d->name = g_strdup(words[0]);
+        return true;
+    }
     if (g_strv_length(words) != 2 || strpbrk(g_strstrip(words[1]), " \t"))
         return pbrt_expected(parser, "\"type name\"", &d->token);
-    bool old_rgb = parser->is_v3 && strcmp(words[0], "color") == 0;
+    d->is_xyz = parser->is_v3 && strcmp(words[0], "xyz") == 0;
+    bool old_rgb = d->is_xyz || (parser->is_v3 && strcmp(words[0], "color") == 0);
     d->type = find_type(old_rgb ? "rgb" : words[0]);
-    if (!d->type) {
+    if (!d->type && !parser->is_v3) {
         pbrt_error(
             parser, d->token.place,
             "expected a parameter type (float, integer, bool, string, point2, "
@@ -116,10 +124,25 @@ static bool push_float(pbrt_parser *parser, const declaration *d, const token *t
     return to != NULL;
 }
 
+/* What is no whole number is cut to one, as pbrt does. */
+static bool cut_number(pbrt_parser *parser, const declaration *d, const token *t,
+                       int *out)
+{
+    double x;
+    if (!number_double(t->text, t->length, &x))
+        return false;
+    *out = (int)CLAMP(x, (double)INT_MIN, (double)INT_MAX);
+    if (fabs((double)*out - x) > 0.0)
+        pbrt_warning(parser, t->place, "parameter '%s': %.*s is taken as %d", d->name,
+                     (int)t->length, t->text, *out);
+    return true;
+}
+
 static bool push_integer(pbrt_parser *parser, const declaration *d, const token *t)
 {
     int value;
-    if (t->kind != TOKEN_WORD || !number_int(t->text, t->length, &value))
+    if (t->kind != TOKEN_WORD ||
+        (!number_int(t->text, t->length, &value) && !cut_number(parser, d, t, &value)))
         return wrong_value(parser, d, "a whole number", t);
     int *to = push(parser);
     if (to)
@@ -132,8 +155,12 @@ static bool push_bool(pbrt_parser *parser, const declaration *d, const token *t)
     token word = *t;
     if (parser->is_v3 && t->kind == TOKEN_STRING)
         word.kind = TOKEN_WORD; /* pbrt-v3 writes it in quotes */
-    bool is_true = token_is(&word, "true");
-    if (!is_true && !token_is(&word, "false"))
+    bool is_true = token_is(&word, "true"), is_word = word.kind == TOKEN_WORD;
+    bool known = is_true || token_is(&word, "false");
+    if (!known && parser->is_v3 && is_word && t->kind == TOKEN_STRING)
+        pbrt_warning(parser, t->place, "parameter '%s': \"%.*s\" is taken as false",
+                     d->name, (int)MIN(t->length, (size_t)20), t->text);
+    else if (!known)
         return wrong_value(parser, d, "true or false", t);
     int *to = push(parser);
     if (to)
@@ -173,18 +200,31 @@ static bool push_value(pbrt_parser *parser, const declaration *d, const token *t
     return push_float(parser, d, t);
 }
 
+static bool skip_values(pbrt_parser *parser, const token *first)
+{
+    token t = *first;
+    while (t.kind != TOKEN_END && t.kind != TOKEN_RIGHT && first->kind == TOKEN_LEFT)
+        t = lexer_next(parser->words);
+    return true;
+}
+
 /** All values of one parameter, into parser->values or strings. */
 static bool read_values(pbrt_parser *parser, const declaration *d, GPtrArray *strings)
 {
     parser->values.n = 0;
     token t = lexer_next(parser->words);
+    if (!d->type)
+        return skip_values(parser, &t);
     if (t.kind != TOKEN_LEFT)
         return push_value(parser, d, &t, strings);
     for (t = lexer_next(parser->words); t.kind != TOKEN_RIGHT;
-         t = lexer_next(parser->words))
-        if (!push_value(parser, d, &t, strings))
+         t = lexer_next(parser->words)) {
+        size_t n = parser->values.n + strings->len;
+        if (!still_wanted_at(n, parser->fatal ? NULL : &parser->fatal) ||
+            !push_value(parser, d, &t, strings))
             return false;
-    if (parser->values.n + strings->len == 0)
+    }
+    if (parser->values.n + strings->len == 0 && !parser->is_v3)
         return wrong_value(parser, d, "a value", &t);
     return true;
 }
@@ -235,12 +275,37 @@ static bool replace_older(pbrt_parser *parser, params *p, const declaration *d)
     return !stays;
 }
 
+/* pbrt-v3's colours are sRGB's. */
+static void turn_to_rgb(float *numbers, size_t n)
+{
+    for (size_t i = 0; i + 3 <= n; i += 3) {
+        const float xyz[] = {numbers[i], numbers[i + 1], numbers[i + 2]};
+        color_space_from_xyz(color_space_srgb(), xyz, numbers + i);
+        for (int k = 0; k < 3; k++)
+            numbers[i + k] = fmaxf(numbers[i + k], 0.0f);
+    }
+}
+
+/* Of pbrt-v3: without a type that it knows, or without a value. */
+static bool is_passed_over(const pbrt_parser *parser, const declaration *d,
+                           const GPtrArray *strings)
+{
+    if (d->type && parser->values.n + strings->len > 0)
+        return false;
+    log_at(&parser->builder->build.log, LOG_NOTE, d->token.place,
+           "parameter '%s' is left out: it has no %s", d->name,
+           d->type ? "value" : "type that pbrt-v3 knows");
+    return true;
+}
+
 static bool add_values(pbrt_parser *parser, params *p, const declaration *d,
                        const GPtrArray *strings, GError **error)
 {
     const type_row *type = d->type;
     const scratch *values = &parser->values;
     source_place place = d->token.place;
+    if (d->is_xyz)
+        turn_to_rgb(parser->values.data, values->n);
     if (values->n % type->n) {
         error_at(error, place,
                  "parameter '%s': expected a multiple of %zu numbers, "
@@ -269,7 +334,7 @@ static bool read_param(pbrt_parser *parser, params *p)
     g_autoptr(GPtrArray) strings = g_ptr_array_new_with_free_func(g_free);
     GError *error = NULL;
     bool fine = read_declaration(parser, &d) && read_values(parser, &d, strings);
-    if (fine && replace_older(parser, p, &d) &&
+    if (fine && !is_passed_over(parser, &d, strings) && replace_older(parser, p, &d) &&
         !add_values(parser, p, &d, strings, &error)) {
         pbrt_report(parser, error);
         fine = false;

@@ -13,6 +13,8 @@
  *   pbrt_lens.c       realistic cameras
  *   pbrt_late.c       what is named before it is made
  *   pbrt_v3_names.c   what is named again, in pbrt-v3
+ *   pbrt_v3_kinds.c   what pbrt-v3 does not know, and goes on
+ *   pbrt_mesh.c       meshes whose arrays do not fit
  *   pbrt_texture.c    textures
  *   pbrt_world.c      materials, textures, lights and shapes, given to the scene
  *
@@ -26,7 +28,7 @@
 #include "format/pbrt/pbrt_v3.h"
 #include "scene/builder.h"
 
-enum { MAX_ERRORS = 20, MAX_DEPTH = 64, MAX_ATTRIBUTES = 1000 };
+enum { MAX_ERRORS = 20, MAX_DEPTH = 256, MAX_ATTRIBUTES = 1000 };
 
 /** Kinds of directives that Attribute gives parameters to. */
 typedef enum attribute_target {
@@ -118,7 +120,8 @@ typedef struct pbrt_parser {
 
     bool is_v3; /**< the main file is of pbrt-v3 (pbrt_v3.h) */
     bool in_world;
-    int object; /**< index of the one that is being defined, or NO_INDEX */
+    bool has_ended; /**< pbrt-v3's WorldEnd was read */
+    int object;     /**< index of the one that is being defined, or NO_INDEX */
     source_place object_place;
     double times[2]; /**< s: of the start and the end transforms */
     graphics_state state;
@@ -127,10 +130,12 @@ typedef struct pbrt_parser {
     GHashTable *given_materials;    /**< names that MakeNamedMaterial gave */
     GHashTable *interfaces;         /**< names of materials that are none */
     GHashTable *empty_media;        /**< names of media that are none */
+    GHashTable *v3_media;           /**< name given again -> its name in the scene */
     GHashTable *missing_media;      /**< names that an error told of */
     GArray *awaited_media;          /**< medium_name, not made when it was named */
     medium_name around_camera;
     GPtrArray *v3_names;       /**< v3_name*, owned */
+    GHashTable *v3_newest;     /**< kind and name, of either sort -> the newest of them */
     GHashTable *v3_objects;    /**< name -> its name in the scene, interned */
     GPtrArray *late;           /**< what waits for a name (pbrt_late.c) */
     GArray *awaited_materials; /**< medium_name: of materials not made when named */
@@ -229,6 +234,12 @@ int pbrt_await_material(pbrt_parser *parser, const char *name, source_place plac
 /** @brief Reports names of materials that were never made. */
 void pbrt_check_materials(pbrt_parser *parser);
 
+/* ---- pbrt_mesh.c ---- */
+
+/** @brief Makes a mesh's arrays fit together as pbrt does, with warnings. @return false:
+ * the mesh is not seen */
+bool pbrt_fit_mesh(pbrt_parser *parser, const directive_arguments *a);
+
 /* ---- pbrt_texture.c ---- */
 
 /** @brief A texture of a kind by a name; what is wrong is reported. */
@@ -243,8 +254,15 @@ void pbrt_v3_add_texture(pbrt_parser *parser, const char *name, bool is_spectrum
 /** @brief The name in the scene for a material that the file calls so from here on. */
 const char *pbrt_v3_new_material(pbrt_parser *parser, const char *name,
                                  source_place place);
+/** @brief Names that were given since `before` are in force no more. */
+void pbrt_v3_end_names(v3_name *given, const v3_name *before);
 /** @brief What the scene calls the material that the file means by a name here. */
 const char *pbrt_v3_material_name(const pbrt_parser *parser, const char *name);
+/** @brief True if pbrt-v3 knows a kind of what a directive makes, or we do; else it is
+ * warned of: pbrt-v3 goes on without it, and with "matte" for a material. */
+bool pbrt_v3_knows(const pbrt_parser *parser, pbrt_v3_target target, const char *kind,
+                   source_place at);
+
 /** @brief Turns names of textures and materials in parameters into the scene's.
  * @param in_colors where pbrt says nothing else textures are of colours */
 void pbrt_v3_resolve(pbrt_parser *parser, params *p, bool in_colors);
@@ -312,6 +330,8 @@ void pbrt_flatten_lens(pbrt_parser *parser);
 bool pbrt_world_end(pbrt_parser *parser, source_place place);
 /** @brief Turns the integrator and sampler that were kept into settings. */
 void pbrt_apply_integrator(pbrt_parser *parser);
+/** @brief Takes auto for a bidirectional one that would not see the scene's media. */
+void pbrt_settle_integrator(pbrt_parser *parser);
 
 bool pbrt_material(pbrt_parser *parser, source_place place);
 bool pbrt_make_named_material(pbrt_parser *parser, source_place place);

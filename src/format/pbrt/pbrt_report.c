@@ -8,7 +8,9 @@
 
 void pbrt_report(pbrt_parser *parser, GError *error)
 {
-    if (!g_error_matches(error, NEPH_ERROR, ERROR_FAILED) || parser->fatal) {
+    bool ends = g_error_matches(error, NEPH_ERROR, ERROR_FAILED) ||
+                g_error_matches(error, NEPH_ERROR, ERROR_CANCELLED);
+    if (!ends || parser->fatal) {
         g_ptr_array_add(parser->errors, g_strdup(error->message));
         g_error_free(error);
         return;

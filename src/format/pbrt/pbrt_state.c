@@ -20,28 +20,36 @@ bool pbrt_attribute_begin(pbrt_parser *parser, source_place place)
     return true;
 }
 
-bool pbrt_attribute_end(pbrt_parser *parser, source_place place)
+static void take_back(pbrt_parser *parser, source_place place)
 {
     if (parser->saved->len == 0) {
         pbrt_warning(parser, place,
                      "AttributeEnd without an AttributeBegin before it ends nothing");
-        return true;
+        return;
     }
     guint last = parser->saved->len - 1;
     parser->state = g_array_index(parser->saved, saved_state, last).state;
     g_array_set_size(parser->saved, last);
+}
+
+bool pbrt_attribute_end(pbrt_parser *parser, source_place place)
+{
+    v3_name *given = parser->state.v3_names;
+    take_back(parser, place);
+    pbrt_v3_end_names(given, parser->state.v3_names);
     return true;
 }
 
 bool pbrt_transform_end(pbrt_parser *parser, source_place place)
 {
     graphics_state kept = parser->state;
-    pbrt_attribute_end(parser, place);
+    if (!parser->is_v3)
+        return pbrt_attribute_end(parser, place);
+    take_back(parser, place);
     kept.ctm = parser->state.ctm;
     kept.ctm_end = parser->state.ctm_end;
     kept.active = parser->state.active;
-    if (parser->is_v3)
-        parser->state = kept;
+    parser->state = kept;
     return true;
 }
 
@@ -182,7 +190,9 @@ bool pbrt_object_instance(pbrt_parser *parser, source_place place)
     g_autofree char *name = pbrt_read_string(parser, "a name", &a.at);
     if (!name)
         return false;
-    if (parser->object != NO_INDEX)
+    if (parser->object != NO_INDEX && parser->is_v3)
+        pbrt_warning(parser, place, "an instance within an object is left out");
+    else if (parser->object != NO_INDEX)
         pbrt_error(parser, place, "expected ObjectEnd before ObjectInstance, found none");
     else if (builder_find_object(parser->builder, name) == NO_INDEX && !parser->is_v3)
         pbrt_wait(parser, LATE_INSTANCE, make_instance, name, &a);

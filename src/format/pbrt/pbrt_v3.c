@@ -55,6 +55,12 @@ static bool in_comment(const char *text, const char *at)
     return false;
 }
 
+/* Material is no word of NamedMaterial. */
+static bool begins_word(const char *text, const char *at)
+{
+    return at == text || !g_ascii_isalnum(at[-1]);
+}
+
 static bool find_word(const char *text, size_t size, const char *word)
 {
     size_t length = strlen(word);
@@ -63,7 +69,8 @@ static bool find_word(const char *text, size_t size, const char *word)
         at = memchr(at, word[0], (size_t)(end - at) - length + 1);
         if (!at)
             return false;
-        if (memcmp(at, word, length) == 0 && !in_comment(text, at))
+        if (memcmp(at, word, length) == 0 && begins_word(text, at) &&
+            !in_comment(text, at))
             return true;
     }
     return false;
@@ -319,8 +326,22 @@ static void translate_filter(const translation *t)
     }
 }
 
+/* Whatever it is called, it finds the same light. */
+static void replace_unknown(const translation *t, const char *what,
+                            const char *const *known, const char *instead)
+{
+    if (g_strv_contains(known, *t->kind))
+        return;
+    log_at(t->log, LOG_WARNING, t->p->place,
+           "%s \"%s\" is unknown: \"%s\" is taken for it", what, *t->kind, instead);
+    set_kind(t, instead);
+}
+
 static void translate_sampler(const translation *t)
 {
+    static const char *const ours[] = {"halton",      "sobol",       "zsobol",
+                                       "paddedsobol", "independent", "stratified",
+                                       "pmj02bn",     NULL};
     static const char *const names[][2] = {{"lowdiscrepancy", "paddedsobol"},
                                            {"02sequence", "paddedsobol"},
                                            {"maxmindist", "pmj02bn"},
@@ -328,6 +349,7 @@ static void translate_sampler(const translation *t)
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++)
         if (strcmp(*t->kind, names[i][0]) == 0)
             set_kind(t, names[i][1]);
+    replace_unknown(t, "sampler", ours, "halton");
     drop(t, "dimensions");
     drop(t, "samplepixelcenter");
 }
@@ -338,6 +360,9 @@ static void translate_integrator(const translation *t)
         "rrthreshold", "lightsamplestrategy", "imagewritefrequency", "pixelbounds",
         "strategy",    "visualizestrategies", "visualizeweights",    "cossample",
         "nsamples"};
+    static const char *const ours[] = {
+        "path", "volpath", "simplepath", "simplevolpath", "randomwalk", "lightpath",
+        "bdpt", "mlt",     "photonmap",  "auto",          "vcm",        NULL};
     for (size_t i = 0; i < G_N_ELEMENTS(dropped); i++)
         drop(t, dropped[i]);
     if (strcmp(*t->kind, "sppm") == 0) {
@@ -353,6 +378,7 @@ static void translate_integrator(const translation *t)
         note(t, NULL, "this integrator becomes path, which finds indirect light too");
         set_kind(t, "path");
     }
+    replace_unknown(t, "integrator", ours, "path");
 }
 
 static void translate_camera(const translation *t)
@@ -360,6 +386,33 @@ static void translate_camera(const translation *t)
     if (strcmp(*t->kind, "environment") == 0) {
         set_kind(t, "spherical");
         give_text(t->p, PARAM_STRING, "mapping", "equirectangular");
+    }
+}
+
+static bool is_color(const param *q)
+{
+    return q->type == PARAM_RGB || q->type == PARAM_BLACKBODY ||
+           q->type == PARAM_SPECTRUM || q->type == PARAM_SPECTRUM_NAME ||
+           q->type == PARAM_TEXTURE;
+}
+
+/* In pbrt-v3 the type belongs to the name: a colour given as a number is none. */
+static void drop_numbers(const translation *t)
+{
+    static const char *const colors[] = {
+        "Kd",    "Ks", "Kr", "Kt", "reflect", "transmit", "opacity",
+        "color", "k",  "L",  "I",  "sigma_a", "sigma_s",  NULL};
+    bool is_metal = strcmp(*t->kind, "metal") == 0;
+    for (guint i = t->p->list->len; i-- > 0;) {
+        const param *q = t->p->list->pdata[i];
+        bool wants =
+            g_strv_contains(colors, q->name) || (is_metal && strcmp(q->name, "eta") == 0);
+        if (wants && !is_color(q)) {
+            g_autofree char *text =
+                g_strdup_printf("'%s' is left out: it is no colour", q->name);
+            note(t, q, text);
+            g_ptr_array_remove_index(t->p->list, i);
+        }
     }
 }
 
@@ -380,7 +433,11 @@ bool pbrt_v3_translate(pbrt_v3_target target, char **kind, params *p, const log_
         [V3_CAMERA] = translate_camera,
     };
     GError *refused = NULL;
-    translators[target](&(translation){kind, p, log, &refused});
+    const translation t = {kind, p, log, &refused};
+    if (target == V3_MATERIAL || target == V3_LIGHT || target == V3_AREA_LIGHT ||
+        target == V3_MEDIUM)
+        drop_numbers(&t);
+    translators[target](&t);
     if (refused)
         error_move_at(error, p->place, refused);
     return !refused;

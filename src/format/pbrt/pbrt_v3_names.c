@@ -26,7 +26,9 @@ struct v3_name {
     const char *texture; /* interned: its kind */
     const params *given; /* kept by the parser */
     const char *twin;    /* the scene's name of the same in the other type, or NULL */
-    v3_name *before;
+    v3_name *before;     /* in force when it was given */
+    v3_name *older;      /* of the same kind and name */
+    bool has_ended;
 };
 
 static bool is_taken(const pbrt_parser *parser, name_kind kind, const char *name)
@@ -50,19 +52,27 @@ static const char *free_name(const pbrt_parser *parser, name_kind kind, const ch
     return intern(candidate);
 }
 
+/* Of a name that a file has, or of one that the scene has. */
+static const char *key_of(name_kind kind, bool is_actual, const char *name)
+{
+    g_autofree char *key = g_strdup_printf("%d %d %s", (int)kind, is_actual, name);
+    return intern(key);
+}
+
 /* The last one in force; of those that ended, the last one. */
 static v3_name *find_name(const pbrt_parser *parser, name_kind kind, const char *name)
 {
-    const char *wanted = intern(name);
-    for (v3_name *n = parser->state.v3_names; n; n = n->before)
-        if (n->kind == kind && n->name == wanted)
+    v3_name *newest = g_hash_table_lookup(parser->v3_newest, key_of(kind, false, name));
+    for (v3_name *n = newest; n; n = n->older)
+        if (!n->has_ended)
             return n;
-    for (guint i = parser->v3_names->len; i-- > 0;) {
-        v3_name *n = parser->v3_names->pdata[i];
-        if (n->kind == kind && n->name == wanted)
-            return n;
-    }
-    return NULL;
+    return newest;
+}
+
+void pbrt_v3_end_names(v3_name *given, const v3_name *before)
+{
+    for (v3_name *n = given; n && n != before; n = n->before)
+        n->has_ended = true;
 }
 
 static v3_name *give_name(pbrt_parser *parser, name_kind kind, const char *name,
@@ -73,6 +83,10 @@ static v3_name *give_name(pbrt_parser *parser, name_kind kind, const char *name,
                    .name = intern(name),
                    .actual = free_name(parser, kind, name),
                    .before = parser->state.v3_names};
+    const char *key = key_of(kind, false, name);
+    n->older = g_hash_table_lookup(parser->v3_newest, key);
+    g_hash_table_insert(parser->v3_newest, (char *)key, n);
+    g_hash_table_insert(parser->v3_newest, (char *)key_of(kind, true, n->actual), n);
     if (n->actual != n->name)
         log_at(&parser->builder->build.log, LOG_NOTE, place,
                "pbrt-v3: \"%s\" is given again; what follows has the new one", name);
@@ -122,12 +136,7 @@ static const char *twin_of(pbrt_parser *parser, v3_name *n);
 /* The record of a texture that the scene has by that name. */
 static v3_name *by_actual(const pbrt_parser *parser, name_kind kind, const char *actual)
 {
-    for (guint i = parser->v3_names->len; i-- > 0;) {
-        v3_name *n = parser->v3_names->pdata[i];
-        if (n->kind == kind && strcmp(n->actual, actual) == 0)
-            return n;
-    }
-    return NULL;
+    return g_hash_table_lookup(parser->v3_newest, key_of(kind, true, actual));
 }
 
 /* A colour texture's parameters as those of numbers. */
@@ -218,6 +227,30 @@ static void set_name(param *q, size_t i, const char *name)
     q->strings[i] = copy;
 }
 
+static const char *default_material(pbrt_parser *parser, source_place place)
+{
+    static const char name[] = "pbrt's default";
+    g_autoptr(params) p = params_new(place, parser->base_directory, parser->state.space);
+    GError *error = NULL;
+    if (builder_find_material(parser->builder, name) == NO_INDEX &&
+        builder_add_material(parser->builder, name, "diffuse", p, &error) == NO_INDEX)
+        pbrt_report(parser, error);
+    return name;
+}
+
+/* pbrt-v3 mixes in "matte" for what it does not find. */
+static void resolve_material(pbrt_parser *parser, param *q, size_t k)
+{
+    const char *name = pbrt_v3_material_name(parser, q->strings[k]);
+    if (builder_find_material(parser->builder, name) == NO_INDEX) {
+        pbrt_warning(parser, q->place,
+                     "there is no material \"%s\" to be mixed: \"matte\" is taken for it",
+                     q->strings[k]);
+        name = default_material(parser, q->place);
+    }
+    set_name(q, k, name);
+}
+
 /* @return false: there is no such texture */
 static bool resolve_texture(pbrt_parser *parser, param *q, bool is_number)
 {
@@ -243,7 +276,7 @@ void pbrt_v3_resolve(pbrt_parser *parser, params *p, bool in_colors)
         bool is_number = !in_colors || is_number_param(q->name);
         if (q->type == PARAM_STRING && strcmp(q->name, "materials") == 0)
             for (size_t k = 0; k < q->n; k++)
-                set_name(q, k, pbrt_v3_material_name(parser, q->strings[k]));
+                resolve_material(parser, q, k);
         if (q->type != PARAM_TEXTURE || q->n != 1 ||
             resolve_texture(parser, q, is_number))
             continue;

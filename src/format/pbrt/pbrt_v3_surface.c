@@ -21,7 +21,9 @@ static void translate_roughness(const translation *t, double fallback)
 {
     static const char *const names[] = {"roughness", "uroughness", "vroughness"};
     const param *remap = find(t, "remaproughness");
-    bool remaps = !remap || remap->n != 1 || remap->integers[0], textured = false;
+    bool remaps =
+        !remap || remap->type != PARAM_BOOL || remap->n != 1 || remap->integers[0];
+    bool textured = false;
     if (!find(t, "roughness") && !(find(t, "uroughness") && find(t, "vroughness")))
         give_float(t->p, "roughness", fallback);
     if (find(t, "roughness") && find(t, "uroughness") && find(t, "vroughness"))
@@ -138,22 +140,22 @@ static void to_translucent(const translation *t)
     note(t, NULL, "translucent keeps its diffuse part alone, as pbrt-v4 does");
 }
 
+static const char *text_of(const translation *t, const char *name)
+{
+    const param *q = find(t, name);
+    return q && q->type == PARAM_STRING && q->n == 1 ? q->strings[0] : "";
+}
+
 /* v3's amount is the first material's, v4's the second's. */
 static void to_mix(const translation *t)
 {
-    const param *a = find(t, "namedmaterial1"), *b = find(t, "namedmaterial2");
+    const char *a = text_of(t, "namedmaterial1"), *b = text_of(t, "namedmaterial2");
     param *amount = find(t, "amount");
-    if (a && b && a->type == PARAM_STRING && b->type == PARAM_STRING && a->n == 1 &&
-        b->n == 1) {
-        const char *both[] = {a->strings[0], b->strings[0]};
-        if (amount && amount->type == PARAM_TEXTURE) { /* the other way round instead */
-            both[0] = b->strings[0];
-            both[1] = a->strings[0];
-        }
-        params_add_strings(t->p, a->place, PARAM_STRING, "materials", both, 2, NULL);
-        drop(t, "namedmaterial1");
-        drop(t, "namedmaterial2");
-    }
+    bool turned = amount && amount->type == PARAM_TEXTURE; /* instead of the amount */
+    const char *both[] = {turned ? b : a, turned ? a : b};
+    params_add_strings(t->p, t->p->place, PARAM_STRING, "materials", both, 2, NULL);
+    drop(t, "namedmaterial1");
+    drop(t, "namedmaterial2");
     double share = 0.5;
     if (is_rgb(amount))
         share = ((double)amount->numbers[0] + (double)amount->numbers[1] +

@@ -23,6 +23,18 @@ static bool read_arguments(pbrt_parser *parser, source_place place,
     return false;
 }
 
+/* Of pbrt-v3: a kind that it knows, or, of materials, what it takes instead. */
+static bool is_known(pbrt_parser *parser, pbrt_v3_target target, arguments *a)
+{
+    if (!parser->is_v3 || pbrt_v3_knows(parser, target, a->kind, a->at))
+        return true;
+    if (target == V3_MATERIAL) {
+        g_free(a->kind);
+        a->kind = g_strdup("matte");
+    }
+    return target == V3_MATERIAL;
+}
+
 /** What a pbrt-v3 file says, in pbrt-v4's words. */
 static void translate(pbrt_parser *parser, pbrt_v3_target target, arguments *a)
 {
@@ -87,6 +99,7 @@ bool pbrt_material(pbrt_parser *parser, source_place place)
     arguments a;
     if (!read_arguments(parser, place, TARGET_MATERIAL, &a))
         return false;
+    is_known(parser, V3_MATERIAL, &a);
     translate(parser, V3_MATERIAL, &a);
     if (pbrt_must_wait(parser, a.p))
         let_material_wait(parser, NULL, &a);
@@ -112,6 +125,7 @@ static bool is_given_material(const pbrt_parser *parser, const char *name)
 static void add_named(pbrt_parser *parser, const arguments *named, const char *kind)
 {
     arguments a = {.kind = g_strdup(kind), .at = named->at, .p = named->p};
+    is_known(parser, V3_MATERIAL, &a);
     translate(parser, V3_MATERIAL, &a);
     g_hash_table_add(parser->given_materials, g_strdup(named->kind));
     const char *name = parser->is_v3
@@ -135,6 +149,8 @@ static void make_named_material(pbrt_parser *parser, arguments *a)
     const char *kind = NULL;
     if (!params_string(a->p, "type", &kind, &error))
         pbrt_report(parser, error);
+    else if (!kind && parser->is_v3)
+        add_named(parser, a, "");
     else if (!kind)
         pbrt_error(parser, a->at, "expected \"string type\" of material '%s', found none",
                    a->kind);
@@ -213,11 +229,43 @@ bool pbrt_texture(pbrt_parser *parser, source_place place)
     arguments a;
     if (!type || !read_arguments(parser, place, TARGET_TEXTURE, &a))
         return false;
-    translate(parser, V3_TEXTURE, &a);
     bool is_color = parser->is_v3 && strcmp(type, "color") == 0;
-    add_texture(parser, name, is_color ? "spectrum" : type, type_at, &a);
+    if (is_known(parser, V3_TEXTURE, &a)) {
+        translate(parser, V3_TEXTURE, &a);
+        add_texture(parser, name, is_color ? "spectrum" : type, type_at, &a);
+    }
     pbrt_clear_arguments(&a);
     return true;
+}
+
+/* pbrt-v4 asks an infinite light for any number of L, and takes the first. assimp writes
+ * black bodies with a scale behind the temperature, as pbrt-v3 has them. */
+static void take_first(pbrt_parser *parser, const arguments *a)
+{
+    size_t width = 1;
+    for (guint i = 0; i < a->p->list->len && strcmp(a->kind, "infinite") == 0; i++) {
+        param *q = a->p->list->pdata[i];
+        if (strcmp(q->name, "L") != 0 ||
+            (q->type != PARAM_BLACKBODY && q->type != PARAM_RGB))
+            continue;
+        width = q->type == PARAM_RGB ? 3 : 1;
+        if (q->n > width)
+            log_at(&parser->builder->build.log, LOG_NOTE, q->place,
+                   "parameter 'L': the first of %zu counts", q->n / width);
+        q->n = MIN(q->n, width);
+    }
+}
+
+static void make_light(pbrt_parser *parser, const arguments *a, source_place place)
+{
+    GError *error = NULL;
+    pbrt_use_media(parser, &parser->state.inside, &parser->state.outside);
+    if (pbrt_is_moving(parser))
+        pbrt_warning(parser, place, "a light that moves stands still where it starts");
+    if (builder_add_light(parser->builder, a->kind, a->p, &parser->state.ctm, &error))
+        pbrt_check_used(parser, a->p, "light", a->kind);
+    else
+        pbrt_report(parser, error);
 }
 
 bool pbrt_light_source(pbrt_parser *parser, source_place place)
@@ -225,15 +273,11 @@ bool pbrt_light_source(pbrt_parser *parser, source_place place)
     arguments a;
     if (!read_arguments(parser, place, TARGET_LIGHT, &a))
         return false;
-    translate(parser, V3_LIGHT, &a);
-    pbrt_use_media(parser, &parser->state.inside, &parser->state.outside);
-    GError *error = NULL;
-    if (pbrt_is_moving(parser))
-        pbrt_warning(parser, place, "a light that moves stands still where it starts");
-    if (builder_add_light(parser->builder, a.kind, a.p, &parser->state.ctm, &error))
-        pbrt_check_used(parser, a.p, "light", a.kind);
-    else
-        pbrt_report(parser, error);
+    if (is_known(parser, V3_LIGHT, &a)) {
+        translate(parser, V3_LIGHT, &a);
+        take_first(parser, &a);
+        make_light(parser, &a, place);
+    }
     pbrt_clear_arguments(&a);
     return true;
 }
@@ -243,11 +287,15 @@ bool pbrt_area_light_source(pbrt_parser *parser, source_place place)
     arguments a;
     if (!read_arguments(parser, place, TARGET_LIGHT, &a))
         return false;
-    translate(parser, V3_AREA_LIGHT, &a);
-    if (strcmp(a.kind, "diffuse") == 0) {
+    bool known = is_known(parser, V3_AREA_LIGHT, &a);
+    if (!known)
+        parser->state.area_light = NULL;
+    else
+        translate(parser, V3_AREA_LIGHT, &a);
+    if (known && strcmp(a.kind, "diffuse") == 0) {
         parser->state.area_light = a.p;
         g_ptr_array_add(parser->kept, g_steal_pointer(&a.p));
-    } else {
+    } else if (known) {
         pbrt_error(parser, a.at, "expected AreaLightSource \"diffuse\", found \"%s\"",
                    a.kind);
     }
@@ -329,7 +377,7 @@ static bool is_lost(const pbrt_parser *parser, const arguments *a)
 static void make_shape(pbrt_parser *parser, const char *name, const arguments *a)
 {
     (void)name;
-    if (is_lost(parser, a))
+    if (is_lost(parser, a) || !pbrt_fit_mesh(parser, a))
         return;
     shape_place at = {.to_world = parser->state.ctm,
                       .reverse_orientation = parser->state.reverse_orientation,
@@ -366,6 +414,10 @@ bool pbrt_shape(pbrt_parser *parser, source_place place)
     arguments a;
     if (!read_arguments(parser, place, TARGET_SHAPE, &a))
         return false;
+    if (!is_known(parser, V3_SHAPE, &a)) {
+        pbrt_clear_arguments(&a);
+        return true;
+    }
     translate(parser, V3_SHAPE, &a);
     bool waits = pbrt_must_wait(parser, a.p) || pbrt_awaits_media(parser);
     if (waits && parser->object == NO_INDEX)

@@ -10,6 +10,7 @@
 #include "base/input.h"
 #include "base/intern.h"
 #include "base/memory.h"
+#include "base/wanted.h"
 #include "format/ply/ply_values.h"
 
 #include <math.h>
@@ -32,7 +33,8 @@ static bool skip_element(ply_reader *r, const ply_element *e, GError **error)
         return true;
     for (size_t row = 0; row < e->count; row++)
         for (guint i = 0; i < e->properties->len; i++)
-            if (!ply_skip_property(r, ply_property_at(e, i), error))
+            if (!still_wanted_at(row, error) ||
+                !ply_skip_property(r, ply_property_at(e, i), error))
                 return false;
     return true;
 }
@@ -139,7 +141,7 @@ static bool read_fixed_rows(ply_reader *r, const ply_element *e, const column *c
         if (columns[c].property >= 0)
             type[c] = ply_property_at(e, (guint)columns[c].property)->type;
     }
-    for (size_t first = 0; first < e->count; first += BLOCK) {
+    for (size_t first = 0; first < e->count && still_wanted(NULL); first += BLOCK) {
         size_t end = MIN(first + BLOCK, e->count);
         for (int c = 0; c < N_COLUMNS; c++) {
             if (columns[c].property < 0)
@@ -185,7 +187,7 @@ static bool check_finite(const ply_reader *r, const column *columns, size_t n,
                          GError **error)
 {
     for (int c = 0; c < 3; c++)
-        for (size_t i = 0; i < n; i++)
+        for (size_t i = 0; i < n && still_wanted_at(i, NULL); i++)
             if (!isfinite(columns[c].to[i * columns[c].stride])) {
                 error_set(error, ERROR_INPUT,
                           "%s: expected finite numbers, found %s = %g of vertex %zu",
@@ -209,8 +211,10 @@ static bool read_vertices(ply_reader *r, const ply_element *e, GError **error)
     if (is_fixed)
         read_fixed_rows(r, e, columns);
     for (size_t row = 0; !is_fixed && row < e->count; row++)
-        if (!read_row(r, e, columns, row, error))
+        if (!still_wanted_at(row, error) || !read_row(r, e, columns, row, error))
             return false;
+    if (!still_wanted(error))
+        return false;
     r->m.n_vertices = e->count;
     return check_finite(r, columns, e->count, error);
 }
@@ -284,7 +288,7 @@ static size_t read_plain_triangles(ply_reader *r, const ply_element *e)
     for (size_t i = 0; i < n; i++, r->at += FACE, to += 3) {
         memcpy(to, r->at + 1, 3 * sizeof *to);
         if (*r->at != 3 || to[0] >= r->n_vertices || to[1] >= r->n_vertices ||
-            to[2] >= r->n_vertices) {
+            to[2] >= r->n_vertices || !still_wanted_at(i, NULL)) {
             n = i;
             break;
         }
@@ -307,10 +311,14 @@ static bool read_faces(ply_reader *r, const ply_element *e, GError **error)
     r->m.indices = big_alloc(r->capacity, sizeof *r->m.indices, "triangles", error);
     if (!r->m.indices)
         return false;
-    for (size_t row = read_plain_triangles(r, e); row < e->count; row++)
+    size_t plain = read_plain_triangles(r, e);
+    if (!still_wanted(error))
+        return false;
+    for (size_t row = plain; row < e->count; row++)
         for (guint i = 0; i < e->properties->len; i++) {
             const ply_property *p = ply_property_at(e, i);
-            if (!(i == (guint)list ? read_face(r, p, error)
+            if (!still_wanted_at(row, error) ||
+                !(i == (guint)list ? read_face(r, p, error)
                                    : ply_skip_property(r, p, error)))
                 return false;
         }

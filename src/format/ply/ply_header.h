@@ -41,7 +41,7 @@ typedef struct ply_header {
 } ply_header;
 
 /** @brief Reads a header from the beginning of size bytes.
- *  @param file named in errors: "file:line:column: ..." */
+ *  @param file named in errors: "FILE:LINE:COLUMN: ..." */
 bool ply_header_read(ply_header *header, const char *file, const char *data, size_t size,
                      GError **error);
 void ply_header_clear(ply_header *header);

@@ -31,6 +31,7 @@ enum {
 struct denoiser {
     grid g;
     float share;
+    int step; /* regression.step */
     int n_planes;
     float *plane[MOST_FEATURES];
     float *doubt[MOST_FEATURES]; /* of the plane's feature */
@@ -50,6 +51,7 @@ denoiser *denoiser_new(const denoise_size *size, GError **error)
     denoiser *d = g_new0(denoiser, 1);
     d->g = grid_make(size->width, size->height, size->threads, size->cancel);
     d->share = size->share;
+    d->step = size->coarse ? 4 : 2;
     return d;
 }
 
@@ -98,18 +100,32 @@ static float finite_number(const denoise_layer *layer, int h, size_t i, float be
     return isfinite(layer->half[1 - h][i]) ? layer->half[1 - h][i] : before;
 }
 
+/* A channel of a half becomes a plane. */
+typedef struct read_loop {
+    const grid *g;
+    const denoise_layer *layer;
+    int half, channel;
+    float *plane;
+} read_loop;
+
+static void read_row(int y, void *data)
+{
+    const read_loop *loop = data;
+    const denoise_layer *layer = loop->layer;
+    float before = 0.0f;
+    for (int x = 0; x < loop->g->width; x++) {
+        size_t pixel = (size_t)y * (size_t)loop->g->width + (size_t)x;
+        size_t i = pixel * (size_t)layer->n_channels + (size_t)loop->channel;
+        before = finite_number(layer, loop->half, i, before);
+        loop->plane[plane_at(loop->g, x, y)] = before;
+    }
+}
+
 static void read_channel(const grid *g, const denoise_layer *layer, int h, int c,
                          float *plane)
 {
-    float before = 0.0f;
-    for (int y = 0; y < g->height; y++) {
-        for (int x = 0; x < g->width; x++) {
-            size_t pixel = (size_t)y * (size_t)g->width + (size_t)x;
-            size_t i = pixel * (size_t)layer->n_channels + (size_t)c;
-            before = finite_number(layer, h, i, before);
-            plane[plane_at(g, x, y)] = before;
-        }
-    }
+    read_loop loop = {g, layer, h, c, plane};
+    plane_rows(g, read_row, &loop);
     plane_mirror(g, plane);
 }
 
@@ -327,7 +343,7 @@ static float mean_brightness(const light_loop *loop)
 static regression regression_of(const light_loop *loop)
 {
     const denoiser *d = loop->d;
-    regression r = {.g = d->g, .n_features = d->n_planes};
+    regression r = {.g = d->g, .step = d->step, .n_features = d->n_planes};
     float mean = mean_brightness(loop) * LEAST_CONTRAST;
     for (int f = 0; f < d->n_planes; f++) {
         r.feature[f] = d->plane[f];
@@ -359,34 +375,42 @@ static blend blend_of(const light_loop *loop, const regression *r)
     return b;
 }
 
-static void write_light(const light_loop *loop, float *out)
+typedef struct write_loop {
+    const light_loop *light;
+    float *out;
+} write_loop;
+
+static void write_row(int y, void *data)
 {
-    const grid *g = &loop->d->g;
-    for (int y = 0; y < g->height; y++) {
-        for (int x = 0; x < g->width; x++) {
-            size_t at = plane_at(g, x, y);
-            for (int c = 0; c < 3; c++)
-                *out++ = loop->p.out[c][at] * divisor(loop, c, at);
-        }
+    const write_loop *loop = data;
+    const grid *g = &loop->light->d->g;
+    float *out = loop->out + 3 * (size_t)y * (size_t)g->width;
+    for (int x = 0; x < g->width; x++) {
+        size_t at = plane_at(g, x, y);
+        for (int c = 0; c < 3; c++)
+            *out++ = loop->light->p.out[c][at] * divisor(loop->light, c, at);
     }
+}
+
+static bool write_light(const light_loop *light, float *out)
+{
+    write_loop loop = {light, out};
+    return plane_rows(&light->d->g, write_row, &loop);
 }
 
 static bool filter(const light_loop *loop, float *out, GError **error)
 {
-    if (!read_light(loop)) {
-        error_set(error, ERROR_CANCELLED, "cancelled");
-        return false;
+    if (read_light(loop)) {
+        regression r = regression_of(loop);
+        blend b = blend_of(loop, &r);
+        bool done = regress(&r);
+        if (done && !blend_all(&b, error))
+            return false;
+        if (done && write_light(loop, out))
+            return true;
     }
-    regression r = regression_of(loop);
-    blend b = blend_of(loop, &r);
-    if (!regress(&r)) {
-        error_set(error, ERROR_CANCELLED, "cancelled");
-        return false;
-    }
-    if (!blend_all(&b, error))
-        return false;
-    write_light(loop, out);
-    return true;
+    error_set(error, ERROR_CANCELLED, "cancelled");
+    return false;
 }
 
 bool denoiser_filter(const denoiser *d, const denoise_layer *light, int divide_by,

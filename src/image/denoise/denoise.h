@@ -35,6 +35,7 @@ typedef struct denoise_size {
     float share; /**< of all samples that are in the first half, 0..1 exclusive */
     unsigned threads;
     const cancel_flag *cancel; /**< may be NULL */
+    bool coarse; /**< windows around every fourth pixel in place of every second */
 } denoise_size;
 
 typedef struct denoiser denoiser;

@@ -1,17 +1,22 @@
 #include "image/denoise/regress.h"
 
+#include "math/vec.h"
+
 #include <math.h>
 
 enum {
     WINDOW = SIDE * SIDE,
-    CENTRE = BEFORE * SIDE + BEFORE,
-    BLOCK_CENTRES = BLOCK / CENTRES,
+    LEAST_STEP = 2,
+    MOST_STEP = 4,
+    BLOCK_CENTRES = BLOCK / LEAST_STEP, /* at most */
     STRIP = 24, /* rows; more than windows of two strips reach over */
     MOST_COLUMNS = MOST_FEATURES + 1,
     MOST_ROWS = MOST_COLUMNS + 3, /* of the normal equations, colours below */
 };
-_Static_assert((int)STRIP > (int)SIDE && (int)STRIP % CENTRES == 0, "strips do not meet");
-_Static_assert(MARGIN >= SIDE - BEFORE + PATCH + LANES, "windows stay in the planes");
+_Static_assert((int)STRIP > (int)SIDE && (int)STRIP % MOST_STEP == 0,
+               "strips do not meet");
+_Static_assert(MARGIN >= SIDE / 2 + MOST_STEP / 2 + PATCH + LANES,
+               "windows stay in the planes");
 
 /* Of the squared scatter of a feature, so much is added: where it hardly tells, it is
  * left alone. */
@@ -33,25 +38,44 @@ typedef struct window {
 typedef float solution[3][MOST_COLUMNS];
 typedef float equations[MOST_ROWS][MOST_COLUMNS];
 
-/* Distances of a block's windows: [half][offset][centre]. */
+/* Distances of a block's windows: [half][offset][centre]; and what a window's words weigh
+   besides, which falls to its sides, so that no edge of one is seen. */
 typedef struct block {
     float distance[N_HALVES][WINDOW][BLOCK_CENTRES];
+    float taper[WINDOW];
 } block;
 
 /* ---- Windows ---- */
 
-static void gather(const grid *g, const float *plane, int x, int y, float *out)
+/* From where to where a window is. */
+typedef struct place {
+    int x0, y0; /* its first pixel */
+    int centre; /* in the window */
+} place;
+
+/* A window begins so many pixels before its centre. */
+static int pixels_before(const regression *r)
+{
+    return (SIDE - r->step) / 2;
+}
+
+static place place_of(const regression *r, int x, int y)
+{
+    int before = pixels_before(r);
+    return (place){x - before, y - before, before * SIDE + before};
+}
+
+static void gather(const grid *g, const float *plane, place at, float *out)
 {
     for (int v = 0; v < SIDE; v++)
-        memcpy(out + v * SIDE, plane + plane_at(g, x - BEFORE, y - BEFORE + v),
+        memcpy(out + v * SIDE, plane + plane_at(g, at.x0, at.y0 + v),
                SIDE * sizeof(float));
 }
 
 /* Makes a feature one of the differences to the window's centre, in units of their
    scatter. @return false: it tells nothing */
-static bool scale_column(float *column, float least, float *doubt)
+static bool scale_column(float *column, float centre, float least, float *doubt)
 {
-    float centre = column[CENTRE];
     floats8 sum2 = {0};
     for (int i = 0; i < WINDOW; i += LANES) {
         floats8 difference = load8(column + i) - centre;
@@ -68,16 +92,17 @@ static bool scale_column(float *column, float least, float *doubt)
     return true;
 }
 
-static void gather_features(const regression *r, int x, int y, window *w)
+static void gather_features(const regression *r, place at, window *w)
 {
     for (int i = 0; i < WINDOW; i++)
         w->column[0][i] = 1.0f;
     w->n_columns = 1;
     for (int f = 0; f < r->n_features; f++) {
         float *column = w->column[w->n_columns], *doubt = &w->doubt[w->n_columns];
-        gather(&r->g, r->feature[f], x, y, column);
-        *doubt = r->doubt[f][plane_at(&r->g, x, y)];
-        w->n_columns += scale_column(column, r->least[f], doubt);
+        gather(&r->g, r->feature[f], at, column);
+        *doubt = r->doubt[f][plane_at(&r->g, at.x0 + at.centre % SIDE,
+                                      at.y0 + at.centre / SIDE)];
+        w->n_columns += scale_column(column, column[at.centre], r->least[f], doubt);
     }
 }
 
@@ -90,12 +115,12 @@ static bool is_black(const float *color)
 }
 
 /* @return false: all is black */
-static bool gather_colors(const regression *r, int x, int y, window *w)
+static bool gather_colors(const regression *r, place at, window *w)
 {
     bool black = true;
     for (int h = 0; h < N_HALVES; h++) {
         for (int c = 0; c < 3; c++) {
-            gather(&r->g, r->color[h][c], x, y, w->color[h][c]);
+            gather(&r->g, r->color[h][c], at, w->color[h][c]);
             black = black && is_black(w->color[h][c]);
         }
     }
@@ -103,27 +128,26 @@ static bool gather_colors(const regression *r, int x, int y, window *w)
 }
 
 /* Pixels out of the picture weigh nothing. */
-static void cut_at_edges(const grid *g, int x, int y, float *distance)
+static void cut_at_edges(const grid *g, place at, float *distance)
 {
     for (int v = 0; v < SIDE; v++) {
         for (int u = 0; u < SIDE; u++) {
-            int qx = x + u - BEFORE, qy = y + v - BEFORE;
+            int qx = at.x0 + u, qy = at.y0 + v;
             if (qx < 0 || qx >= g->width || qy < 0 || qy >= g->height)
                 distance[v * SIDE + u] = FAR;
         }
     }
 }
 
-static void weigh(const grid *g, int x, int y, const float (*distance)[BLOCK_CENTRES],
+static void weigh(const grid *g, place at, const float (*distance)[BLOCK_CENTRES],
                   window *w)
 {
     static const float scale[N_BANDS] = {1.0f, 4.0f}; /* 1/k² */
     float d[WINDOW];
     for (int i = 0; i < WINDOW; i++)
         d[i] = distance[i][0];
-    if (x < BEFORE || x + SIDE > g->width + BEFORE || y < BEFORE ||
-        y + SIDE > g->height + BEFORE)
-        cut_at_edges(g, x, y, d);
+    if (at.x0 < 0 || at.x0 + SIDE > g->width || at.y0 < 0 || at.y0 + SIDE > g->height)
+        cut_at_edges(g, at, d);
     for (int k = 0; k < N_BANDS; k++) {
         for (int i = 0; i < WINDOW; i += LANES)
             store8(w->weight[k] + i, patch_weight(scale[k] * load8(d + i)));
@@ -219,9 +243,10 @@ static void solve(const window *w, equations m, solution s)
 /* ---- What is said of the window's pixels ---- */
 
 /* Adds to the sums of LANES pixels. */
-static void say(const window *w, int band, solution s, int i, float *const to[N_SUMS])
+static void say(const window *w, const float *taper, int band, solution s, int i,
+                float *const to[N_SUMS])
 {
-    floats8 weight = load8(w->weight[band] + i);
+    floats8 weight = load8(w->weight[band] + i) * load8(taper + i);
     floats8 red = {0}, green = {0}, blue = {0};
     for (int j = 0; j < w->n_columns; j++) {
         floats8 x = load8(w->column[j] + i);
@@ -235,31 +260,31 @@ static void say(const window *w, int band, solution s, int i, float *const to[N_
     store8(to[3], load8(to[3]) + weight);
 }
 
-static void spread(const grid *g, int x, int y, const window *w, int band, solution s,
-                   float *const sum[N_SUMS])
+static void spread(const regression *r, place at, const window *w, const float *taper,
+                   int half, int band, solution s)
 {
+    float *const *sum = r->sum[band][half];
     for (int i = 0; i < WINDOW; i += LANES) {
-        size_t at = plane_at(g, x - BEFORE + i % SIDE, y - BEFORE + i / SIDE);
-        float *const to[N_SUMS] = {sum[0] + at, sum[1] + at, sum[2] + at, sum[3] + at};
-        say(w, band, s, i, to);
+        size_t p = plane_at(&r->g, at.x0 + i % SIDE, at.y0 + i / SIDE);
+        float *const to[N_SUMS] = {sum[0] + p, sum[1] + p, sum[2] + p, sum[3] + p};
+        say(w, taper, band, s, i, to);
     }
 }
 
-static void regress_at(const regression *r, int x, int y, const block *b, int centre)
+static void regress_at(const regression *r, place at, const block *b, int centre)
 {
     window w;
     equations m[N_BANDS];
     solution s;
-    if (!gather_colors(r, x, y, &w))
+    if (!gather_colors(r, at, &w))
         return;
-    gather_features(r, x, y, &w);
+    gather_features(r, at, &w);
     for (int h = 0; h < N_HALVES; h++) {
-        weigh(&r->g, x, y, (const float(*)[BLOCK_CENTRES]) & b->distance[h][0][centre],
-              &w);
+        weigh(&r->g, at, (const float(*)[BLOCK_CENTRES]) & b->distance[h][0][centre], &w);
         make_equations(&w, h, m);
         for (int k = 0; k < N_BANDS; k++) {
             solve(&w, m[k], s);
-            spread(&r->g, x, y, &w, k, s, r->sum[k][h]);
+            spread(r, at, &w, b->taper, h, k, s);
         }
     }
 }
@@ -270,10 +295,11 @@ static void regress_at(const regression *r, int x, int y, const block *b, int ce
 static bool block_shines(const regression *r, int x0, int y)
 {
     float sum = 0.0f;
+    int before = pixels_before(r);
     for (int h = 0; h < N_HALVES; h++) {
         for (int c = 0; c < 3; c++) {
             for (int v = 0; v < SIDE; v++) {
-                size_t at = plane_at(&r->g, x0 - BEFORE, y - BEFORE + v);
+                size_t at = plane_at(&r->g, x0 - before, y - before + v);
                 const float *row = r->color[h][c] + at;
                 for (int u = 0; u < BLOCK + SIDE; u++)
                     sum += fabsf(row[u]);
@@ -283,14 +309,28 @@ static bool block_shines(const regression *r, int x0, int y)
     return sum > 0.0f;
 }
 
+/* Whole in the middle half of a row, and none beyond its ends. */
+static float taper_at(int i)
+{
+    float beside = fabsf((float)i + 0.5f - SIDE / 2.0f) / (SIDE / 2.0f);
+    return minf(2.0f - 2.0f * beside, 1.0f);
+}
+
+static void make_taper(float *taper)
+{
+    for (int i = 0; i < WINDOW; i++)
+        taper[i] = taper_at(i % SIDE) * taper_at(i / SIDE);
+}
+
 static void measure_block(const regression *r, int x0, int y, block *b)
 {
     float d[BLOCK];
+    int before = pixels_before(r);
     for (int h = 0; h < N_HALVES; h++) {
         for (int o = 0; o < WINDOW; o++) {
-            patch_distances(&r->alike[h], x0, y, o % SIDE - BEFORE, o / SIDE - BEFORE, d);
-            for (int i = 0; i < BLOCK_CENTRES; i++)
-                b->distance[h][o][i] = d[i * CENTRES];
+            patch_distances(&r->alike[h], x0, y, o % SIDE - before, o / SIDE - before, d);
+            for (int i = 0; i < MIN(BLOCK / r->step, BLOCK_CENTRES); i++)
+                b->distance[h][o][i] = d[i * r->step];
         }
     }
 }
@@ -301,8 +341,8 @@ static void regress_row(const regression *r, int y, block *b)
         if (cancelled(r->g.cancel) || !block_shines(r, x0, y))
             continue;
         measure_block(r, x0, y, b);
-        for (int i = 0; i < BLOCK_CENTRES && x0 + i * CENTRES < r->g.width; i++)
-            regress_at(r, x0 + i * CENTRES, y, b, i);
+        for (int x = x0; x < MIN(x0 + BLOCK, r->g.width); x += r->step)
+            regress_at(r, place_of(r, x, y), b, (x - x0) / r->step);
     }
 }
 
@@ -317,9 +357,10 @@ static void regress_strip(size_t begin, size_t end, unsigned thread, void *data)
     (void)thread;
     const strip_loop *loop = data;
     block b;
+    make_taper(b.taper);
     int y0 = (int)(2 * begin + loop->odd) * STRIP;
     int y1 = MIN(y0 + STRIP, loop->r->g.height);
-    for (int y = y0; y < y1; y += CENTRES)
+    for (int y = y0; y < y1; y += loop->r->step)
         regress_row(loop->r, y, &b);
 }
 

@@ -18,9 +18,7 @@
 #include "image/denoise/patch.h"
 
 enum {
-    CENTRES = 2, /**< every so manieth pixel in both directions has a window ... */
-    BEFORE = 7,  /**< ... from so many pixels before it */
-    SIDE = 16,   /**< to so many: even about the square of pixels that it stands for */
+    SIDE = 16,   /**< of a window, pixels */
     N_BANDS = 2, /**< bandwidths: 1 and 1/2 */
     N_HALVES = 2,
     MOST_FEATURES = 24,
@@ -29,6 +27,8 @@ enum {
 
 typedef struct regression {
     grid g;
+    int step; /**< every so manieth pixel in both directions has a window, which is even
+                 about the square of pixels that it stands for: 2 or 4 */
     int n_features;
     const float *feature[MOST_FEATURES];
     const float *doubt[MOST_FEATURES]; /**< squared error of the features, planes */

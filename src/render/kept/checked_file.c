@@ -1,6 +1,7 @@
 #include "render/kept/checked_file.h"
 
 #include "base/input.h"
+#include "base/wanted.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -29,7 +30,7 @@ void checked_begin(FILE *to, const checked_kind *kind, const GString *header)
 void checked_put(FILE *to, const void *data, size_t size)
 {
     const char *bytes = data;
-    for (size_t at = 0; at < size; at += BLOCK) {
+    for (size_t at = 0; at < size && still_wanted(NULL); at += BLOCK) {
         size_t n = MIN(size - at, (size_t)BLOCK);
         uint32_t check = checksum(bytes + at, n);
         fwrite(bytes + at, 1, n, to);
@@ -130,6 +131,8 @@ bool checked_get(const checked_reader *r, void *data, size_t size, const char *w
     for (size_t at = 0; at < size; at += BLOCK) {
         size_t n = MIN(size - at, (size_t)BLOCK);
         uint32_t check;
+        if (!still_wanted(error))
+            return false;
         if (fread(bytes + at, 1, n, r->from) != n ||
             fread(&check, sizeof check, 1, r->from) != 1)
             return checked_refuse_short(r, error);

@@ -1,7 +1,8 @@
 #include "render/kept/checkpoint.h"
 
 #include "base/output.h"
-#include "render/film_planes.h"
+#include "base/wanted.h"
+#include "render/film/film_planes.h"
 #include "render/kept/checked_file.h"
 
 #include <string.h>
@@ -102,6 +103,7 @@ bool checkpoint_write(const checkpoint *c, const film *f, const char *path,
         return false;
     GString *header = header_text(c, f);
     FILE *to = output_stream(out);
+    output_watch(out, wanted_flag());
     checked_begin(to, &kind, header);
     g_string_free(header, TRUE);
     for (size_t i = 0; i < n; i++)

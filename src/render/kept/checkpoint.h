@@ -14,7 +14,7 @@
  */
 #pragma once
 
-#include "render/film.h"
+#include "render/film/film.h"
 #include "render/render.h"
 
 /** @brief What stands in the header. Strings are owned. */

@@ -5,14 +5,14 @@
  */
 #include "base/clock.h"
 #include "base/memory.h"
-#include "render/film_planes.h"
+#include "render/film/film_planes.h"
 #include "render/render_state.h"
 
 bool render_dealt_pass(render *r, uint32_t index, render_progress progress, void *data,
                        GError **error)
 {
     if (!r->is_dealt)
-        r->start = clock_seconds() - r->earlier;
+        render_start_clock(r);
     r->is_dealt = r->paced = true;
     r->progress = progress;
     r->progress_data = data;

@@ -3,7 +3,7 @@
  * checkpoint and comes back from one. Passes are functions of the plan and their number,
  * and the plan is one of scene and settings, so that nothing else need be kept.
  */
-#include "render/film_planes.h"
+#include "render/film/film_planes.h"
 #include "render/kept/checkpoint.h"
 #include "render/kept/same_settings.h"
 #include "render/render_state.h"
@@ -86,6 +86,7 @@ static void take_settings(render *r, const settings *then)
     if (settings_planned_passes(&how) != settings_planned_passes(then))
         how.planned_passes = settings_planned_passes(then);
     r->plan.how = how;
+    r->film.coarse = how.denoise_windows == WINDOWS_COARSE;
 }
 
 static void take_statistics(render *r, const render_statistics *then)

@@ -74,8 +74,10 @@ static bool read_plan(render *r, bytes_reader *from, GError **error)
     const settings how = r->plan.how;
     bool ok = plan_get(&r->plan, from->at, (size_t)(from->end - from->at), error) &&
               footprint_fit(&r->plan, r->beside, false, &r->cancel, error);
-    if (ok)
+    if (ok) { /* who dealt the passes knows when it is over */
+        r->plan.how.time = how.time;
         return true;
+    }
     transport_plan_clear(&r->plan);
     r->plan = transport_plan_of(r->plan.view, &how);
     return false;

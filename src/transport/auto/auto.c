@@ -77,7 +77,8 @@ static bool try_photons(transport_plan *plan, path_effort *paths,
                         const cancel_flag *cancel, GError **error)
 {
     aim_result found = {0};
-    *paths = path_effort_measure(plan);
+    if (!path_effort_measure(plan, cancel, paths, error))
+        return false;
     plan->sample_rays = paths->rays;
     if (!aim_caustics(plan, &found, cancel, error)) {
         g_free(found.boost);
@@ -124,10 +125,9 @@ static bool try_pass(transport_plan *plan, const cancel_flag *cancel, GError **e
     if (!pass)
         return false;
     plan->planning += (double)counts.photon_rays;
-    if (small.p_spots > 0.0f)
-        spots_decide(plan, pass);
+    bool ok = small.p_spots == 0.0f || spots_decide(plan, pass, cancel, error);
     pass->p_spots = plan->p_spots;
-    bool ok = gather_decide(plan, pass, cancel, error);
+    ok = ok && gather_decide(plan, pass, cancel, error);
     end_pass(pass);
     return ok;
 }

@@ -18,3 +18,11 @@ void spot_trial_note(spot_trial *trial, const spot_look *look)
         trial->with[i] += x2 * (w * w / q + (1.0 - w) * (1.0 - w) / looked) / p;
     }
 }
+
+void spot_trial_add(spot_trial *trial, const spot_trial *other)
+{
+    trial->rays += other->rays;
+    trial->without += other->without;
+    for (int i = 0; i < N_SHARES; i++)
+        trial->with[i] += other->with[i];
+}

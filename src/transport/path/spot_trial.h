@@ -21,3 +21,6 @@ typedef struct spot_look {
 
 /** @brief Adds what a look found. */
 void spot_trial_note(spot_trial *trial, const spot_look *look);
+
+/** @brief Adds what another trial found. */
+void spot_trial_add(spot_trial *trial, const spot_trial *other);

@@ -37,6 +37,7 @@ typedef struct trials {
     size_t n_known;           /* records of earlier rounds ... */
     size_t n_arrived;         /* ... and behind them of this one */
     size_t each;              /* trials of a round */
+    double grant, spent;      /* rays, of all rounds */
     guide_trial round;
     aim_result *result;  /* NULL: not asked for */
     atomic_bool refused; /* memory was */
@@ -259,12 +260,22 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
         add_round(&all->round, &records[i], noise[i].rays);
     all->n_arrived = keep_arrivals(records, noise, all->each);
     all->plan->planning += all->round.rays;
+    all->spent += all->round.rays;
     if (all->result)
         note_result(all);
     all->n_known += all->n_arrived;
     if (guide)
         emission_guide_learn(guide, all->records, all->n_known);
     return true;
+}
+
+/* Photons of the next round: no more than before, and as many as the grant still allows
+   by what the last ones cost; light that is led into glass takes more rays than any. */
+static size_t count_trials(const trials *all, uint32_t rounds_left)
+{
+    double each = all->round.rays / fmax(all->round.n, 1.0);
+    double n = (all->grant - all->spent) / (fmax(each, 1.0) * fmax(rounds_left, 1.0));
+    return (size_t)CLAMP(n, (double)LEAST_TRIALS, (double)all->each);
 }
 
 static bool learn(trials *all, emission_guide *guide, GError **error)
@@ -274,8 +285,11 @@ static bool learn(trials *all, emission_guide *guide, GError **error)
     all->noise =
         all->records ? big_alloc(n, sizeof *all->noise, "trial photons", error) : NULL;
     bool ok = all->noise != NULL;
-    for (uint32_t round = guide ? 0 : ROUNDS - 1; round < ROUNDS && ok; round++)
+    for (uint32_t round = guide ? 0 : ROUNDS - 1; round < ROUNDS && ok; round++) {
         ok = run_round(all, guide, round, error);
+        all->each = count_trials(all, ROUNDS - 1 - round);
+        all->task.n_photons = all->each;
+    }
     big_free(all->records);
     big_free(all->noise);
     return ok;
@@ -303,6 +317,7 @@ static trials trials_of(transport_plan *plan, const emission_guide *guide,
         .plan = plan,
         .pixels_each = pixels_each(plan),
         .each = each,
+        .grant = plan_grant(plan, 2.0),
         .task =
             {
                 .scene = plan->scene,

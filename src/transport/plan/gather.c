@@ -19,9 +19,12 @@
 /* What two maps, each with two radii, and two paths say of a place of the film. */
 typedef struct gather_place {
     double path[2];
-    double map[2];   /* each with a sampler of its own */
-    double other;    /* of the second map, with the sampler of the first one */
-    double wider[2]; /* map[] again, with the wider radius */
+    double map[2];     /* each with a sampler of its own */
+    double other;      /* of the second map, with the sampler of the first one */
+    double wider[2];   /* map[] again, with the wider radius */
+    double first_rays; /* of a pixel's first sample */
+    double later_rays; /* of another one, which shares the first one's looks */
+    double all_rays;
 } gather_place;
 
 /* The trial of gathering. */
@@ -29,13 +32,21 @@ typedef struct gather_trial {
     transport_plan plan; /* of photons, as it would be */
     transport_plan few[2];
     photonmap_pass *maps[2];
-    double fewer;       /* photons than the plan's, over them */
-    double photon_rays; /* of a whole pass */
-    double first_rays;  /* of a pixel's first sample, sums over places */
-    double later_rays;  /* of another one, which shares the first one's looks */
+    double fewer;                  /* photons than the plan's, over them */
+    double photon_rays;            /* of a whole pass */
+    double first_rays, later_rays; /* means over places */
     uint32_t n;
     gather_place *places;
 } gather_trial;
+
+/* Places that are asked by all threads. */
+typedef struct gather_task {
+    gather_trial *trial;
+    const transport_plan *plan;
+    const path_pass *paths;
+    uint64_t key;
+    uint32_t first;
+} gather_task;
 
 /* Mean squared errors of a sample, relative to what is there; and of a whole picture. */
 typedef struct gather_errors {
@@ -184,69 +195,109 @@ static double later_rays(const gather_trial *t, const transport_plan *plan, vec2
 }
 
 /* Asks both maps at a place. */
-static void ask_maps(gather_trial *t, const transport_plan *plan, uint64_t key,
-                     uint32_t i, transport_scratch *scratch)
+static void ask_maps(const gather_task *all, uint32_t i, transport_scratch *scratch)
 {
+    const gather_trial *t = all->trial;
+    const transport_plan *plan = all->plan;
     gather_place *at = &t->places[i];
-    sampler random = sampler_make(key, i);
+    sampler random = sampler_make(all->key, i);
     vec2 raster = raster_of(plan, &random);
     double before = plan_rays_of(scratch);
     at->map[0] = sample(photonmap_radiance, t->maps[0], plan, raster,
                         sampler_split(&random, 0), scratch);
-    t->first_rays += plan_rays_of(scratch) - before;
-    t->later_rays += later_rays(t, plan, raster, sampler_split(&random, 2), scratch);
+    at->first_rays = plan_rays_of(scratch) - before;
+    at->later_rays = later_rays(t, plan, raster, sampler_split(&random, 2), scratch);
     at->map[1] = sample(photonmap_radiance, t->maps[1], plan, raster,
                         sampler_split(&random, 1), scratch);
     at->other = sample(photonmap_radiance, t->maps[1], plan, raster,
                        sampler_split(&random, 0), scratch);
+    at->all_rays += plan_rays_of(scratch) - before;
 }
 
 /* Both maps again, whose radii are wider now, and paths. */
-static void ask_wider(gather_trial *t, const transport_plan *plan, const path_pass *paths,
-                      uint64_t key, uint32_t i, transport_scratch *scratch)
+static void ask_wider(const gather_task *all, uint32_t i, transport_scratch *scratch)
 {
+    const gather_trial *t = all->trial;
     gather_place *at = &t->places[i];
-    sampler random = sampler_make(key, i);
-    vec2 raster = raster_of(plan, &random);
+    sampler random = sampler_make(all->key, i);
+    vec2 raster = raster_of(all->plan, &random);
+    double before = plan_rays_of(scratch);
     for (unsigned k = 0; k < 2; k++) {
         sampler own = sampler_split(&random, k);
-        at->wider[k] = sample(photonmap_radiance, t->maps[k], plan, raster, own, scratch);
-        at->path[k] = sample(path_radiance, paths, plan, raster, own, scratch);
+        at->wider[k] =
+            sample(photonmap_radiance, t->maps[k], all->plan, raster, own, scratch);
+        at->path[k] = sample(path_radiance, all->paths, all->plan, raster, own, scratch);
     }
+    at->all_rays += plan_rays_of(scratch) - before;
+}
+
+typedef void ask_function(const gather_task *all, uint32_t i, transport_scratch *scratch);
+
+static void ask_some(const gather_task *all, ask_function *ask, size_t begin, size_t end)
+{
+    transport_scratch scratch = {0};
+    for (size_t i = begin; i < end; i++)
+        ask(all, all->first + (uint32_t)i, &scratch);
+    transport_scratch_clear(&scratch);
+}
+
+static void ask_maps_of_some(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    ask_some(data, ask_maps, begin, end);
+}
+
+static void ask_wider_of_some(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    ask_some(data, ask_wider, begin, end);
 }
 
 /* As many places as the grant allows, by what the first of them cost. */
 static uint32_t count_places(const gather_trial *t, const transport_plan *plan)
 {
-    double each = t->first_rays * (N_BY_MAPS - 1.0) + t->later_rays;
-    each = each / LEAST_TRIALS + N_BY_PATHS * plan->sample_rays;
-    return plan_trials_for(plan, 1.0, each, MOST_PLACES);
+    double each = N_BY_PATHS * plan->sample_rays * LEAST_TRIALS;
+    for (int i = 0; i < LEAST_TRIALS; i++)
+        each += t->places[i].first_rays * (N_BY_MAPS - 1.0) + t->places[i].later_rays;
+    return plan_trials_for(plan, 1.0, each / LEAST_TRIALS, MOST_PLACES);
 }
 
-static void run_places(gather_trial *t, transport_plan *plan, const path_pass *paths)
+static void sum_rays(gather_trial *t, transport_plan *plan)
 {
-    transport_scratch scratch = {0};
-    uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x706c61636573u);
-    t->places = g_new0(gather_place, MOST_PLACES);
-    t->n = LEAST_TRIALS;
     for (uint32_t i = 0; i < t->n; i++) {
-        ask_maps(t, plan, key, i, &scratch);
-        if (i + 1 == LEAST_TRIALS)
-            t->n = count_places(t, plan);
+        t->first_rays += t->places[i].first_rays / t->n;
+        t->later_rays += t->places[i].later_rays / t->n;
+        plan->planning += t->places[i].all_rays;
     }
+}
+
+static bool run_places(gather_trial *t, transport_plan *plan, const path_pass *paths,
+                       const cancel_flag *cancel, GError **error)
+{
+    const workers by = {(unsigned)plan->how.threads, cancel};
+    uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x706c61636573u);
+    gather_task task = {t, plan, paths, key, 0};
+    t->places = g_new0(gather_place, MOST_PLACES);
+    ask_some(&task, ask_maps, 0, LEAST_TRIALS);
+    t->n = count_places(t, plan);
+    task.first = LEAST_TRIALS;
+    if (!parallel_work(t->n - task.first, LEAST_TRIALS, by, ask_maps_of_some, &task,
+                       error))
+        return false;
     for (int i = 0; i < 2; i++)
         widen(t->maps[i], WIDER);
-    for (uint32_t i = 0; i < t->n; i++)
-        ask_wider(t, plan, paths, key, i, &scratch);
-    plan->planning += plan_rays_of(&scratch);
-    transport_scratch_clear(&scratch);
+    task.first = 0;
+    if (!parallel_work(t->n, LEAST_TRIALS, by, ask_wider_of_some, &task, error))
+        return false;
+    sum_rays(t, plan);
+    return true;
 }
 
 /* Of a pixel's samples the first looks for edges. */
 static double rays_of_sample(const transport_plan *plan, const gather_trial *t)
 {
     double spp = (double)plan->how.spp;
-    return (t->first_rays + (spp - 1.0) * t->later_rays) / (spp * t->n);
+    return (t->first_rays + (spp - 1.0) * t->later_rays) / spp;
 }
 
 /* ---- What they say ---- */
@@ -373,16 +424,14 @@ bool gather_decide(transport_plan *plan, const path_pass *paths,
     gather_trial *t = g_aligned_alloc0(1, sizeof *t, 64);
     bool ok = plan_to_gather(plan, &t->plan, cancel, error);
     double n = n_photons(&t->plan);
-    double most = plan_trials_for(plan, 0.5, PHOTON_RAYS, UINT32_MAX);
+    double most = plan_trials_for(plan, 0.5, 2.0 * PHOTON_RAYS, UINT32_MAX);
     t->fewer = fmax(n / most, 1.0);
     for (int i = 0; i < 2 && ok; i++)
         ok = send_few(t, i, cancel, error);
-    if (ok) {
-        plan->planning = t->plan.planning;
-        run_places(t, plan, paths);
-        if (gathering_pays(plan, t))
-            take(plan, t);
-    }
+    plan->planning = t->plan.planning;
+    ok = ok && run_places(t, plan, paths, cancel, error);
+    if (ok && gathering_pays(plan, t))
+        take(plan, t);
     gather_trial_clear(t);
     g_aligned_free(t);
     return ok;

@@ -17,59 +17,136 @@ static double path_sample(const path_pass *pass, vec2 raster, sampler random,
     return (double)spectrum_mean(sum);
 }
 
-/* The variance of a sample, from pairs of them at random places. */
-static double variance_of_pairs(const path_pass *pass, uint64_t key, uint32_t n,
-                                transport_scratch *scratch)
+/* Pairs of samples at random places, and what is noted meanwhile: all by pieces of
+   LEAST_TRIALS of them, so that any number of threads finds the same. */
+typedef struct pair_trial {
+    const path_pass *pass;
+    uint64_t key;
+    struct pair_piece *pieces;
+} pair_trial;
+
+typedef struct pair_piece {
+    double noise; /* sum of the variances that pairs say */
+    uint64_t camera_rays, shadow_rays;
+    spot_trial looks;
+    GArray *lit;
+} pair_piece;
+
+/* What all pieces say. */
+typedef struct pair_result {
+    double variance; /* of a sample */
+    uint64_t camera_rays, shadow_rays;
+} pair_result;
+
+static double variance_of_pair(const path_pass *pass, uint64_t key, size_t i,
+                               transport_scratch *scratch)
 {
     const film_settings *film = &pass->plan->view->film;
-    double sum = 0.0;
-    for (uint32_t i = 0; i < n; i++) {
-        sampler random = sampler_make(key, i);
-        vec2 u = sampler_2d(&random);
-        vec2 raster = {u.x * (float)film->width, u.y * (float)film->height};
-        double a = path_sample(pass, raster, sampler_split(&random, 0), scratch);
-        double b = path_sample(pass, raster, sampler_split(&random, 1), scratch);
-        sum += isfinite(a + b) ? 0.5 * (a - b) * (a - b) : 0.0;
-    }
-    return sum / n;
+    sampler random = sampler_make(key, i);
+    vec2 u = sampler_2d(&random);
+    vec2 raster = {u.x * (float)film->width, u.y * (float)film->height};
+    double a = path_sample(pass, raster, sampler_split(&random, 0), scratch);
+    double b = path_sample(pass, raster, sampler_split(&random, 1), scratch);
+    return isfinite(a + b) ? 0.5 * (a - b) * (a - b) : 0.0;
 }
 
-path_effort path_effort_measure(transport_plan *plan)
+static void try_pairs(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const pair_trial *all = data;
+    pair_piece *piece = &all->pieces[begin / LEAST_TRIALS];
+    path_pass pass = *all->pass;
+    transport_scratch scratch = {0};
+    if (pass.lit)
+        pass.lit = piece->lit = g_array_new(FALSE, FALSE, sizeof(lit_place));
+    if (pass.trial)
+        pass.trial = &piece->looks;
+    for (size_t i = begin; i < end; i++)
+        piece->noise += variance_of_pair(&pass, all->key, i, &scratch);
+    piece->camera_rays = scratch.camera_rays;
+    piece->shadow_rays = scratch.shadow_rays;
+    transport_scratch_clear(&scratch);
+}
+
+/* Adds what was noted to what the pass notes into. */
+static void join_notes(const path_pass *pass, const pair_piece *piece)
+{
+    if (pass->trial)
+        spot_trial_add(pass->trial, &piece->looks);
+    if (pass->lit && piece->lit)
+        g_array_append_vals(pass->lit, piece->lit->data,
+                            MIN(piece->lit->len, MOST_PLACES - pass->lit->len));
+}
+
+/* The variance of a sample, from n pairs of them at random places. */
+static bool run_pairs(const path_pass *pass, uint64_t key, uint32_t n,
+                      const cancel_flag *cancel, pair_result *out, GError **error)
+{
+    size_t n_pieces = (n + LEAST_TRIALS - 1) / LEAST_TRIALS;
+    pair_trial all = {pass, key, g_new0(pair_piece, n_pieces)};
+    const workers by = {(unsigned)pass->plan->how.threads, cancel};
+    bool ok = parallel_work(n, LEAST_TRIALS, by, try_pairs, &all, error);
+    *out = (pair_result){0};
+    for (size_t i = 0; i < n_pieces; i++) {
+        const pair_piece *piece = &all.pieces[i];
+        out->variance += piece->noise / n;
+        out->camera_rays += piece->camera_rays;
+        out->shadow_rays += piece->shadow_rays;
+        join_notes(pass, piece);
+        if (piece->lit)
+            g_array_unref(piece->lit);
+    }
+    g_free(all.pieces);
+    return ok;
+}
+
+/* Of n pairs. */
+static path_effort effort_of(const pair_result *found, uint32_t n)
+{
+    return (path_effort){
+        .noise = found->variance,
+        .rays = (double)(found->camera_rays + found->shadow_rays) / (2.0 * n),
+        .surfaces = (double)found->camera_rays / (2.0 * n),
+    };
+}
+
+bool path_effort_measure(transport_plan *plan, const cancel_flag *cancel,
+                         path_effort *out, GError **error)
 {
     g_autoptr(GArray) lit = g_array_new(FALSE, FALSE, sizeof *plan->lit);
-    transport_scratch scratch = {0};
     const path_pass pass = {.plan = plan,
                             .lit = plan->how.bright_spots ? lit : NULL,
                             .without_caustics = true,
                             .w = scene_trial_wavelengths(plan->scene, 0),
                             .options.deterministic = !plan->how.multiple_samples};
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x627564676574u);
-    uint32_t n = plan_trials_for(plan, 1.0, 2.0 * SAMPLE_RAYS, MOST_PLACES);
-    path_effort out = {.noise = variance_of_pairs(&pass, key, n, &scratch)};
-    double rays = (double)(scratch.camera_rays + scratch.shadow_rays);
-    plan->planning += rays;
-    out.rays = rays / (2.0 * n);
-    out.surfaces = (double)scratch.camera_rays / (2.0 * n);
-    transport_scratch_clear(&scratch);
+    uint32_t n = plan_trials_for(plan, 0.5, 2.0 * SAMPLE_RAYS, MOST_PLACES);
+    pair_result found;
+    if (!run_pairs(&pass, key, n, cancel, &found, error))
+        return false;
+    plan->planning += (double)(found.camera_rays + found.shadow_rays);
+    *out = effort_of(&found, n);
     plan->lit = g_array_steal(lit, &plan->n_lit);
-    return out;
+    return true;
 }
 
 /* ---- What bright spots are worth ---- */
 
-/* Paths that look from each surface. @return the variance of one. */
-static double run_spot_trial(transport_plan *plan, const path_pass *pass,
-                             spot_trial *trial, uint32_t n_pairs)
+/* Paths that look from each surface. */
+static bool run_spot_trial(transport_plan *plan, const path_pass *pass, uint32_t n_pairs,
+                           const cancel_flag *cancel, spot_trial *trial, double *noise,
+                           GError **error)
 {
-    transport_scratch scratch = {0};
     path_pass trying = *pass;
+    pair_result found;
     trying.trial = trial;
     trying.p_spots = 1.0f;
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x73706f7473u);
-    double noise = variance_of_pairs(&trying, key, n_pairs, &scratch);
-    plan->planning += (double)(scratch.camera_rays + scratch.shadow_rays);
-    transport_scratch_clear(&scratch);
-    return noise;
+    if (!run_pairs(&trying, key, n_pairs, cancel, &found, error))
+        return false;
+    plan->planning += (double)(found.camera_rays + found.shadow_rays);
+    *noise = found.variance;
+    return true;
 }
 
 /* Of two paths that look from each surface, about as long as two that do not. */
@@ -83,22 +160,21 @@ bool spots_fit(const transport_plan *plan)
     return plan_grant(plan, 1.0) >= LEAST_TRIALS * pair_rays(plan);
 }
 
-/* What looks take away is added up without the chance of missing it, where the variance
-   of paths that do not look would hang on the few that do not. */
-void spots_decide(transport_plan *plan, const path_pass *pass)
+/* The share of surfaces that had best look. What looks take away is added up without the
+   chance of missing it, where the variance of paths that do not look would hang on the
+   few that do not. */
+static void choose_share(transport_plan *plan, const spot_trial *trial, double noise,
+                         uint32_t n_pairs)
 {
-    uint32_t n = plan_trials_for(plan, 1.0, pair_rays(plan), MOST_PLACES);
-    spot_trial trial = {0};
-    double noise = run_spot_trial(plan, pass, &trial, n), each = 1.0 / (2.0 * n);
-    double rest = fmax(noise - trial.with[0] * each, 0.0);
-    plan_cost without = {rest + trial.without * each,
+    double each = 1.0 / (2.0 * n_pairs), rest = fmax(noise - trial->with[0] * each, 0.0);
+    plan_cost without = {rest + trial->without * each,
                          plan->sample_rays + plan->photon_rays};
-    plan_cost best = {rest + trial.with[0] * each, without.rays + trial.rays * each};
+    plan_cost best = {rest + trial->with[0] * each, without.rays + trial->rays * each};
     double least = CLEARLY_BETTER * without.variance * without.rays;
     for (int i = 0; i < N_SHARES; i++) {
         double share = plan_share(i);
-        plan_cost with = {rest + trial.with[i] * each,
-                          without.rays + share * trial.rays * each};
+        plan_cost with = {rest + trial->with[i] * each,
+                          without.rays + share * trial->rays * each};
         if (with.variance * with.rays >= least)
             continue;
         least = with.variance * with.rays;
@@ -106,4 +182,16 @@ void spots_decide(transport_plan *plan, const path_pass *pass)
         plan->p_spots = (float)share;
     }
     plan_note(plan, "bright spots", without, best, plan->p_spots > 0.0f);
+}
+
+bool spots_decide(transport_plan *plan, const path_pass *pass, const cancel_flag *cancel,
+                  GError **error)
+{
+    uint32_t n = plan_trials_for(plan, 1.0, pair_rays(plan), MOST_PLACES);
+    spot_trial trial = {0};
+    double noise;
+    if (!run_spot_trial(plan, pass, n, cancel, &trial, &noise, error))
+        return false;
+    choose_share(plan, &trial, noise, n);
+    return true;
 }

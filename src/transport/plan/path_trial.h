@@ -14,14 +14,17 @@ typedef struct path_effort {
     double surfaces; /**< met */
 } path_effort;
 
-/** @brief Measures with a few paths. Deterministic.
+/** @brief Measures with a few paths, the same on any number of threads.
  * Where bright spots are asked for, plan->lit gets the places that are lit and light
- * others. */
-path_effort path_effort_measure(transport_plan *plan);
+ * others. @return false with ERROR_CANCELLED if it was cancelled */
+bool path_effort_measure(transport_plan *plan, const cancel_flag *cancel,
+                         path_effort *out, GError **error);
 
 /** @brief Whether a trial of looks fits into the work; if not, nobody looks. */
 bool spots_fit(const transport_plan *plan);
 
 /** @brief Measures how often surfaces should look at the spots of a pass: sets
- * plan->p_spots. Deterministic. */
-void spots_decide(transport_plan *plan, const path_pass *pass);
+ * plan->p_spots; the same on any number of threads.
+ * @return false with ERROR_CANCELLED if it was cancelled */
+bool spots_decide(transport_plan *plan, const path_pass *pass, const cancel_flag *cancel,
+                  GError **error);

@@ -12,7 +12,7 @@
  */
 #pragma once
 
-#include "render/film.h"
+#include "render/film/film.h"
 
 enum {
     N_LIGHTS = LAYER_EMISSION, /**< layers that are filtered: all but lights in sight */

@@ -5,7 +5,7 @@
  */
 #pragma once
 
-#include "render/film.h"
+#include "render/film/film.h"
 
 /** @brief Sums over passes, pixel by pixel: first floats, then doubles. */
 typedef struct film_plane {

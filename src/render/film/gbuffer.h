@@ -16,7 +16,7 @@
  */
 #pragma once
 
-#include "render/film.h"
+#include "render/film/film.h"
 
 /** @brief How a sample was seen. */
 typedef struct gbuffer_sample {

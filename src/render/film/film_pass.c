@@ -2,11 +2,12 @@
  * A pass that is not whole yet: in which order its pixels come, which are there, and how
  * one is added to a sum.
  */
-#include "render/film.h"
+#include "render/film/film.h"
 
 int film_cell(const film *f, int x, int y)
 {
-    static const unsigned within[2][2] = {{0, 2}, {3, 1}}; /* [y][x]: the far corner second */
+    static const unsigned within[2][2] = {{0, 2},
+                                          {3, 1}}; /* [y][x]: the far corner second */
     unsigned cell = 0, column = (unsigned)(x - f->x0), row = (unsigned)(y - f->y0);
     for (int step = 1; step < FILM_COARSE; step *= 2, column /= 2, row /= 2)
         cell = 4 * cell + within[row % 2][column % 2];

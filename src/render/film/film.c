@@ -1,9 +1,9 @@
-#include "render/film.h"
+#include "render/film/film.h"
 
 #include "base/memory.h"
 #include "color/balance.h"
-#include "render/film_halves.h"
-#include "render/gbuffer.h"
+#include "render/film/film_halves.h"
+#include "render/film/gbuffer.h"
 
 enum { LUMINANCE = 1 /* of X, Y, Z */ };
 

@@ -1,7 +1,7 @@
 /*
  * From sums on the film to colours: white balance, then the film's colour space.
  */
-#include "render/film.h"
+#include "render/film/film.h"
 
 #include <math.h>
 

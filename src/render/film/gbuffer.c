@@ -1,4 +1,4 @@
-#include "render/gbuffer.h"
+#include "render/film/gbuffer.h"
 
 #include "base/memory.h"
 

@@ -10,7 +10,7 @@
  *   lists    band 0: 1 4 6   band 1: 0 4 7   ...      bands are added in parallel
  */
 #include "base/memory.h"
-#include "render/film.h"
+#include "render/film/film.h"
 
 #include <math.h>
 #include <stddef.h>

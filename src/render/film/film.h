@@ -78,6 +78,7 @@ typedef struct film {
     struct guide_sum *pass_guides; /**< of the pass; NULL: the film has no halves */
     struct half_pixel *halves;     /**< of the passes done: film_halves.h */
     size_t denoise_size;           /**< bytes reserved for film_denoise */
+    bool coarse;                   /**< windows of film_denoise: denoise_size.coarse */
     bool no_time;      /**< there is none to denoise: film_can_denoise is false */
     size_t image_size; /**< bytes reserved for film_image */
 } film;

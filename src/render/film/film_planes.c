@@ -1,7 +1,8 @@
-#include "render/film_planes.h"
+#include "render/film/film_planes.h"
 
+#include "base/memory.h"
 #include "image/exr.h"
-#include "render/film_halves.h"
+#include "render/film/film_halves.h"
 
 #include <math.h>
 #include <string.h>
@@ -102,7 +103,7 @@ void film_reset(film *f)
     film_plane planes[FILM_MOST_PLANES];
     size_t n = film_planes(f, planes);
     for (size_t i = 0; i < n; i++)
-        memset(planes[i].data, 0, film_plane_bytes(&planes[i]));
+        big_zero(planes[i].data, film_plane_bytes(&planes[i]));
     f->n_passes = 0;
     f->n_cells = 0;
 }

@@ -1,4 +1,4 @@
-#include "render/film_halves.h"
+#include "render/film/film_halves.h"
 
 #include "base/clock.h"
 #include "base/memory.h"
@@ -110,19 +110,26 @@ static bool has_pass(const film *f, size_t i, int half)
     return f->n_cells > 0 && half == (int)(f->n_passes % 2) && film_pass_counts(f, i);
 }
 
-/* Half 0 or 1 of a pixel's sums. */
-static film_sum half_of(const film *f, size_t i, int half)
+/* Numbers of film_sum, where they begin. */
+#define AT(field) (offsetof(film_sum, field) / sizeof(double))
+
+/* So many numbers of half 0 or 1 of a pixel's film_sum, from one on. */
+static void get_half(const film *f, size_t i, int half, size_t first, int n, double *out)
 {
-    film_sum sum;
-    double *number = (double *)&sum;
-    const double *all = (const double *)&f->pixels[i].sum;
-    const float *pass = has_pass(f, i, half) ? f->pass[i].number : NULL;
-    for (int k = 0; k < FILM_NUMBERS; k++) {
-        double even = (double)f->halves[i].even.number[k];
-        number[k] = half == 0 ? even : all[k] - even;
-        number[k] += pass ? (double)pass[k] : 0.0;
+    const double *all = (const double *)&f->pixels[i].sum + first;
+    const float *even = f->halves[i].even.number + first;
+    const float *pass = has_pass(f, i, half) ? f->pass[i].number + first : NULL;
+    for (int k = 0; k < n; k++) {
+        out[k] = half == 0 ? (double)even[k] : all[k] - (double)even[k];
+        out[k] += pass ? (double)pass[k] : 0.0;
     }
-    return sum;
+}
+
+static double number_of_half(const film *f, size_t i, int half, size_t at)
+{
+    double number;
+    get_half(f, i, half, at, 1, &number);
+    return number;
 }
 
 static guide_sum guides_of(const film *f, size_t i, int half)
@@ -175,20 +182,22 @@ static void mean_of(const double *sum, double weight, int n, float *out)
 
 static void first_albedo(const film *f, size_t i, int half, float *out)
 {
-    film_sum sum = half_of(f, i, half);
-    film_to_rgb(f, sum.color[N_LAYERS], sum.surface_weight, out);
+    double sum[3];
+    get_half(f, i, half, AT(color[N_LAYERS]), 3, sum);
+    film_to_rgb(f, sum, number_of_half(f, i, half, AT(surface_weight)), out);
 }
 
 static void first_normal(const film *f, size_t i, int half, float *out)
 {
-    film_sum sum = half_of(f, i, half);
-    mean_of(sum.normal, sum.surface_weight, 3, out);
+    double sum[3];
+    get_half(f, i, half, AT(normal), 3, sum);
+    mean_of(sum, number_of_half(f, i, half, AT(surface_weight)), 3, out);
 }
 
 static void first_depth(const film *f, size_t i, int half, float *out)
 {
-    film_sum sum = half_of(f, i, half);
-    mean_of(&sum.depth, sum.surface_weight, 1, out);
+    double sum = number_of_half(f, i, half, AT(depth));
+    mean_of(&sum, number_of_half(f, i, half, AT(surface_weight)), 1, out);
 }
 
 static void guide_color(const film *f, const float xyz[3], float weight, float *out)
@@ -261,11 +270,14 @@ typedef struct layer_room {
 /* What is filtered of a layer. */
 static void light_of(const film *f, size_t i, int half, int layer, float *rgb)
 {
-    film_sum sum = half_of(f, i, half);
-    guide_sum guides = guides_of(f, i, half);
-    for (int c = 0; c < 3 && layer == LAYER_SPECULAR; c++)
-        sum.color[layer][c] -= (double)guides.lights[c];
-    film_to_rgb(f, sum.color[layer], sum.weight, rgb);
+    double sum[3];
+    get_half(f, i, half, AT(color) + 3 * (size_t)layer, 3, sum);
+    if (layer == LAYER_SPECULAR) {
+        guide_sum guides = guides_of(f, i, half);
+        for (int c = 0; c < 3; c++)
+            sum[c] -= (double)guides.lights[c];
+    }
+    film_to_rgb(f, sum, number_of_half(f, i, half, AT(weight)), rgb);
     for (int c = 0; c < 3; c++)
         rgb[c] *= f->scale;
 }
@@ -315,11 +327,21 @@ static bool add_features(const film *f, denoiser *d, layer_room *room, unsigned 
     return true;
 }
 
+/* The result. */
+typedef struct out_loop {
+    const film *f;
+    const float *light; /* a filtered layer */
+    float *out;
+} out_loop;
+
 /* What is not filtered: lights in sight, and in mirrors. Their edges are sharper than any
    filter keeps them with a few samples a pixel, and beside them there may be nothing. */
-static void start_with_emission(const film *f, float *out)
+static void put_emission(size_t begin, size_t end, unsigned thread, void *data)
 {
-    for (size_t i = 0; i < n_pixels(f); i++) {
+    (void)thread;
+    const out_loop *loop = data;
+    const film *f = loop->f;
+    for (size_t i = begin; i < end; i++) {
         film_sum sum = f->pixels[i].sum;
         guide_sum guides = f->halves[i].guides;
         if (f->n_cells > 0 && film_pass_counts(f, i)) {
@@ -329,16 +351,25 @@ static void start_with_emission(const film *f, float *out)
         double *seen = sum.color[LAYER_EMISSION];
         for (int c = 0; c < 3; c++)
             seen[c] += (double)guides.lights[c];
-        film_to_rgb(f, seen, sum.weight, out + 3 * i);
+        film_to_rgb(f, seen, sum.weight, loop->out + 3 * i);
         for (int c = 0; c < 3; c++)
-            out[3 * i + (size_t)c] *= f->scale;
+            loop->out[3 * i + (size_t)c] *= f->scale;
     }
+}
+
+static void add_light(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const out_loop *loop = data;
+    for (size_t i = 3 * begin; i < 3 * end; i++)
+        loop->out[i] += loop->light[i];
 }
 
 static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
                           unsigned threads, float *out, GError **error)
 {
-    start_with_emission(f, out);
+    out_loop all = {f, room->out, out};
+    parallel_for(n_pixels(f), ITEMS_AT_ONCE, threads, NULL, put_emission, &all);
     for (int l = 0; l < N_LIGHTS; l++) {
         read_loop loop = {f, room, NULL, l};
         const denoise_layer layer = {3, {room->half[0], room->half[1]}, room->variance};
@@ -346,8 +377,7 @@ static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
         if (!denoiser_filter(d, &layer, l == LAYER_SPECULAR ? -1 : ALBEDO, room->out,
                              error))
             return false;
-        for (size_t i = 0; i < 3 * n_pixels(f); i++)
-            out[i] += room->out[i];
+        parallel_for(n_pixels(f), ITEMS_AT_ONCE, threads, NULL, add_light, &all);
     }
     return true;
 }
@@ -357,8 +387,8 @@ static float share_of_even(const film *f)
 {
     double even = 0.0, odd = 0.0;
     for (size_t i = 0; i < n_pixels(f); i++) {
-        even += half_of(f, i, 0).weight;
-        odd += half_of(f, i, 1).weight;
+        even += number_of_half(f, i, 0, AT(weight));
+        odd += number_of_half(f, i, 1, AT(weight));
     }
     return (float)(even / (even + odd));
 }
@@ -410,7 +440,8 @@ static float *denoise(const film *f, const denoise_size *size, GError **error)
 float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
                     GError **error)
 {
-    const denoise_size size = {f->width, f->height, share_of_even(f), threads, cancel};
+    const denoise_size size = {f->width, f->height, share_of_even(f),
+                               threads,  cancel,    f->coarse};
     memory_release(f->denoise_size);
     float *out = denoise(f, &size, error);
     memory_count(f->denoise_size);
