@@ -5,6 +5,13 @@
 
 #include <glib.h>
 
+/** @brief Microseconds since some moment, never going back. Thread-safe. Whole numbers:
+    parts of a span never add up to more than it, which rounded seconds may. */
+static inline int64_t clock_microseconds(void)
+{
+    return g_get_monotonic_time();
+}
+
 /** @brief Seconds since some moment, never going back. Thread-safe. */
 static inline double clock_seconds(void)
 {

@@ -2,8 +2,8 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "render/film_halves.h"
-#include "render/gbuffer.h"
+#include "render/film/film_halves.h"
+#include "render/film/gbuffer.h"
 
 #include <string.h>
 
@@ -15,7 +15,7 @@ enum {
 /* Which camera samples of a thread are timed. */
 typedef struct sample_clock {
     uint64_t n_samples;
-    double time; /* s, of those that were timed */
+    int64_t time; /* microseconds, of those that were timed */
 } sample_clock;
 
 struct look {
@@ -84,10 +84,10 @@ static void find_radiance(look *l, const ray *from_eye, sampler *random, unsigne
     transport_scratch *scratch = &l->scratch[thread];
     sample_clock *clock = &l->clocks[thread];
     scratch->timed = clock->n_samples++ % TIMED_SHARE == 0;
-    double start = scratch->timed ? clock_seconds() : 0.0;
+    int64_t start = scratch->timed ? clock_microseconds() : 0;
     l->task.transport->radiance(l->task.pass, from_eye, random, scratch, sample);
     if (scratch->timed)
-        clock->time += clock_seconds() - start;
+        clock->time += clock_microseconds() - start;
 }
 
 /* One camera sample of a pixel, random already told which. */
@@ -232,7 +232,7 @@ look *look_open(const look_task *task, GError **error)
 bool look_close(look *l, transport_counts *counts, GError **error)
 {
     bool failed = false;
-    double timed = 0.0, gathering = 0.0;
+    int64_t timed = 0, gathering = 0;
     for (unsigned i = 0; i < l->n_threads; i++) {
         const transport_scratch *scratch = &l->scratch[i];
         counts->camera_rays += scratch->camera_rays;
@@ -242,8 +242,8 @@ bool look_close(look *l, transport_counts *counts, GError **error)
         gathering += scratch->time_gather;
         failed |= scratch->estimate.failed || scratch->estimate.hits.refused;
     }
-    if (timed > 0.0)
-        counts->time_gather += l->seconds * (gathering / timed);
+    if (timed > 0)
+        counts->time_gather += l->seconds * ((double)gathering / (double)timed);
     look_free(l);
     if (failed)
         error_set(error, ERROR_FAILED, "out of memory for radiance estimates");

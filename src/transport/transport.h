@@ -84,8 +84,8 @@ typedef struct splat_list {
 typedef struct shading_point {
     const surface_hit *hit;
     const bsdf *bsdf;
-    vec3 wo;      /**< to where the path came from */
-    bool blurred; /**< seen by way of a diffuse bounce: edges need not be exact */
+    vec3 wo;       /**< to where the path came from */
+    bool blurred;  /**< seen by way of a diffuse bounce: edges need not be exact */
     bool in_pixel; /**< others of the pixel lie beside it: looks for edges are shared */
 } shading_point;
 
@@ -207,9 +207,9 @@ void transport_plan_clear(transport_plan *plan);
 typedef struct transport_scratch {
     estimate_scratch estimate;
     uint64_t camera_rays, shadow_rays, n_not_finite;
-    bool timed;         /**< the camera sample under way is: its gathers are too */
-    double time_gather; /**< s, of gathers in samples that were timed */
-    spectrum *gathered; /**< final_gather's result by light groups; owned */
+    bool timed;          /**< the camera sample under way is: its gathers are too */
+    int64_t time_gather; /**< microseconds, of gathers in samples that were timed */
+    spectrum *gathered;  /**< final_gather's result by light groups; owned */
 } transport_scratch;
 
 /** @brief Makes zeroed scratch usable for a scene with so many light groups. */

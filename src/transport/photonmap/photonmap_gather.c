@@ -111,9 +111,9 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
     options.shares_looks = at->in_pixel;
     options.time = photonmap_slice_time(pass, slice);
     options.delta_lobes = delta_lobes ? delta_lobes | LOBE_ANY_SIDE : 0;
-    double start = scratch->timed ? clock_seconds() : 0.0;
+    int64_t start = scratch->timed ? clock_microseconds() : 0;
     spectrum radiance = gather_at(pass, map, at, &options, scratch);
     if (scratch->timed)
-        scratch->time_gather += clock_seconds() - start;
+        scratch->time_gather += clock_microseconds() - start;
     return radiance;
 }
