@@ -28,18 +28,29 @@ static float density_of_following(const direct_query *query, vec3 wi)
     return p * bsdf_pdf(query->bsdf, query->wo, wi, lobes, TRANSPORT_RADIANCE);
 }
 
-/* f of one class of lobes, weighed against following where that is done too. *pdf: of
- * following, the same for all classes; negative until one has asked for it. */
+/* The density with which looking for environments would. */
+static float density_of_looking(const direct_query *query, vec3 wi)
+{
+    return bsdf_pdf(query->bsdf, query->wo, wi, query->looked | LOBE_ANY_SIDE,
+                    TRANSPORT_RADIANCE);
+}
+
+/* f of one class of lobes, weighed against following or looking where that is done too.
+ * *pdf: of following, the same for all classes; negative until one has asked for it. */
 static spectrum weighed_lobe(const direct_query *query, const light_sample *to_light,
-                             bool delta, unsigned lobe, float *pdf)
+                             const light *from, unsigned lobe, float *pdf)
 {
     if (!(query->bsdf->lobes & lobe))
         return (spectrum){0};
     spectrum f = bsdf_eval(query->bsdf, query->wo, to_light->wi, lobe | LOBE_ANY_SIDE,
                            TRANSPORT_RADIANCE);
-    bool shared = (query->followed & lobe) && !delta && query->shadow_rays;
-    if (!shared || spectrum_is_black(f))
+    bool looked = (query->looked & lobe) && from->kind->is_environment;
+    bool followed = (query->followed & lobe) && !from->is_delta;
+    if (!(looked || followed) || !query->shadow_rays || spectrum_is_black(f))
         return f;
+    if (looked)
+        return f * (1.0f - followed_weight(density_of_looking(query, to_light->wi),
+                                           to_light->pdf));
     if (*pdf < 0.0f)
         *pdf = density_of_following(query, to_light->wi);
     return f * (1.0f - followed_weight(*pdf, to_light->pdf));
@@ -71,10 +82,10 @@ static float glossy_mis_weight(const direct_query *query, const light_sample *to
 static bool radiance_of(const direct_query *query, const light_sample *to_light,
                         bool each, direct_radiance *found, uint64_t *shadow_rays_traced)
 {
-    bool delta = scene_light(query->scene, found->light)->is_delta;
+    const light *from = scene_light(query->scene, found->light);
     float pdf = -1.0f;
-    spectrum diffuse = weighed_lobe(query, to_light, delta, LOBE_DIFFUSE, &pdf);
-    spectrum glossy = weighed_lobe(query, to_light, delta, LOBE_GLOSSY, &pdf);
+    spectrum diffuse = weighed_lobe(query, to_light, from, LOBE_DIFFUSE, &pdf);
+    spectrum glossy = weighed_lobe(query, to_light, from, LOBE_GLOSSY, &pdf);
     if (query->mis && !spectrum_is_black(glossy))
         glossy *= glossy_mis_weight(query, to_light, found->light, each);
     if (spectrum_is_black(diffuse + glossy))
@@ -154,6 +165,16 @@ void direct_meet(const scene *s, const wavelengths *w, const ray *r,
     }
 }
 
+/* Of a path that ran into a light which is sampled from where it scattered last. */
+static float met_weight(const scene *s, const scattered_from *from, vec3 direction,
+                        const met_light *met)
+{
+    float pdf = samples_each(s, from->every_light)
+                    ? scene_one_light_pdf(s, met->light, from->p, direction, met->hit)
+                    : scene_light_pdf(s, met->light, from->p, direction, met->hit);
+    return followed_weight(from->pdf, pdf);
+}
+
 float direct_met_weight(const scene *s, const settings *how, const scattered_from *from,
                         vec3 direction, const met_light *met)
 {
@@ -161,8 +182,48 @@ float direct_met_weight(const scene *s, const settings *how, const scattered_fro
         return 1.0f;
     if (!how->shadow_rays)
         return 0.0f;
-    float pdf = samples_each(s, from->every_light)
-                    ? scene_one_light_pdf(s, met->light, from->p, direction, met->hit)
-                    : scene_light_pdf(s, met->light, from->p, direction, met->hit);
-    return followed_weight(from->pdf, pdf);
+    return met_weight(s, from, direction, met);
+}
+
+/* ---- Looking for environments ---- */
+
+/* A direction in which nothing stands before them. */
+typedef struct environment_look {
+    const direct_query *query;
+    const bsdf_sample *drawn;
+    spectrum arriving; /* of 1 from there, what goes to wo */
+    void (*tell)(void *path, const met_light *met);
+    void *path;
+} environment_look;
+
+static void weigh_environment(void *data, const met_light *met)
+{
+    const environment_look *look = data;
+    const direct_query *query = look->query;
+    const scattered_from here = {query->hit->p, look->drawn->pdf, query->every_light};
+    float weight = met_weight(query->scene, &here, look->drawn->wi, met);
+    const met_light weighed = {met->light, weight * met->radiance * look->arriving, NULL};
+    look->tell(look->path, &weighed);
+}
+
+void direct_environments(const direct_query *query, sampler *random,
+                         void (*tell)(void *path, const met_light *met), void *path,
+                         uint64_t *shadow_rays_traced)
+{
+    const scene *s = query->scene;
+    if (s->n_environments == 0 || !query->looked || !query->shadow_rays)
+        return;
+    float u_lobe = sampler_1d(random);
+    vec2 u = sampler_2d(random);
+    bsdf_sample drawn;
+    if (!bsdf_sample_direction(query->bsdf, query->wo, u_lobe, u,
+                               query->looked | LOBE_ANY_SIDE, TRANSPORT_RADIANCE, &drawn))
+        return;
+    const ray away = hit_ray_to(query->hit, drawn.wi, INFINITY);
+    ++*shadow_rays_traced;
+    if (scene_occluded(s, &away))
+        return;
+    environment_look look = {query, &drawn, drawn.weight, tell, path};
+    look.arriving *= scene_transmittance_to(s, query->hit, drawn.wi, INFINITY, query->w);
+    direct_meet(s, query->w, &away, NULL, weigh_environment, &look);
 }

@@ -22,6 +22,7 @@ typedef struct direct_query {
     bool shadow_rays;  /**< false: light passes through everything */
     unsigned followed; /**< the mask that the path goes on with: those classes share the
                           work with light sampling, for the others it is the only way */
+    unsigned looked;   /**< likewise, classes that direct_environments is asked with */
     bool by_side;      /**< the path takes each side apart ... */
     float p_side[2];   /**< ... with this probability: reflection, transmission */
     /** Of what glossy lobes send, photons carry this share; NULL: none of it. */
@@ -64,6 +65,15 @@ typedef struct met_light {
 void direct_meet(const scene *s, const wavelengths *w, const ray *r,
                  const surface_hit *hit, void (*tell)(void *path, const met_light *met),
                  void *path);
+
+/** @brief Environments' light again, along a direction drawn from the lobes looked, which
+ * finds what is wide where sampling lights finds what is bright; each is told of with its
+ * whole weight, as a share of what the lobes send to wo. Nothing is drawn in a scene
+ * without environments.
+ *  @param shadow_rays_traced is increased */
+void direct_environments(const direct_query *query, sampler *random,
+                         void (*tell)(void *path, const met_light *met), void *path,
+                         uint64_t *shadow_rays_traced);
 
 /** @brief Where a path scattered last. */
 typedef struct scattered_from {

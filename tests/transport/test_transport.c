@@ -392,6 +392,47 @@ static void test_long_ways(void)
     g_assert_cmpfloat(rays, <, 1000.0);
 }
 
+/* ---- Sky ---- */
+
+/* A floor below a wall, under an even sky and a small lamp. */
+static const char under_sky[] =
+    "LookAt 0 -3 1  0 0 0.5  0 0 1 Camera \"perspective\" \"float fov\" 20 " SIZE(
+        24) "WorldBegin LightSource \"infinite\" \"rgb L\" [1 1 1] LightSource \"point\" "
+            "\"point3 from\" [2 -1 2] Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 "
+            "0.5] Shape \"trianglemesh\" \"point3 P\" [-9 -9 0 9 -9 0 9 9 0 -9 9 0 -9 "
+            "0.5 0 "
+            "9 0.5 0 9 0.5 3 -9 0.5 3] \"integer indices\" [0 1 2 0 2 3 4 5 6 4 6 7]";
+
+/* Mean over pixels of the squared error of the direct light, as a share of its square. */
+static double direct_error(const image *img, const image *truth)
+{
+    size_t c = channel_of(img, "direct.G"), of = channel_of(truth, "direct.G");
+    double sum = 0;
+    for (size_t i = 0; i < pixels_of(img); i++) {
+        double error = at(img, i, c) / at(truth, i, of) - 1.0;
+        sum += error * error;
+    }
+    return sum / (double)pixels_of(img);
+}
+
+/* Of a sample of a wide sky by its own directions half are below the ground: relative
+   variance 5/3. With one more by the surface's it is a fraction of that; and the mean is
+   that of path tracing. */
+static void test_sky_without_grain(void)
+{
+    enum { SPP = 4 };
+    g_autoptr(view) v = view_of(under_sky);
+    g_autoptr(image) truth = render_with(v, "integrator=path passes=4 spp=256");
+    g_autofree char *words = g_strdup_printf("photons=100 passes=1 spp=%d", (int)SPP);
+    g_autoptr(image) img = render_with(v, words);
+    double bias = mean_of(img, "direct") / mean_of(truth, "direct") - 1.0;
+    double variance = SPP * direct_error(img, truth);
+    g_test_message("mean %+.2f %%, relative variance of a sample %g", 100.0 * bias,
+                   variance);
+    g_assert_cmpfloat(fabs(bias), <, 0.01);
+    g_assert_cmpfloat(variance, <, 0.25);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -417,5 +458,6 @@ int main(int argc, char **argv)
     g_test_add_func("/transport/cancel", test_cancel_keeps_what_there_is);
     g_test_add_func("/transport/cancel-soon", test_cancel_acts_soon);
     g_test_add_func("/transport/long-ways", test_long_ways);
+    g_test_add_func("/transport/sky", test_sky_without_grain);
     return g_test_run();
 }

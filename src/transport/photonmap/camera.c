@@ -116,8 +116,14 @@ static void plan_sides(const camera_tree *tree, const camera_branch *branch,
     p[1] = 1.0f - p[0];
 }
 
-static void shade_direct(camera_tree *tree, const camera_branch *branch,
-                         const surface_hit *hit, const bsdf *b, const float p_follow[2])
+static void meet_environment(void *data, const met_light *met)
+{
+    const branch_step *step = data;
+    add_from(step->tree, step->branch, LAYER_DIRECT, met->radiance, met->light);
+}
+
+static void shade_direct(camera_tree *tree, camera_branch *branch, const surface_hit *hit,
+                         const bsdf *b, const float p_follow[2])
 {
     const photonmap_pass *pass = tree->pass;
     if (!(b->lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)))
@@ -131,6 +137,7 @@ static void shade_direct(camera_tree *tree, const camera_branch *branch,
         .every_light = true,
         .shadow_rays = pass->how->shadow_rays,
         .followed = pass->followed,
+        .looked = LOBE_DIFFUSE & ~pass->followed,
         .by_side = true,
         .p_side = {p_follow[0], p_follow[1]},
     };
@@ -140,6 +147,9 @@ static void shade_direct(camera_tree *tree, const camera_branch *branch,
         add_from(tree, branch, LAYER_DIRECT, found[i].diffuse, found[i].light);
         add_from(tree, branch, LAYER_SPECULAR, found[i].glossy, found[i].light);
     }
+    branch_step step = {tree, branch};
+    direct_environments(&query, tree->random, meet_environment, &step,
+                        &tree->scratch->shadow_rays);
 }
 
 /* What the photons of one class give at a point. */
@@ -170,7 +180,7 @@ static void shade_indirect(camera_tree *tree, const camera_branch *branch,
 }
 
 /* Everything that ends at this surface: direct, caustic and indirect light. */
-static void shade(camera_tree *tree, const camera_branch *branch, const surface_hit *hit,
+static void shade(camera_tree *tree, camera_branch *branch, const surface_hit *hit,
                   const bsdf *b, const float p_follow[2])
 {
     const photonmap_pass *pass = tree->pass;
