@@ -5,9 +5,9 @@
  *
  * Software OpenGL draws where there is no GPU; `GL` says which.
  */
-#include "window_parts.h"
+#include "window/window_parts.h"
 
-#include "app.h"
+#include "window/app.h"
 
 #include <epoxy/gl.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /*
  * nephroid-view: a window on a scene.
  */
-#include "app.h"
+#include "window/app.h"
 
 int main(int argc, char **argv)
 {

@@ -2,7 +2,7 @@
  * Following the desktop's light or dark, against a portal of the test's own on a bus of
  * its own.
  */
-#include "appearance.h"
+#include "window/appearance.h"
 
 #include <gio/gio.h>
 

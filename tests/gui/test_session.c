@@ -2,7 +2,7 @@
  * The hand-over between window and worker, without a window: orders from the main thread
  * at any moment, news on its main loop. Meant for the thread sanitizer too.
  */
-#include "session.h"
+#include "session/session.h"
 
 #include <glib/gstdio.h>
 #include <math.h>

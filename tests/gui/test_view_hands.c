@@ -5,8 +5,8 @@
  */
 #include "view_hands.h"
 
-#include "projection.h"
-#include "screenshot.h"
+#include "photons/projection.h"
+#include "window/screenshot.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,11 +2,11 @@
  * What the window computes without a window: moving the camera, colours for the screen,
  * sizes of quick looks, clouds of photons, messages taken apart.
  */
-#include "display.h"
-#include "error_page.h"
-#include "photon_cloud.h"
-#include "preview.h"
-#include "viewpoint.h"
+#include "panels/error_page.h"
+#include "photons/photon_cloud.h"
+#include "picture/display.h"
+#include "picture/viewpoint.h"
+#include "session/preview.h"
 
 #include <glib/gstdio.h>
 

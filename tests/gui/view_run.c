@@ -1,7 +1,7 @@
 #include "view_run.h"
 
-#include "app.h"
 #include "sanitizers.h"
+#include "window/app.h"
 
 #include <glib/gstdio.h>
 #include <string.h>

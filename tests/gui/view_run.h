@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "window_parts.h"
+#include "window/window_parts.h"
 
 /** @brief Prepares folders, GTK and the test API. false: there is no display, and every
  * test added is skipped. */
