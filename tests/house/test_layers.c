@@ -10,11 +10,16 @@
 
 enum { MAX_FILE_LINES = 700, MAX_FUNCTION_LINES = 100 };
 
-/** @brief The folders under src/ bottom up, and the programs beside it. */
+/** @brief src/, or the folder of a program beside it. */
+typedef struct tree {
+    char *name;
+    GPtrArray *layers; /* of char*: its folders bottom up; none: it keeps to no order */
+} tree;
+
 typedef struct house {
     const char *root;
-    GPtrArray *layers, *programs; /* of char* */
-    GPtrArray *faults;            /* of char*, what is wrong */
+    GPtrArray *trees;  /* of tree*, src/ first */
+    GPtrArray *faults; /* of char*, what is wrong */
 } house;
 
 static void add_fault(house *h, const char *format, ...) G_GNUC_PRINTF(2, 3);
@@ -27,30 +32,46 @@ static void add_fault(house *h, const char *format, ...)
     va_end(arguments);
 }
 
+static void add_tree(house *h, const char *name)
+{
+    tree *t = g_new(tree, 1);
+    *t = (tree){g_strdup(name), g_ptr_array_new_with_free_func(g_free)};
+    g_ptr_array_add(h->trees, t);
+}
+
+static void free_tree(void *data)
+{
+    tree *t = data;
+    g_free(t->name);
+    g_ptr_array_unref(t->layers);
+    g_free(t);
+}
+
 static house house_open(const char *root)
 {
-    house h = {root, g_ptr_array_new_with_free_func(g_free),
-               g_ptr_array_new_with_free_func(g_free),
+    house h = {root, g_ptr_array_new_with_free_func(free_tree),
                g_ptr_array_new_with_free_func(g_free)};
     g_autofree char *path = g_build_filename(SOURCE_ROOT, "tools", "layers.txt", NULL);
     g_autofree char *text = NULL;
     g_assert_true(g_file_get_contents(path, &text, NULL, NULL));
     g_auto(GStrv) lines = g_strsplit(text, "\n", -1);
+    add_tree(&h, "src");
     for (size_t i = 0; lines[i]; i++) {
+        tree *last = h.trees->pdata[h.trees->len - 1];
         if (g_str_has_prefix(lines[i], "layer "))
-            g_ptr_array_add(h.layers, g_strdup(lines[i] + strlen("layer ")));
+            g_ptr_array_add(last->layers, g_strdup(lines[i] + strlen("layer ")));
         if (g_str_has_prefix(lines[i], "program "))
-            g_ptr_array_add(h.programs, g_strdup(lines[i] + strlen("program ")));
+            add_tree(&h, lines[i] + strlen("program "));
     }
-    g_assert_cmpuint(h.layers->len, >, 1);
-    g_assert_cmpuint(h.programs->len, >, 0);
+    const tree *src = h.trees->pdata[0];
+    g_assert_cmpuint(src->layers->len, >, 1);
+    g_assert_cmpuint(h.trees->len, >, 1);
     return h;
 }
 
 static void house_close(house *h)
 {
-    g_ptr_array_unref(h->layers);
-    g_ptr_array_unref(h->programs);
+    g_ptr_array_unref(h->trees);
     g_ptr_array_unref(h->faults);
 }
 
@@ -84,16 +105,23 @@ static void each_source(house *h, const char *folder,
 
 /* ---- Includes ---- */
 
-/** @brief The layer (from 0) that an included name belongs to, or -1. */
-static int layer_of(const house *h, const char *name)
+static const tree *tree_of(const house *h, const char *path)
+{
+    g_auto(GStrv) parts = g_strsplit(path, "/", 2);
+    for (unsigned i = 0; i < h->trees->len; i++) {
+        const tree *t = h->trees->pdata[i];
+        if (g_str_equal(parts[0], t->name))
+            return t;
+    }
+    g_assert_not_reached();
+}
+
+/** @brief The layer (from 0) of a name in the tree, or -1. */
+static int layer_of(const tree *t, const char *name)
 {
     g_auto(GStrv) parts = g_strsplit(name, "/", 2);
-    if (!parts[0] || !parts[1])
-        return -1;
-    if (g_str_equal(parts[0], "nephroid"))
-        return (int)h->layers->len - 1;
-    for (unsigned i = 0; i < h->layers->len; i++)
-        if (g_str_equal(parts[0], h->layers->pdata[i]))
+    for (unsigned i = 0; parts[0] && parts[1] && i < t->layers->len; i++)
+        if (g_str_equal(parts[0], t->layers->pdata[i]))
             return (int)i;
     return -1;
 }
@@ -112,23 +140,49 @@ static char *included_name(const char *line, bool *is_system)
     return g_match_info_fetch(match, 2);
 }
 
-static void check_include(house *h, const char *path, const char *name, bool is_system)
+static void check_src_include(house *h, const char *path, const char *name,
+                              bool is_system)
 {
-    bool in_src = g_str_has_prefix(path, "src/");
-    int own = in_src ? layer_of(h, path + strlen("src/")) : -1;
-    int other = layer_of(h, name);
+    const tree *src = h->trees->pdata[0];
+    int own = layer_of(src, path + strlen("src/"));
+    int other = g_str_has_prefix(name, "nephroid/") ? (int)src->layers->len - 1
+                                                    : layer_of(src, name);
+    if (own < 0)
+        add_fault(h, "%s is in no layer of tools/layers.txt", path);
+    else if (other > own)
+        add_fault(h, "%s includes %s, which is above it", path, name);
+    else if (other < 0 && !is_system && strchr(name, '/'))
+        add_fault(h, "%s includes %s: that folder is in no layer", path, name);
+}
+
+/** @brief Where a program has layers, its main file lies beside them and sees all. */
+static void check_program_include(house *h, const char *path, const char *name,
+                                  bool is_system)
+{
+    const tree *t = tree_of(h, path);
+    const char *inside = path + strlen(t->name) + 1;
+    int own = layer_of(t, inside), other = layer_of(t, name);
+    bool is_ordered = t->layers->len > 0;
     bool is_public = g_str_has_prefix(name, "nephroid/");
-    if (strstr(name, "../"))
-        add_fault(h, "%s includes %s: a way around the layers", path, name);
-    else if (!in_src && other >= 0 && !is_public)
+    if (!is_public && layer_of(h->trees->pdata[0], name) >= 0)
         add_fault(h, "%s includes %s: a program sees only the installed header", path,
                   name);
-    else if (in_src && own < 0)
+    else if (is_ordered && own < 0 && strchr(inside, '/'))
         add_fault(h, "%s is in no layer of tools/layers.txt", path);
-    else if (in_src && other > own)
+    else if (own >= 0 && other > own)
         add_fault(h, "%s includes %s, which is above it", path, name);
-    else if (in_src && other < 0 && !is_system && strchr(name, '/'))
-        add_fault(h, "%s includes %s: that folder is in no layer", path, name);
+    else if (is_ordered && other < 0 && !is_system && !is_public)
+        add_fault(h, "%s includes %s, which names no layer", path, name);
+}
+
+static void check_include(house *h, const char *path, const char *name, bool is_system)
+{
+    if (strstr(name, "../"))
+        add_fault(h, "%s includes %s: a way around the layers", path, name);
+    else if (g_str_has_prefix(path, "src/"))
+        check_src_include(h, path, name, is_system);
+    else
+        check_program_include(h, path, name, is_system);
 }
 
 static void visit_includes(house *h, const char *path, const char *text)
@@ -144,9 +198,10 @@ static void visit_includes(house *h, const char *path, const char *text)
 
 static void check_layers(house *h)
 {
-    each_source(h, "src", visit_includes);
-    for (unsigned i = 0; i < h->programs->len; i++)
-        each_source(h, h->programs->pdata[i], visit_includes);
+    for (unsigned i = 0; i < h->trees->len; i++) {
+        const tree *t = h->trees->pdata[i];
+        each_source(h, t->name, visit_includes);
+    }
 }
 
 /* ---- Lengths ---- */
@@ -245,6 +300,14 @@ static void test_planted_includes_are_seen(void)
         {"cli/a.c", "#include <nephroid/nephroid.h>\n#include \"args.h\"\n", 0},
         {"cli/a.c", "#include \"base/error.h\"\n", 1},
         {"cli/a.c", "#include \"../src/base/error.h\"\n", 1},
+        {"gui/a.c", "#include \"window/a.h\"\n#include <gtk/gtk.h>\n", 0},
+        {"gui/panels/a.c", "#include \"panels/a.h\"\n#include \"session/b.h\"\n", 0},
+        {"gui/panels/a.c", "#include <nephroid/nephroid.h>\n#include <math.h>\n", 0},
+        {"gui/panels/a.c", "#include \"window/window.h\"\n", 1},
+        {"gui/panels/deep/a.c", "#include \"window/window.h\"\n", 1},
+        {"gui/panels/a.c", "#include \"app.h\"\n", 1},
+        {"gui/panels/a.c", "#include \"photon/photon.h\"\n", 1},
+        {"gui/cellar/a.c", "#include <math.h>\n", 1},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++)
         g_assert_cmpuint(faults_of(cases[i].path, cases[i].text, check_layers), ==,
