@@ -54,6 +54,12 @@ typedef struct estimate_scratch {
     size_t n_groups;  /**< 0: not asked for; else the map's store must be tagged */
 } estimate_scratch;
 
+/** @brief Memory was refused since it was set up: something was estimated in part. */
+static inline bool estimate_scratch_refused(const estimate_scratch *scratch)
+{
+    return scratch->failed || scratch->hits.refused;
+}
+
 /** @brief Asks for results apart by tags below n, if n is not 0. */
 bool estimate_scratch_init(estimate_scratch *scratch, size_t n_groups, GError **error);
 

@@ -240,7 +240,7 @@ bool look_close(look *l, transport_counts *counts, GError **error)
         counts->n_not_finite += scratch->n_not_finite;
         timed += l->clocks[i].time;
         gathering += scratch->time_gather;
-        failed |= scratch->estimate.failed || scratch->estimate.hits.refused;
+        failed |= estimate_scratch_refused(&scratch->estimate);
     }
     if (timed > 0)
         counts->time_gather += l->seconds * ((double)gathering / (double)timed);

@@ -35,7 +35,7 @@ static void store(photon_path *path, const surface_hit *hit, unsigned flags)
                 .home = scene_curve_of(s, hit)};
     if (scene_hit_moves(s, hit))
         keep_for_slice(path->task, hit, &p);
-    trace_chunk_put(out, &out->of.photons, &p);
+    trace_chunk_put(out, &out->photons, &p);
 }
 
 void photon_path_land(photon_path *path, const surface_hit *hit, const bsdf *b)

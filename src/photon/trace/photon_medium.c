@@ -32,7 +32,7 @@ static void land_on_segment(photon_path *path, float length)
                       .home = medium_home(m)};
     photon_path_tell_flux(path, PHOTON_STORED, &hit, 0, p.flux);
     if (path->out)
-        trace_chunk_put(path->out, &path->out->of.in_media, &p);
+        trace_chunk_put(path->out, &path->out->in_media, &p);
 }
 
 scene_event photon_path_cross_medium(void *data, float length, const surface_hit *behind,

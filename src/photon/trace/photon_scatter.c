@@ -70,7 +70,7 @@ bool photon_path_scatter(photon_path *path, const surface_hit *hit, const bsdf *
                           sampler_1d(&path->random), &next);
     spectrum flux = scattered ? path->at.throughput * next.weight : (spectrum){0};
     if (path->out && !spectrum_is_finite(flux))
-        path->out->of.n_not_finite++;
+        path->out->n_not_finite++;
     float survival = photon_path_survival(path, flux);
     if (path->task->how->photon_survivors)
         survival = 1.0f; /* it had its roulette where it landed */

@@ -13,7 +13,7 @@ static bool come_to_scatterer(photon_path *path, surface_hit *hit, bsdf *b)
     uint64_t untold = 0;
     const scene_traveller who = {.scene = task->scene,
                                  .w = &task->w,
-                                 .n_rays = path->out ? &path->out->of.n_rays : &untold,
+                                 .n_rays = path->out ? &path->out->n_rays : &untold,
                                  .path = path,
                                  .cross_medium = photon_path_cross_medium};
     scene_event event = scene_advance(&who, &path->at, hit);
@@ -64,7 +64,7 @@ void photon_tell(const trace_task *task, uint64_t index, photon_listener tell_ev
 typedef struct trace_loop {
     const trace_task *task;
     uint64_t first;     /* index of the first to emit */
-    trace_result empty; /* what each chunk starts from */
+    trace_result empty; /* stores of the sort that is wanted */
     trace_chunk *chunks;
 } trace_loop;
 
@@ -73,7 +73,8 @@ static void trace_some(size_t begin, size_t end, unsigned thread, void *data)
     (void)thread;
     trace_loop *loop = data;
     trace_chunk *out = &loop->chunks[begin / RAYS_AT_ONCE];
-    out->of = loop->empty;
+    out->photons.empty = loop->empty.photons;
+    out->in_media.empty = loop->empty.in_media;
     const cancel_flag *cancel = loop->task->cancel;
     sampler_ahead ahead;
     for (size_t i = begin; i < end && !out->error && !cancelled(cancel); i++) {

@@ -1,16 +1,39 @@
 #include "photon/trace/trace_chunk.h"
 
-void trace_chunk_put(trace_chunk *chunk, photon_store *store, const photon *p)
+enum { BLOCK = 256 }; /* size: photons; half of it a chunk is not filled */
+
+/* @return NULL: memory was refused */
+static photon_store *open_block(photon_blocks *of, GError **error)
+{
+    photon_store block = of->empty;
+    if (!photon_store_reserve(&block, BLOCK, error))
+        return NULL;
+    of->all = g_renew(photon_store, of->all, of->n_blocks + 1);
+    of->all[of->n_blocks] = block;
+    return &of->all[of->n_blocks++];
+}
+
+void trace_chunk_put(trace_chunk *chunk, photon_blocks *to, const photon *p)
 {
     if (!spectrum_is_finite(p->flux)) {
-        chunk->of.n_not_finite++;
+        chunk->n_not_finite++;
         return;
     }
-    size_t more = MAX(2 * store->capacity, RAYS_AT_ONCE);
-    if (chunk->error || (store->n == store->capacity &&
-                         !photon_store_reserve(store, more, &chunk->error)))
+    photon_store *last = to->n_blocks > 0 ? &to->all[to->n_blocks - 1] : NULL;
+    if (!chunk->error && (!last || last->n == last->capacity))
+        last = open_block(to, &chunk->error);
+    if (chunk->error)
         return;
-    photon_store_put(store, p);
+    photon_store_put(last, p);
+    to->n++;
+}
+
+static void clear_blocks(photon_blocks *of)
+{
+    for (size_t i = 0; i < of->n_blocks; i++)
+        photon_store_clear(&of->all[i]);
+    g_free(of->all);
+    *of = (photon_blocks){0};
 }
 
 typedef struct join_loop {
@@ -18,16 +41,27 @@ typedef struct join_loop {
     trace_chunk *chunks;
 } join_loop;
 
-/* Copies a chunk to its place and frees it. */
+/* Copies blocks to their place and frees them. */
+static void move_blocks(photon_store *to, photon_blocks *from)
+{
+    size_t at = from->offset;
+    for (size_t i = 0; i < from->n_blocks; at += from->all[i++].n)
+        photon_store_copy(to, at, &from->all[i]);
+    clear_blocks(from);
+}
+
 static void join_chunk(size_t i, size_t end, unsigned thread, void *data)
 {
     (void)end, (void)thread;
     join_loop *loop = data;
-    trace_chunk *chunk = &loop->chunks[i];
-    photon_store_copy(&loop->result->photons, chunk->offset, &chunk->of.photons);
-    photon_store_copy(&loop->result->in_media, chunk->offset_in_media,
-                      &chunk->of.in_media);
-    trace_result_clear(&chunk->of);
+    move_blocks(&loop->result->photons, &loop->chunks[i].photons);
+    move_blocks(&loop->result->in_media, &loop->chunks[i].in_media);
+}
+
+static void give_place(photon_blocks *blocks, size_t *total)
+{
+    blocks->offset = *total;
+    *total += blocks->n;
 }
 
 /* Gives each chunk its place in the whole. @return false if one failed. */
@@ -40,12 +74,10 @@ static bool add_up(trace_chunk *chunks, size_t n, trace_result *result, GError *
             g_propagate_error(error, g_steal_pointer(&chunk->error));
             return false;
         }
-        chunk->offset = total;
-        chunk->offset_in_media = in_media;
-        total += chunk->of.photons.n;
-        in_media += chunk->of.in_media.n;
-        result->n_rays += chunk->of.n_rays;
-        result->n_not_finite += chunk->of.n_not_finite;
+        give_place(&chunk->photons, &total);
+        give_place(&chunk->in_media, &in_media);
+        result->n_rays += chunk->n_rays;
+        result->n_not_finite += chunk->n_not_finite;
     }
     if (!photon_store_reserve(&result->photons, total, error) ||
         !photon_store_reserve(&result->in_media, in_media, error))
@@ -67,7 +99,8 @@ bool trace_chunks_join(trace_chunk *chunks, size_t n, workers by, trace_result *
 void trace_chunks_clear(trace_chunk *chunks, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
-        trace_result_clear(&chunks[i].of);
+        clear_blocks(&chunks[i].photons);
+        clear_blocks(&chunks[i].in_media);
         g_clear_error(&chunks[i].error);
     }
 }

@@ -82,7 +82,7 @@ static void irradiance_chunk(size_t begin, size_t end, unsigned thread, void *da
         const map_place place = {loop->pass, loop->slice, p.p, p.n};
         loop->out->irradiance[at] = irradiance_at(&place, &scratch, groups);
     }
-    if (scratch.failed || !ready)
+    if (estimate_scratch_refused(&scratch) || !ready)
         atomic_store(&loop->failed, true);
     estimate_scratch_clear(&scratch);
 }
