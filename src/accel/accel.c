@@ -6,8 +6,10 @@
  *
  * Embree takes 1 / x for at most 10¹⁸, so that it misses triangles of less than
  * 10⁻¹⁸ m², and no coordinate beyond. Objects or a world that are very small or large go
- * to it in units of their own, powers of two of a metre, which change no digit.
+ * to it in units of their own, powers of two of a metre, which change no digit. Rays that
+ * come from afar are asked in parts: see accel_core.h.
  */
+#include "accel/accel_core.h"
 #include "accel/embree_device.h"
 #include "base/memory.h"
 #include "base/wanted.h"
@@ -22,6 +24,8 @@ typedef struct accel_group {
     unsigned n;
     box3 bounds;     /* m */
     float per_metre; /* Embree's units: a power of two */
+    box3 core;       /* of an object, m; empty: it has none */
+    bool core_is_known;
 } accel_group;
 
 /* Extents that are given to Embree in metres, and what others become, in its units. */
@@ -29,10 +33,14 @@ typedef struct accel_group {
 #define LARGEST_IN_METRES 1e6f
 enum { USUAL_EXTENT = 10 }; /* log2 */
 
+/* Of a ray from afar: each begins 2¹⁹ times nearer than the one before. */
+enum { MOST_PARTS = 3 };
+
 struct accel {
     embree_device embree;
     given_shape *shapes; /* as they were given; the shapes are borrowed */
     accel_group world, *objects;
+    accel_core core; /* of the world */
     size_t n_objects, n_instances;
     size_t reserved; /* bytes of what Embree does not tell of */
     placed *instances;
@@ -164,6 +172,40 @@ static void open_world(accel *a, const accel_input *in)
     group_open(a, &a->world);
 }
 
+/* Looked for where an object reaches far. */
+static box3 object_core(accel *a, accel_group *object)
+{
+    core_search search = core_search_begin(object->bounds);
+    for (unsigned i = 0; i < object->n && !object->core_is_known; i++)
+        core_search_add_shape(&search, a->shapes[object->shapes[i]].shape);
+    if (!object->core_is_known)
+        object->core = core_search_end(&search);
+    object->core_is_known = true;
+    return object->core;
+}
+
+static void add_instance(accel *a, const placed *p, core_search *search)
+{
+    box3 all = motion_bounds(&p->is->to_world, p->bounds, a->shutter[0], a->shutter[1]);
+    if (max_component3(all.high - all.low) > search->most) {
+        box3 core = object_core(a, &a->objects[p->is->object]);
+        if (!box3_is_empty(core))
+            all = motion_bounds(&p->is->to_world, core, a->shutter[0], a->shutter[1]);
+    }
+    core_search_add(search, all);
+}
+
+static void find_core(accel *a)
+{
+    core_search search = core_search_begin(a->world.bounds);
+    for (unsigned i = 0; i < a->world.n; i++)
+        core_search_add_shape(&search, a->shapes[a->world.shapes[i]].shape);
+    for (size_t i = 0; i < a->n_instances && !core_search_is_over(&search); i++)
+        if (!box3_is_empty(a->instances[i].bounds))
+            add_instance(a, &a->instances[i], &search);
+    a->core = accel_core_make(core_search_end(&search));
+}
+
 static void build(accel *a, const accel_input *in)
 {
     sort_shapes(a, in);
@@ -172,6 +214,7 @@ static void build(accel *a, const accel_input *in)
     if (!still_wanted(NULL))
         return;
     open_world(a, in);
+    find_core(a);
     attach_shapes(a, &a->world);
     for (size_t i = 0; i < in->n_instances && still_wanted(NULL); i++) {
         placed *p = &a->instances[i];
@@ -279,19 +322,77 @@ static void name_hit(const accel *a, const struct RTCHit *found, surface_hit *hi
     hit->shape = (int)group->shapes[found->geomID];
 }
 
+/* The nearest hit, in Embree's words. */
+static bool ask_nearest(const accel *a, const ray *r, unsigned flags,
+                        struct RTCRayHit *query)
+{
+    *query = (struct RTCRayHit){.ray = embree_ray(r, a->world.per_metre)};
+    if (!embree_takes(&query->ray, WORLD_REACH))
+        return false;
+    query->ray.flags = flags;
+    query->hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    embree_nearest(a->world.scene, query);
+    return query->hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+static bool ask_any(const accel *a, const ray *r)
+{
+    struct RTCRay query = embree_ray(r, a->world.per_metre);
+    if (!embree_takes(&query, WORLD_REACH))
+        return false;
+    embree_any(a->world.scene, &query);
+    return query.tfar < 0.0f;
+}
+
+/* Cuts off the part of the ray that comes first, if the ray comes from afar. */
+static bool next_part(const accel *a, ray *rest, ray *part)
+{
+    float ahead = accel_core_ahead(&a->core, rest);
+    if (!(ahead > 0.0f))
+        return false;
+    *part = *rest;
+    part->t_max = ahead;
+    for (int i = 0; i < 3; i++)
+        rest->origin[i] =
+            (float)((double)rest->origin[i] + (double)ahead * (double)rest->direction[i]);
+    rest->t_max -= ahead;
+    return true;
+}
+
+/* What is asked for part by part begins at *begin, along the ray. */
+static bool ask_nearest_in_parts(const accel *a, const ray *r, unsigned flags,
+                                 struct RTCRayHit *query, float *begin)
+{
+    ray part, rest = *r;
+    for (int i = 0; i < MOST_PARTS && next_part(a, &rest, &part); i++) {
+        if (ask_nearest(a, &part, flags, query))
+            return true;
+        *begin += part.t_max;
+    }
+    return ask_nearest(a, &rest, flags, query);
+}
+
+static bool ask_any_in_parts(const accel *a, const ray *r)
+{
+    ray part, rest = *r;
+    for (int i = 0; i < MOST_PARTS && next_part(a, &rest, &part); i++)
+        if (ask_any(a, &part))
+            return true;
+    return ask_any(a, &rest);
+}
+
 static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit *hit)
 {
-    struct RTCRayHit query = {.ray = embree_ray(r, a->world.per_metre)};
-    if (!embree_takes(&query.ray, WORLD_REACH))
-        return false;
-    query.ray.flags = flags;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    embree_nearest(a->world.scene, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    struct RTCRayHit query;
+    float begin = 0.0f;
+    bool met = accel_core_exists(&a->core)
+                   ? ask_nearest_in_parts(a, r, flags, &query, &begin)
+                   : ask_nearest(a, r, flags, &query);
+    if (!met)
         return false;
     name_hit(a, &query.hit, hit);
-    hit->t = query.ray.tfar / a->world.per_metre;
+    hit->t = begin + query.ray.tfar / a->world.per_metre;
     hit->time = r->time;
     hit->primitive = query.hit.primID;
     hit->corners = (vec2){query.hit.u, query.hit.v};
@@ -311,11 +412,7 @@ bool accel_intersect_solid(const accel *a, const ray *r, surface_hit *hit)
 
 bool accel_occluded(const accel *a, const ray *r)
 {
-    struct RTCRay query = embree_ray(r, a->world.per_metre);
-    if (!embree_takes(&query, WORLD_REACH))
-        return false;
-    embree_any(a->world.scene, &query);
-    return query.tfar < 0.0f;
+    return accel_core_exists(&a->core) ? ask_any_in_parts(a, r) : ask_any(a, r);
 }
 
 transform accel_instance_at(const accel *a, int i, float time)
