@@ -214,8 +214,7 @@ static void test_each_setting(void)
                                             GTK_ACCESSIBLE_PROPERTY_DESCRIPTION,
                                             rows[i].doc);
     }
-    view_wait(view_is_rendering, w);
-    view_wait(view_is_done, w);
+    view_wait_for_other(w);
     g_autoptr(NephSettings) rendered = session_rendered_settings(w->session);
     for (size_t i = 0; i < n; i++) {
         g_autofree char *value = other_value(&rows[i]);
@@ -352,7 +351,7 @@ static void test_checkpoint(void)
     neph_settings_set(other, "seed", "77", NULL);
     settings_panel_show(w->settings, other, w->of_scene);
     session_set_settings(w->session, other);
-    view_wait(view_is_rendering, w);
+    view_wait_for_other(w);
     gtk_widget_activate_action(gtk, "win.resume-from", "s", kept);
     view_wait_for_word(w, "Going on from the checkpoint");
     view_wait(view_is_done, w);

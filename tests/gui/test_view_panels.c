@@ -210,7 +210,7 @@ static void test_focus(void)
     window *w = open_scene("focus.pbrt");
     g_assert_true(window_focus_at(w, (const double[]){0.5, 0.5}));
     g_assert_cmpfloat_with_epsilon(w->view.camera.focal_distance, 1.6, 1e-4);
-    view_wait(view_is_done, w);
+    view_wait_for_other(w);
     view_close(w);
 }
 
@@ -221,8 +221,7 @@ static void test_field_of_view(void)
         find_widget(camera_panel_widget(w->camera_panel), "field-of-view");
     gtk_range_set_value(GTK_RANGE(slider), 30.0);
     g_assert_cmpfloat_with_epsilon(w->view.camera.fov, 30.0, 1e-9);
-    view_wait(view_is_rendering, w);
-    view_wait(view_is_done, w);
+    view_wait_for_other(w);
     view_activate(w, "win.reset-view");
     g_assert_cmpfloat_with_epsilon(w->view.camera.fov, 50.0, 1e-4);
     view_activate(w, "win.frame-view");
@@ -263,8 +262,7 @@ static double mean_seen_from(window *w, double z)
     NephCamera camera = w->view.camera;
     camera.position[2] = z;
     window_camera_changed(&camera, w);
-    view_wait(view_is_rendering, w);
-    view_wait(view_is_done, w);
+    view_wait_for_other(w);
     return mean_of_picture(w);
 }
 
@@ -306,6 +304,11 @@ static void test_save_view(void)
     view_close(w);
 }
 
+static bool has_scene(window *w)
+{
+    return w->scene != NULL;
+}
+
 /* A scene of another format is kept as pbrt with the view, and goes on as that. */
 static void test_save_view_of_obj(void)
 {
@@ -313,7 +316,7 @@ static void test_save_view_of_obj(void)
     g_autofree char *kept = g_build_filename(view_folder(), "tri.pbrt", NULL);
     window *w = view_window();
     window_open(w, path);
-    view_wait(view_is_rendering, w);
+    view_wait(has_scene, w);
     view_activate(w, "win.stop");
     NephCamera camera = w->view.camera;
     neph_camera_set_fov(&camera, 21.0);
@@ -374,9 +377,15 @@ static void test_compare(void)
     view_close(w);
 }
 
+static bool has_its_place(window *w)
+{
+    return gtk_widget_get_width(canvas_widget(w->canvas)) > 0;
+}
+
 static void test_zoom(void)
 {
     window *w = open_scene("zoom.pbrt");
+    view_wait(has_its_place, w);
     view_activate(w, "win.zoom-one");
     g_assert_cmpfloat_with_epsilon(canvas_zoom(w->canvas), 1.0, 1e-9);
     view_activate(w, "win.zoom-in");

@@ -158,6 +158,21 @@ bool view_is_rendering(window *w)
     return w->scene && w->state == SESSION_RENDERING;
 }
 
+static held_picture *shown_before;
+
+static bool is_other(window *w)
+{
+    return view_is_done(w) && canvas_picture(w->canvas) != shown_before;
+}
+
+void view_wait_for_other(window *w)
+{
+    held_picture *now = canvas_picture(w->canvas);
+    shown_before = now ? held_picture_ref(now) : NULL;
+    view_wait(is_other, w);
+    g_clear_pointer(&shown_before, held_picture_unref);
+}
+
 void view_activate(window *w, const char *action)
 {
     g_assert_true(gtk_widget_activate_action(GTK_WIDGET(window_gtk(w)), action, NULL));

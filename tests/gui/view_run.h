@@ -26,6 +26,10 @@ void view_close(window *w);
 void view_wait(bool (*done)(window *w), window *w);
 bool view_is_done(window *w);      /**< the render is over */
 bool view_is_rendering(window *w); /**< a scene is there and being rendered */
+/** @brief Waits until what was just asked for is rendered: the render is over, and its
+ * picture another than is shown now. A state on the way there may be over before the
+ * window is told of it. */
+void view_wait_for_other(window *w);
 void view_activate(window *w, const char *action);
 /** @brief What the window says in passing, as last said. Borrowed. */
 const char *view_said(window *w);
