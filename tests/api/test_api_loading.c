@@ -4,13 +4,12 @@
  * it is whole. So can keeping a render in a file, and going on from there.
  */
 #include "api_scene.h"
+#include "asked_end.h"
 #include "folder.h"
 #include "sanitizers.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <string.h>
-#include <time.h>
 
 /* Within this it ends, s; where each access to memory is watched, ten times that: there
    large arrays are set to zero byte by byte. */
@@ -18,50 +17,21 @@ static const double soon = MEMORY_IS_WATCHED ? 1.0 : 0.1;
 
 enum { TRIES = 4, MOMENTS = 6 };
 
-typedef struct patience {
-    gint64 after, asked; /* µs; monotonic µs */
-    double cpu;          /* s of the process, when it was asked */
-    atomic_bool is_over;
-} patience;
-
-static double cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static gpointer end_later(gpointer data)
-{
-    patience *p = data;
-    g_usleep((gulong)p->after);
-    p->asked = g_get_monotonic_time();
-    p->cpu = cpu_seconds();
-    atomic_store(&p->is_over, true);
-    return NULL;
-}
-
-static bool go_on(void *data)
-{
-    return !atomic_load(&((patience *)data)->is_over);
-}
-
 /* s from the asking to the end; 0: it was loaded before. */
 static double stop_after(const char *path, gint64 after)
 {
     g_autoptr(GError) error = NULL;
-    patience p = {.after = after};
-    const NephLoadOptions how = {.threads = 1, .go_on = go_on, .go_on_data = &p};
-    GThread *thread = g_thread_new("stop", end_later, &p);
+    asked_end end = {.after = after};
+    const NephLoadOptions how = {
+        .threads = 1, .go_on = asked_end_go_on, .go_on_data = &end};
+    asked_end_begin(&end);
     NephScene *scene = neph_scene_load_with(path, &how, &error);
-    gint64 end = g_get_monotonic_time();
-    double cpu = cpu_seconds();
-    g_thread_join(thread);
+    double took = asked_end_took(&end);
     neph_scene_free(scene);
     if (scene)
         return 0.0;
     g_assert_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
-    return fmin(1e-6 * (double)(end - p.asked), cpu - p.cpu);
+    return took;
 }
 
 /* s that it takes whole. */
@@ -302,16 +272,14 @@ static double stop_keeping(NephRender *render, keeping keep, const char *path,
                            gint64 after)
 {
     g_autoptr(GError) error = NULL;
-    patience p = {.after = after};
-    GThread *thread = g_thread_new("stop", end_later, &p);
-    bool done = keep(render, path, go_on, &p, &error);
-    gint64 end = g_get_monotonic_time();
-    double cpu = cpu_seconds();
-    g_thread_join(thread);
+    asked_end end = {.after = after};
+    asked_end_begin(&end);
+    bool done = keep(render, path, asked_end_go_on, &end, &error);
+    double took = asked_end_took(&end);
     if (done)
         return 0.0;
     g_assert_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_CANCELLED);
-    return fmin(1e-6 * (double)(end - p.asked), cpu - p.cpu);
+    return took;
 }
 
 /* @param took µs, whole; the last of the moments is that it was never wanted */

@@ -2,6 +2,7 @@
  * The hand-over between window and worker, without a window: orders from the main thread
  * at any moment, news on its main loop. Meant for the thread sanitizer too.
  */
+#include "cpu_time.h"
 #include "session/session.h"
 
 #include <glib/gstdio.h>
@@ -151,13 +152,6 @@ static void test_endless_import(void)
     g_unsetenv("NEPHROID_IMPORTER");
     g_unlink(importer);
     g_unlink(model);
-}
-
-static double cpu_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 static void write_large(const char *path)
