@@ -21,7 +21,6 @@
 #include "shape/shape_kinds.h"
 
 #include <glib.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_LEVELS = 12, NO_CORNER = -1 };
@@ -60,34 +59,72 @@ static size_t previous_corner(size_t corner)
 
 /* ---- Who is beside whom ---- */
 
-typedef struct half_edge {
-    uint32_t low, high;
-    size_t corner;
-} half_edge;
-
-static int by_ends(const void *a, const void *b)
+/* One end of a corner's edge. */
+static uint32_t low_end(const control *c, size_t corner)
 {
-    const half_edge *x = a, *y = b;
-    if (x->low != y->low)
-        return x->low < y->low ? -1 : 1;
-    if (x->high != y->high)
-        return x->high < y->high ? -1 : 1;
-    return x->corner < y->corner ? -1 : x->corner > y->corner;
+    return MIN(c->vertex[corner], c->vertex[next_corner(corner)]);
 }
 
-/* Edges sorted by their ends stand beside one another; false if more than two do, or two
-   that run the same way. */
-static bool pair_edges(control *c, half_edge *edges)
+static uint32_t high_end(const control *c, size_t corner)
+{
+    return MAX(c->vertex[corner], c->vertex[next_corner(corner)]);
+}
+
+typedef uint32_t (*edge_end)(const control *c, size_t corner);
+
+/* Puts corners in the order of that end, equal ones as they come.
+   @param from NULL: as they are numbered @param place n_vertices + 1, for the counting */
+static bool sort_corners(const control *c, edge_end end, const uint32_t *from,
+                         uint32_t *to, uint32_t *place, GError **error)
+{
+    size_t n = 3 * c->n_faces;
+    memset(place, 0, (c->n_vertices + 1) * sizeof *place);
+    for (size_t i = 0; i < n && still_wanted_at(i, NULL); i++)
+        place[end(c, from ? from[i] : i) + 1]++;
+    for (size_t i = 0; i < c->n_vertices && still_wanted_at(i, NULL); i++)
+        place[i + 1] += place[i];
+    if (!still_wanted(error))
+        return false;
+    for (size_t i = 0; i < n && still_wanted_at(i, NULL); i++) {
+        uint32_t corner = from ? from[i] : (uint32_t)i;
+        to[place[end(c, corner)]++] = corner;
+    }
+    return still_wanted(error);
+}
+
+/* By low ends, equal ones by high ends, equal ones as they are numbered.
+   @return owned (big_free); NULL: memory, or not wanted */
+static uint32_t *sort_by_ends(const control *c, GError **error)
+{
+    size_t n = 3 * c->n_faces;
+    uint32_t *place = big_alloc(c->n_vertices + 1, sizeof *place, "edges", error);
+    uint32_t *by_high = place ? big_alloc(n, sizeof *by_high, "edges", error) : NULL;
+    uint32_t *sorted = by_high ? big_alloc(n, sizeof *sorted, "edges", error) : NULL;
+    if (sorted && !(sort_corners(c, high_end, NULL, by_high, place, error) &&
+                    sort_corners(c, low_end, by_high, sorted, place, error)))
+        g_clear_pointer(&sorted, big_free);
+    big_free(by_high);
+    big_free(place);
+    return sorted;
+}
+
+static bool same_ends(const control *c, size_t a, size_t b)
+{
+    return low_end(c, a) == low_end(c, b) && high_end(c, a) == high_end(c, b);
+}
+
+/* Corners sorted by the ends of their edges stand beside one another; false if more than
+   two do, or two that run the same way. */
+static bool pair_edges(control *c, const uint32_t *sorted)
 {
     size_t n = 3 * c->n_faces;
     c->n_edges = 0;
-    for (size_t i = 0; i < n; i++) {
-        size_t corner = edges[i].corner;
-        bool again = i > 0 && edges[i].low == edges[i - 1].low &&
-                     edges[i].high == edges[i - 1].high;
+    for (size_t i = 0; i < n && still_wanted_at(i, NULL); i++) {
+        size_t corner = sorted[i];
+        bool again = i > 0 && same_ends(c, corner, sorted[i - 1]);
         c->across[corner] = NO_CORNER;
         if (again) {
-            size_t other = edges[i - 1].corner;
+            size_t other = sorted[i - 1];
             if (c->across[other] != NO_CORNER || c->vertex[other] == c->vertex[corner])
                 return false;
             c->across[corner] = (int64_t)other;
@@ -100,30 +137,36 @@ static bool pair_edges(control *c, half_edge *edges)
     return true;
 }
 
+static bool pair_all(control *c, const uint32_t *sorted, source_place place,
+                     GError **error)
+{
+    if (pair_edges(c, sorted))
+        return still_wanted(error);
+    error_at(error, place,
+             "a subdivision surface needs edges of at most two triangles, which run "
+             "through them in opposite ways");
+    return false;
+}
+
+static void find_corners(control *c)
+{
+    memset(c->corner, 0xff, c->n_vertices * sizeof *c->corner);
+    for (size_t i = 0; i < 3 * c->n_faces && still_wanted_at(i, NULL); i++)
+        c->corner[c->vertex[i]] = i;
+}
+
 static bool connect(control *c, source_place place, GError **error)
 {
     size_t n = 3 * c->n_faces;
-    half_edge *edges = big_alloc(n, sizeof *edges, "edges", error);
-    c->across = edges ? big_alloc(n, sizeof *c->across, "edges", error) : NULL;
+    uint32_t *sorted = sort_by_ends(c, error);
+    c->across = sorted ? big_alloc(n, sizeof *c->across, "edges", error) : NULL;
     c->edge = c->across ? big_alloc(n, sizeof *c->edge, "edges", error) : NULL;
     c->corner =
         c->edge ? big_alloc(c->n_vertices, sizeof *c->corner, "edges", error) : NULL;
-    bool done = c->corner != NULL;
-    if (done) {
-        memset(c->corner, 0xff, c->n_vertices * sizeof *c->corner);
-        for (size_t i = 0; i < n; i++) {
-            uint32_t a = c->vertex[i], b = c->vertex[next_corner(i)];
-            edges[i] = (half_edge){MIN(a, b), MAX(a, b), i};
-            c->corner[a] = i;
-        }
-        qsort(edges, n, sizeof *edges, by_ends);
-        done = pair_edges(c, edges);
-        if (!done)
-            error_at(error, place,
-                     "a subdivision surface needs edges of at most two triangles, which "
-                     "run through them in opposite ways");
-    }
-    big_free(edges);
+    if (c->corner)
+        find_corners(c);
+    bool done = c->corner && pair_all(c, sorted, place, error);
+    big_free(sorted);
     return done;
 }
 
@@ -193,7 +236,7 @@ static dvec3 weighed(const control *c, size_t vertex, const ring *r, double on_r
 static void place_old(const control *c, dvec3 *to)
 {
     ring r = {.vertices = g_array_new(FALSE, FALSE, sizeof(uint32_t))};
-    for (size_t i = 0; i < c->n_vertices; i++) {
+    for (size_t i = 0; i < c->n_vertices && still_wanted_at(i, NULL); i++) {
         to[i] = c->points[i];
         if (c->corner[i] == SIZE_MAX)
             continue;
@@ -215,7 +258,7 @@ static dvec3 edge_point(const control *c, size_t corner)
 
 static void refine_faces(const control *c, control *out)
 {
-    for (size_t f = 0; f < c->n_faces; f++) {
+    for (size_t f = 0; f < c->n_faces && still_wanted_at(f, NULL); f++) {
         uint32_t old[3], new[3];
         for (size_t i = 0; i < 3; i++) {
             old[i] = c->vertex[3 * f + i];
@@ -239,7 +282,7 @@ static bool refine(control *c, source_place place, GError **error)
     if (done) {
         place_old(c, out.points);
         refine_faces(c, &out);
-        done = connect(&out, place, error);
+        done = still_wanted(error) && connect(&out, place, error);
     }
     if (!done)
         control_clear(&out);
@@ -291,7 +334,7 @@ static void store3(float *to, size_t i, dvec3 v)
 static void put_on_limit(const control *c, mesh *out)
 {
     ring r = {.vertices = g_array_new(FALSE, FALSE, sizeof(uint32_t))};
-    for (size_t i = 0; i < c->n_vertices; i++) {
+    for (size_t i = 0; i < c->n_vertices && still_wanted_at(i, NULL); i++) {
         store3(out->positions, i, c->points[i]);
         if (c->corner[i] == SIZE_MAX)
             continue;
@@ -320,7 +363,7 @@ static bool make_mesh(control *c, mesh *out, GError **error)
     out->indices = c->vertex;
     put_on_limit(c, out);
     c->vertex = NULL;
-    return true;
+    return still_wanted(error);
 }
 
 /* ---- From a scene file ---- */
@@ -342,7 +385,7 @@ static bool read_control(const params *p, control *c, int *levels, GError **erro
     }
     c->points =
         done ? big_alloc(c->n_vertices, sizeof *c->points, "vertices", error) : NULL;
-    for (size_t i = 0; c->points && i < c->n_vertices; i++)
+    for (size_t i = 0; c->points && i < c->n_vertices && still_wanted_at(i, NULL); i++)
         c->points[i] = dvec3_from_float(
             vec3_make(points[3 * i], points[3 * i + 1], points[3 * i + 2]));
     big_free(points);
@@ -369,9 +412,10 @@ static void *create(const params *p, const shape_place *at, GError **error)
     mesh m = {0};
     int levels = 3;
     bool done = read_control(p, &c, &levels, error) &&
-                check_levels(p, &c, levels, error) && connect(&c, p->place, error);
+                check_levels(p, &c, levels, error) && still_wanted(error) &&
+                connect(&c, p->place, error);
     for (int i = 0; i < levels && done; i++)
-        done = still_wanted(error) && refine(&c, p->place, error);
+        done = refine(&c, p->place, error);
     done = done && make_mesh(&c, &m, error);
     control_clear(&c);
     if (done)

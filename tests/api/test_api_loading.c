@@ -218,7 +218,7 @@ static void write_subdivision(void)
 {
     GString *text = begin_scene();
     g_string_append(text,
-                    "Shape \"loopsubdiv\" \"integer levels\" 8 \"point3 P\" [0 0 0  1 0 "
+                    "Shape \"loopsubdiv\" \"integer levels\" 9 \"point3 P\" [0 0 0  1 0 "
                     "0  0 1 0  0 0 1] \"integer indices\" [0 2 1  0 1 3  0 3 2  1 2 "
                     "3]\n");
     write_text("subdivision.pbrt", text);
