@@ -22,6 +22,7 @@ typedef struct accel_group {
     unsigned
         *shapes; /* indices in accel.shapes; their places here are Embree's numbers */
     unsigned n;
+    size_t n_parts;  /* of all of them, that a ray may meet */
     box3 bounds;     /* m */
     float per_metre; /* Embree's units: a power of two */
     box3 core;       /* of an object, m; empty: it has none */
@@ -119,6 +120,7 @@ static void find_bounds(accel *a, accel_group *group)
     group->bounds = box3_empty();
     for (unsigned i = 0; i < group->n; i++) {
         const shape *s = a->shapes[group->shapes[i]].shape;
+        group->n_parts += core_parts_of(s);
         if (!s->is_invisible)
             group->bounds = box3_union(group->bounds, s->kind->bounds(s->self));
     }
@@ -172,14 +174,28 @@ static void open_world(accel *a, const accel_input *in)
     group_open(a, &a->world);
 }
 
+/* ---- Its core ---- */
+
+/* Shapes of the world, or of an object. */
+typedef struct group_walk {
+    accel *of;
+    accel_group *group;
+} group_walk;
+
+static void add_shapes(core_search *search, void *data)
+{
+    const group_walk *walk = data;
+    const accel_group *group = walk->group;
+    for (unsigned i = 0; i < group->n && !core_is_out_of_question(search); i++)
+        core_add_shape(search, walk->of->shapes[group->shapes[i]].shape);
+}
+
 /* Looked for where an object reaches far. */
 static box3 object_core(accel *a, accel_group *object)
 {
-    core_search search = core_search_begin(object->bounds);
-    for (unsigned i = 0; i < object->n && !object->core_is_known; i++)
-        core_search_add_shape(&search, a->shapes[object->shapes[i]].shape);
+    group_walk walk = {a, object};
     if (!object->core_is_known)
-        object->core = core_search_end(&search);
+        object->core = core_find(object->bounds, add_shapes, &walk);
     object->core_is_known = true;
     return object->core;
 }
@@ -192,19 +208,20 @@ static void add_instance(accel *a, const placed *p, core_search *search)
         if (!box3_is_empty(core))
             all = motion_bounds(&p->is->to_world, core, a->shutter[0], a->shutter[1]);
     }
-    core_search_add(search, all);
+    core_add(search, all, a->objects[p->is->object].n_parts);
 }
 
-static void find_core(accel *a)
+static void add_world(core_search *search, void *data)
 {
-    core_search search = core_search_begin(a->world.bounds);
-    for (unsigned i = 0; i < a->world.n; i++)
-        core_search_add_shape(&search, a->shapes[a->world.shapes[i]].shape);
-    for (size_t i = 0; i < a->n_instances && !core_search_is_over(&search); i++)
+    accel *a = data;
+    group_walk walk = {a, &a->world};
+    add_shapes(search, &walk);
+    for (size_t i = 0; i < a->n_instances && !core_is_out_of_question(search); i++)
         if (!box3_is_empty(a->instances[i].bounds))
-            add_instance(a, &a->instances[i], &search);
-    a->core = accel_core_make(core_search_end(&search));
+            add_instance(a, &a->instances[i], search);
 }
+
+/* ---- All of it ---- */
 
 static void build(accel *a, const accel_input *in)
 {
@@ -214,7 +231,7 @@ static void build(accel *a, const accel_input *in)
     if (!still_wanted(NULL))
         return;
     open_world(a, in);
-    find_core(a);
+    a->core = accel_core_make(core_find(a->world.bounds, add_world, a));
     attach_shapes(a, &a->world);
     for (size_t i = 0; i < in->n_instances && still_wanted(NULL); i++) {
         placed *p = &a->instances[i];

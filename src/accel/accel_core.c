@@ -8,31 +8,61 @@
    distance: some 16 steps of floats. */
 #define MARGIN 0x1p-19f
 
-enum { MOST_LARGE = 65536 }; /* a world of more has no core worth the search */
+/* Times that what is added is large or lies apart: a world of more has no core worth the
+   search. */
+enum { MOST_ODD = 65536 };
+/* So many lie in a core for each small one that lies apart, as a lamp may. */
+enum { INSIDE_FOR_OUTSIDE = 16 };
 
 static float size_of(box3 box)
 {
     return max_component3(box.high - box.low);
 }
 
-core_search core_search_begin(box3 bounds)
+bool core_is_out_of_question(const core_search *search)
 {
-    return (core_search){.box = box3_empty(), .most = size_of(bounds) / FAR_IN_CORES};
+    return search->n_odd > MOST_ODD;
 }
 
-bool core_search_is_over(const core_search *search)
+/* Boyer and Moore's vote: what lies apart takes as many votes from the place where most
+   seem to be, and is taken for it where it has more. */
+static void vote_against(core_search *search, box3 box, size_t n)
 {
-    return search->n_large > MOST_LARGE || size_of(search->box) > search->most;
-}
-
-void core_search_add(core_search *search, box3 box)
-{
-    if (box3_is_empty(box))
+    search->n_odd++;
+    search->n_outside += n;
+    if (search->is_found)
         return;
-    if (size_of(box) <= search->most)
-        search->box = box3_union(search->box, box);
-    else
-        search->n_large++;
+    if (search->n_votes < n)
+        search->box = box;
+    search->n_votes = search->n_votes < n ? n - search->n_votes : search->n_votes - n;
+}
+
+void core_add(core_search *search, box3 box, size_t n)
+{
+    const box3 both = box3_union(search->box, box);
+    if (n == 0 || box3_is_empty(box))
+        return;
+    if (!(size_of(box) <= search->most)) {
+        search->n_odd++;
+    } else if (size_of(both) <= search->most) {
+        search->box = both;
+        search->n_inside += n;
+        search->n_votes += n;
+    } else {
+        vote_against(search, box, n);
+    }
+}
+
+box3 core_find(box3 bounds, core_walk walk, void *data)
+{
+    core_search search = {.box = box3_empty(), .most = size_of(bounds) / FAR_IN_CORES};
+    walk(&search, data);
+    if (search.n_outside > 0 && !core_is_out_of_question(&search)) {
+        search = (core_search){.box = search.box, .most = search.most, .is_found = true};
+        walk(&search, data);
+    }
+    bool is_most = search.n_inside >= INSIDE_FOR_OUTSIDE * search.n_outside;
+    return is_most && !core_is_out_of_question(&search) ? search.box : box3_empty();
 }
 
 static box3 triangle_bounds(const mesh *m, size_t i)
@@ -45,30 +75,34 @@ static box3 triangle_bounds(const mesh *m, size_t i)
     return box;
 }
 
-static void add_parts(core_search *search, const shape *s)
+static const mesh *mesh_of(const shape *s)
 {
-    const mesh *m = s->kind->triangles ? s->kind->triangles(s->self) : NULL;
-    size_t n = m ? m->n_triangles : s->kind->n_primitives(s->self);
-    for (size_t i = 0; i < n && !core_search_is_over(search); i++)
-        core_search_add(search, m ? triangle_bounds(m, i)
-                                  : s->kind->primitive_bounds(s->self, (uint32_t)i));
+    return s->kind->triangles ? s->kind->triangles(s->self) : NULL;
 }
 
-void core_search_add_shape(core_search *search, const shape *s)
+size_t core_parts_of(const shape *s)
 {
+    if (s->is_invisible)
+        return 0;
+    if (s->kind->triangles)
+        return mesh_of(s)->n_triangles;
+    return s->kind->n_primitives ? s->kind->n_primitives(s->self) : 1;
+}
+
+void core_add_shape(core_search *search, const shape *s)
+{
+    const mesh *m = mesh_of(s);
     const box3 all = s->kind->bounds(s->self);
-    bool has_parts = s->kind->triangles || s->kind->n_primitives;
-    if (s->is_invisible || core_search_is_over(search))
+    size_t n = core_parts_of(s);
+    if (n == 1 || size_of(all) <= search->most) {
+        core_add(search, all, n);
         return;
-    if (has_parts && size_of(all) > search->most)
-        add_parts(search, s);
-    else
-        core_search_add(search, all);
-}
-
-box3 core_search_end(const core_search *search)
-{
-    return core_search_is_over(search) ? box3_empty() : search->box;
+    }
+    for (size_t i = 0; i < n && !core_is_out_of_question(search); i++)
+        core_add(search,
+                 m ? triangle_bounds(m, i)
+                   : s->kind->primitive_bounds(s->self, (uint32_t)i),
+                 1);
 }
 
 accel_core accel_core_make(box3 box)

@@ -14,29 +14,38 @@
 #include "medium/hit.h"
 #include "shape/shape.h"
 
-/** @brief A box around all but what is far larger than it. */
+/** @brief A box around nearly all but what is far larger than it. */
 typedef struct accel_core {
     vec3 low, high;
     float far; /**< m: rays from further off are asked in parts; INFINITY: none are */
 } accel_core;
 
-/** @brief Looks for the core of what is added to it. */
+/** @brief What is taken for the core while things are gone through. */
 typedef struct core_search {
     box3 box;
-    float most;     /**< m: the largest core that makes a difference */
-    size_t n_large; /**< things that are larger than that */
+    float most;                 /**< m: the largest core that matters */
+    size_t n_odd;               /**< times that what was added did not join it */
+    size_t n_inside, n_outside; /**< parts; those outside are small too */
+    size_t n_votes;             /**< of the parts inside, that others have not outvoted */
+    bool is_found;              /**< parts join the core, but do not move it */
 } core_search;
 
-/** @param bounds of all that will be added, or more */
-core_search core_search_begin(box3 bounds);
-/** @brief Adds what has this box; an empty one adds nothing. */
-void core_search_add(core_search *search, box3 box);
+/** @brief Adds all that there is. */
+typedef void (*core_walk)(core_search *search, void *data);
+
+/** @brief Looks for a core where most of what is small lies, walking twice at most.
+ * @param bounds of all that is added, or more
+ * @return empty if there is none: little is small, or it is spread over the world */
+box3 core_find(box3 bounds, core_walk walk, void *data);
+
+/** @brief Adds what is of n parts and has this box; an empty one adds nothing. */
+void core_add(core_search *search, box3 box, size_t n);
+/** @brief Of how many parts a shape is: 0 if no ray meets it. */
+size_t core_parts_of(const shape *s);
 /** @brief Adds the parts of a shape, no more of them than it takes to know. */
-void core_search_add_shape(core_search *search, const shape *s);
+void core_add_shape(core_search *search, const shape *s);
 /** @brief True if what else is added changes nothing. */
-bool core_search_is_over(const core_search *search);
-/** @brief Empty if there is no core: little is small, or it is spread over the world. */
-box3 core_search_end(const core_search *search);
+bool core_is_out_of_question(const core_search *search);
 
 accel_core accel_core_make(box3 box);
 

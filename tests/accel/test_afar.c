@@ -51,6 +51,16 @@ static void add_stray(mesh *m)
     add_triangle(m, first, first + 1, first + 2);
 }
 
+/* All that is down there. */
+static void add_speck(mesh *m)
+{
+    uint32_t first = (uint32_t)m->n_vertices;
+    add_vertex(m, 0.0, 0.0, -REACH);
+    add_vertex(m, 2.0, 0.0, -REACH);
+    add_vertex(m, 0.0, 2.0, -REACH);
+    add_triangle(m, first, first + 1, first + 2);
+}
+
 static void add_cloud(mesh *m)
 {
     const double half = 1e6, height = 1000.0;
@@ -201,6 +211,12 @@ static void test_a_vertex(void)
     compare(&w);
 }
 
+static void test_a_speck(void)
+{
+    world w = world_of(add_speck, add_sheet);
+    compare(&w);
+}
+
 static void test_an_object(void)
 {
     world w = {.shapes = {shape_of(add_sheet, add_stray, 0)}, .n_shapes = 1};
@@ -234,6 +250,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/afar/another-shape", test_another_shape);
     g_test_add_func("/afar/a-vertex", test_a_vertex);
+    g_test_add_func("/afar/a-speck", test_a_speck);
     g_test_add_func("/afar/an-object", test_an_object);
     g_test_add_func("/afar/before", test_before);
     return g_test_run();
