@@ -72,8 +72,7 @@ class Bench:
         """Seconds of processor and of the clock."""
         start = time.monotonic()
         child = subprocess.Popen([str(word) for word in command],
-                                 stdout=subprocess.DEVNULL, cwd=self.folder,
-                                 env=os.environ | {"OMP_WAIT_POLICY": "passive"})
+                                 stdout=subprocess.DEVNULL, cwd=self.folder)
         _, status, used = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)
         if child.returncode:

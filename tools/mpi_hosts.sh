@@ -45,7 +45,7 @@ shift
 exec ip netns exec neph$$-\$number unshare --uts sh -c "hostname host\$number; \$*"
 TEXT
 chmod +x "$work/rsh"
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_WAIT_POLICY=passive
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_mpi_yield_when_idle=1
 
 # job N PASSES FILE: by one rank on each of N hosts; the root is on the first of them

@@ -103,6 +103,63 @@ static void test_parallel_visits_each_once(void)
     }
 }
 
+/* Loops in a loop are whole, on the thread that asks for them. */
+static void loop_within(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)end, (void)thread;
+    unsigned char(*visits)[64] = data;
+    g_assert_true(parallel_for(64, 4, 4, NULL, count_visits, visits[begin]));
+}
+
+static void test_parallel_within_another(void)
+{
+    unsigned char visits[32][64] = {0};
+    g_assert_true(parallel_for(32, 1, 4, NULL, loop_within, visits));
+    for (size_t i = 0; i < sizeof visits; i++)
+        g_assert_cmpuint(visits[i / 64][i % 64], ==, 1);
+}
+
+enum { AT_ONCE = 4 };
+
+/* Chunks of a loop that go on until all of them have begun: each on a thread of its own.
+ */
+typedef struct meeting {
+    atomic_uint n_there, seen;
+} meeting;
+
+static void meet(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)begin, (void)end;
+    meeting *m = data;
+    gint64 limit = g_get_monotonic_time() + 20 * G_USEC_PER_SEC;
+    atomic_fetch_or(&m->seen, 1u << thread);
+    atomic_fetch_add(&m->n_there, 1);
+    while (atomic_load(&m->n_there) < AT_ONCE && g_get_monotonic_time() < limit)
+        g_usleep(100);
+}
+
+static gpointer hold_meeting(gpointer data)
+{
+    parallel_for(AT_ONCE, 1, AT_ONCE, NULL, meet, data);
+    return NULL;
+}
+
+/* Two loops at the same time have all their threads both, numbered from 0. */
+static void test_parallel_two_at_once(void)
+{
+    meeting m[2] = {0};
+    for (int round = 0; round < 20; round++) {
+        memset(m, 0, sizeof m);
+        GThread *other = g_thread_new("meeting", hold_meeting, &m[0]);
+        hold_meeting(&m[1]);
+        g_thread_join(other);
+        for (int i = 0; i < 2; i++) {
+            g_assert_cmpuint(m[i].n_there, ==, AT_ONCE);
+            g_assert_cmpuint(m[i].seen, ==, (1u << AT_ONCE) - 1);
+        }
+    }
+}
+
 static void test_parallel_stops_when_cancelled(void)
 {
     cancel_flag cancel = {.set = true};
@@ -121,6 +178,8 @@ int main(int argc, char **argv)
     g_test_add_func("/base/memory/refuses", test_allocation_refuses);
     g_test_add_func("/base/intern", test_interned_are_kept_once);
     g_test_add_func("/base/parallel/once", test_parallel_visits_each_once);
+    g_test_add_func("/base/parallel/within", test_parallel_within_another);
+    g_test_add_func("/base/parallel/two-at-once", test_parallel_two_at_once);
     g_test_add_func("/base/parallel/cancel", test_parallel_stops_when_cancelled);
     return g_test_run();
 }
