@@ -110,12 +110,12 @@ static void add_counts(render_statistics *st, const transport_counts *counts)
 static double time_denoising(render *r)
 {
     settings *how = &r->plan.how;
-    double fine = film_denoise_seconds(&r->film, r->n_threads);
+    double fine = film_denoise_seconds(&r->film, r->n_threads, r->is_dealt);
     if (how->denoise_windows != WINDOWS_AUTO || fine <= COARSE_SHARE * how->time)
         return fine;
     how->denoise_windows = WINDOWS_COARSE;
     r->film.coarse = true;
-    return film_denoise_seconds(&r->film, r->n_threads);
+    return film_denoise_seconds(&r->film, r->n_threads, r->is_dealt);
 }
 
 /* How long writing and denoising take is asked at the start, of the first pictures, and

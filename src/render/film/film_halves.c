@@ -440,18 +440,24 @@ static float *denoise(const film *f, const denoise_size *size, GError **error)
 float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
                     GError **error)
 {
-    const denoise_size size = {f->width, f->height, share_of_even(f),
-                               threads,  cancel,    f->coarse};
+    float even = clampf(share_of_even(f), LEAST_SHARE, 1.0f - LEAST_SHARE);
+    const denoise_size size = {f->width, f->height, even, threads, cancel, f->coarse};
     memory_release(f->denoise_size);
     float *out = denoise(f, &size, error);
     memory_count(f->denoise_size);
     return out;
 }
 
-double film_denoise_seconds(const film *f, unsigned threads)
+/* Whether there is something to try it on, though it may all be one half. */
+static bool can_try(const film *f)
+{
+    return f->halves && f->n_passes > 0 && !f->no_time;
+}
+
+double film_denoise_seconds(const film *f, unsigned threads, bool gets_more)
 {
     film part = *f;
-    if (!film_can_denoise(f))
+    if (!film_can_denoise(f) && !(gets_more && can_try(f)))
         return 0.0;
     part.height = MIN(TRIAL_ROWS, f->height);
     part.denoise_size = 0;

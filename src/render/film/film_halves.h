@@ -62,8 +62,10 @@ bool film_can_denoise(const film *f);
  * @param cancel may be NULL @return the caller's (big_free) */
 float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
                     GError **error);
-/** @brief About how long it takes, s: tries some rows. 0 where it can not be done. */
-double film_denoise_seconds(const film *f, unsigned threads);
+/** @brief About how long it takes, s: tries some rows. 0 where it can not be done.
+ * @param gets_more passes of other processes are to come, so that it will be possible
+ * though it is not now */
+double film_denoise_seconds(const film *f, unsigned threads, bool gets_more);
 /** @brief Bytes a pixel of what guides the denoiser in the pass under way. */
 size_t film_guide_bytes(void);
 
