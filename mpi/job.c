@@ -35,6 +35,7 @@ typedef struct job {
     bool has_gap;         /* not all passes before the last one were rendered */
     double passes, noise; /* where it ends; 0: anywhere */
     double last_join;     /* s */
+    bool has_kept;        /* a checkpoint was written, and said to be there */
     int64_t noise_check;
     NephStop stopped_by;
     progress shown;
@@ -160,7 +161,8 @@ static void render_dealt(job *j)
 
 static char farewell[512];
 
-/* mpirun ends what is left so when a rank has died. */
+/* mpirun ends what is left so when a rank has died; on a busy machine it may not wait for
+   this to be said. */
 static void on_end(int number)
 {
     (void)number;
@@ -182,7 +184,7 @@ static void say_farewell_with(const job *j, int64_t saved)
                    "nephroid: the job is being ended; no checkpoint was written\n");
 }
 
-static void save(const job *j)
+static void save(job *j)
 {
     g_autoptr(GError) error = NULL;
     const char *path = j->options->checkpoint;
@@ -192,10 +194,16 @@ static void save(const job *j)
         tell("note", "%s is not written: time was up before all passes were done", path);
         return;
     }
-    if (neph_render_save_checkpoint(j->render, path, &error))
-        say_farewell_with(j, j->dealer.next);
-    else
+    if (!neph_render_save_checkpoint(j->render, path, &error)) {
         report_error(error);
+        return;
+    }
+    if (!j->has_kept)
+        tell("note",
+             "passes are kept from now on: if the job ends, go on with --resume %s",
+             path);
+    j->has_kept = true;
+    say_farewell_with(j, j->dealer.next);
 }
 
 /* The root says it to all. */

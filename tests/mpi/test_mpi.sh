@@ -70,7 +70,7 @@ whole=$!
     -o cut.exr --checkpoint kept --checkpoint-every 0.3 >log 2>&1 &
 job=$!
 for _ in $(seq 600); do
-    [ -s kept ] && break
+    grep -q 'go on with --resume kept' log && break
     sleep 0.1
 done
 victim=$(pgrep -P $job | tail -1)
