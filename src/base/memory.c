@@ -14,7 +14,8 @@
 
 enum {
     ALIGNMENT = 64,       /* bytes: a cache line */
-    HUGE_ARRAY = 4 << 20, /* bytes, from which on huge pages are worth asking for */
+    HUGE_ARRAY = 4 << 20, /* bytes, from which on it is worth asking the system for more
+                             than it does by itself */
 };
 
 #define DEFAULT_SHARE 0.8
@@ -353,6 +354,12 @@ void big_free(void *array)
     memory_release(head.bytes);
     atomic_fetch_sub(&in_arrays, is_mapped(&head) ? 0 : head.bytes);
     give_back(&head);
+}
+
+void memory_give_back(size_t freed)
+{
+    if (freed > HUGE_ARRAY)
+        malloc_trim(0);
 }
 
 size_t memory_peak(void)

@@ -38,6 +38,11 @@ void big_zero(void *array, size_t bytes);
 /** @brief Frees what big_alloc or big_grow gave; NULL is allowed. */
 void big_free(void *array);
 
+/** @brief Gives the system what was freed in small pieces, if it is much. Each thread's
+ * malloc keeps what it gave: where the next loop deals its work out otherwise, that would
+ * stay beside what the loop takes. @param freed about so many bytes */
+void memory_give_back(size_t freed);
+
 /** @brief Counts bytes that come from elsewhere, or will be wanted later, as used.
  * @return false with ERROR_FAILED saying how much `what` wanted and how much of the limit
  * is left; nothing is counted then */

@@ -112,6 +112,7 @@ bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
                   trace_chunks_join(chunks, n_chunks, by, result, error);
     trace_chunks_clear(chunks, n_chunks);
     big_free(chunks);
+    memory_give_back(photon_store_bytes(&result->photons));
     if (!joined)
         trace_result_clear(result);
     return joined;
