@@ -108,6 +108,14 @@ static float apply_curve(const display_options *o, float x)
     }
 }
 
+/* What comes out as white, before the exposure; INFINITY: nothing is cut. */
+static float white_of(const display_options *o)
+{
+    if (o->false_colour || o->curve == TONE_REINHARD)
+        return INFINITY;
+    return (o->curve == TONE_FILMIC ? 5.6f : 1.0f) / exp2f(o->exposure);
+}
+
 static uint32_t bits_of(float x)
 {
     uint32_t bits;
@@ -186,6 +194,27 @@ static uint32_t false_pixel(const display_options *o, const float v[3])
     return pack(rgb[0], rgb[1], rgb[2]);
 }
 
+/* What is converted. */
+typedef struct source {
+    NephImage *made; /* owned; NULL: a layer of the image, as it is */
+    const NephImage *image;
+    int channel[3];
+} source;
+
+/* @return false: no such layer */
+static bool source_open(source *s, const NephImage *image, const display_options *o)
+{
+    *s = (source){.image = image};
+    if (!display_channels(image, o->layer, s->channel))
+        return false;
+    if (!*o->layer && (s->made = neph_image_shown(image, white_of(o), NULL))) {
+        s->image = s->made;
+        for (int k = 0; k < 3; k++)
+            s->channel[k] = k;
+    }
+    return true;
+}
+
 typedef struct converter {
     const display_options *options;
     uint8_t *table;
@@ -210,14 +239,14 @@ static uint32_t convert(const converter *c, const float v[3])
            (uint32_t)look_up(c, v[1]) << 8 | look_up(c, v[2]);
 }
 
-static void fill(cairo_surface_t *surface, const NephImage *image, const int channel[3],
-                 const converter *c)
+static void fill(cairo_surface_t *surface, const source *from, const converter *c)
 {
     int width, height, n;
-    neph_image_size(image, &width, &height, &n);
+    const int *channel = from->channel;
+    neph_image_size(from->image, &width, &height, &n);
     unsigned char *rows = cairo_image_surface_get_data(surface);
     int stride = cairo_image_surface_get_stride(surface);
-    const float *pixel = neph_image_pixels(image);
+    const float *pixel = neph_image_pixels(from->image);
     for (int y = 0; y < height; y++) {
         uint32_t *out = (uint32_t *)(void *)(rows + (ptrdiff_t)y * stride);
         for (int x = 0; x < width; x++, pixel += n) {
@@ -229,21 +258,22 @@ static void fill(cairo_surface_t *surface, const NephImage *image, const int cha
 
 cairo_surface_t *display_surface(const NephImage *image, const display_options *options)
 {
-    int width, height, n, channel[3];
-    if (!display_channels(image, options->layer, channel))
-        return NULL;
+    int width, height, n;
     neph_image_size(image, &width, &height, &n);
     cairo_surface_t *surface =
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
-    if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS) {
+    source from;
+    if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS ||
+        !source_open(&from, image, options)) {
         cairo_surface_destroy(surface);
         return NULL;
     }
     converter c = {options, make_table(options), strcmp(options->layer, "normal") == 0};
     cairo_surface_flush(surface);
-    fill(surface, image, channel, &c);
+    fill(surface, &from, &c);
     cairo_surface_mark_dirty(surface);
     g_free(c.table);
+    neph_image_free(from.made);
     return surface;
 }
 
@@ -252,28 +282,18 @@ static float decode_srgb(float x)
     return x <= 0.04045f ? x / 12.92f : powf((x + 0.055f) / 1.055f, 2.4f);
 }
 
-NephImage *display_image(const NephImage *image, const display_options *options,
-                         GError **error)
+/* Linear values of the bytes that are shown, three a pixel. */
+static void fill_linear(float *rgb, size_t n_pixels, const source *from,
+                        const display_options *options)
 {
-    int width, height, n, channel[3];
+    int width, height, n;
     float linear[256];
-    if (!display_channels(image, options->layer, channel)) {
-        g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_INPUT,
-                    "the picture has no layer '%s'", options->layer);
-        return NULL;
-    }
-    neph_image_size(image, &width, &height, &n);
-    size_t n_pixels = (size_t)width * (size_t)height;
-    g_autofree float *rgb = g_try_new(float, 3 * n_pixels);
-    if (!rgb) {
-        g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_FAILED,
-                    "there is no memory for the picture");
-        return NULL;
-    }
     for (int i = 0; i < 256; i++)
         linear[i] = decode_srgb((float)i / 255.0f);
     converter c = {options, make_table(options), strcmp(options->layer, "normal") == 0};
-    const float *pixel = neph_image_pixels(image);
+    const int *channel = from->channel;
+    const float *pixel = neph_image_pixels(from->image);
+    neph_image_size(from->image, &width, &height, &n);
     for (size_t i = 0; i < n_pixels; i++, pixel += n) {
         const float v[3] = {pixel[channel[0]], pixel[channel[1]], pixel[channel[2]]};
         uint32_t seen = convert(&c, v);
@@ -281,6 +301,28 @@ NephImage *display_image(const NephImage *image, const display_options *options,
             rgb[3 * i + (size_t)k] = linear[seen >> (16 - 8 * k) & 0xff];
     }
     g_free(c.table);
+}
+
+NephImage *display_image(const NephImage *image, const display_options *options,
+                         GError **error)
+{
+    int width, height, n;
+    neph_image_size(image, &width, &height, &n);
+    size_t n_pixels = (size_t)width * (size_t)height;
+    g_autofree float *rgb = g_try_new(float, 3 * n_pixels);
+    source from;
+    if (!rgb) {
+        g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_FAILED,
+                    "there is no memory for the picture");
+        return NULL;
+    }
+    if (!source_open(&from, image, options)) {
+        g_set_error(error, NEPH_ERROR_DOMAIN, NEPH_ERROR_INPUT,
+                    "the picture has no layer '%s'", options->layer);
+        return NULL;
+    }
+    fill_linear(rgb, n_pixels, &from, options);
+    neph_image_free(from.made);
     return neph_image_new(width, height, rgb, error);
 }
 

@@ -317,6 +317,11 @@ NEPH_API bool neph_image_write(const NephImage *image, const char *path, float e
 NEPH_API bool neph_image_write_while(const NephImage *image, const char *path,
                                      float exposure, NephGoOnFunc go_on, void *data,
                                      GError **error);
+/** @brief R, G and B as a file of eight bits shows them, before it cuts what is above
+ * `white` (INFINITY: nothing is): those of "denoised" where there is that, and edges of
+ * lights that are brighter than white by how much of a pixel is lit ("lights"), which are
+ * jagged otherwise. NEPH_ERROR_INPUT: it has no colours. Owned by caller. */
+NEPH_API NephImage *neph_image_shown(const NephImage *image, float white, GError **error);
 /** @brief How a picture comes out in eight bits. Pixels that no light reaches do not
  * count. */
 typedef enum {

@@ -139,6 +139,11 @@ NephImage *neph_image_layer(const NephImage *img, const char *name, GError **err
     return neph_image_wrap(image_layer(img->image, name, error));
 }
 
+NephImage *neph_image_shown(const NephImage *img, float white, GError **error)
+{
+    return neph_image_wrap(image_as_shown(img->image, white, error));
+}
+
 NephImage *neph_image_sheet(const NephImage *const *images, size_t n, size_t columns,
                             GError **error)
 {

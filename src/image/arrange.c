@@ -78,10 +78,10 @@ static int *edges(const image *const *images, size_t n, size_t columns, bool of_
 
 static void put(image *sheet, const image *img, int left, int top)
 {
-    int rgba[4];
-    image_shown_colors(img, rgba);
+    image_shown shown;
+    image_find_shown(img, &shown);
     for (int c = 0; c < 3; c++) {
-        const float *from = img->pixels + rgba[c];
+        const float *from = img->pixels + shown.rgba[c];
         for (int y = 0; y < img->height; y++)
             for (int x = 0; x < img->width; x++) {
                 size_t at = (size_t)(top + y) * (size_t)sheet->width + (size_t)(left + x);

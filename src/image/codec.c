@@ -83,9 +83,9 @@ bool image_raw(const image *img, const char *path, int rgba[4], GError **error)
     return has_colors(image_colors(img, rgba), path, error);
 }
 
-bool image_shown(const image *img, const char *path, int rgba[4], GError **error)
+bool image_to_show(const image *img, const char *path, image_shown *out, GError **error)
 {
-    return has_colors(image_shown_colors(img, rgba), path, error);
+    return has_colors(image_find_shown(img, out), path, error);
 }
 
 uint8_t srgb_code(float linear)

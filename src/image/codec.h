@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "image/image.h"
+#include "image/layers.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -78,8 +79,8 @@ float *encoding_table(const image_read_options *options, unsigned n_codes);
 
 /** @brief image_colors. @return false with ERROR_INPUT if there are none. */
 bool image_raw(const image *img, const char *path, int rgba[4], GError **error);
-/** @brief The same of image_shown_colors. */
-bool image_shown(const image *img, const char *path, int rgba[4], GError **error);
+/** @brief The same of image_find_shown. */
+bool image_to_show(const image *img, const char *path, image_shown *out, GError **error);
 
 /** @brief The 8-bit sRGB code of a linear value; not finite counts as 0. */
 uint8_t srgb_code(float linear);

@@ -42,14 +42,14 @@ static float stops_of(const histogram *h, double share)
 
 exposure_state image_exposure(const image *img, float stops, float *better)
 {
-    int channel[4];
+    image_shown shown;
     size_t n_pixels = (size_t)img->width * (size_t)img->height;
     *better = stops;
-    if (!image_shown_colors(img, channel) || image_channel(img, "R") < 0)
+    if (!image_find_shown(img, &shown) || image_channel(img, "R") < 0)
         return EXPOSURE_GOOD;
     g_autofree histogram *h = g_new0(histogram, 1);
     for (size_t i = 0; i < n_pixels; i++)
-        count(h, img->pixels + i * (size_t)img->n_channels, channel);
+        count(h, img->pixels + i * (size_t)img->n_channels, shown.rgba);
     if (h->n == 0)
         return EXPOSURE_BLACK;
     float high = stops_of(h, 0.9), low = stops_of(h, 0.25);

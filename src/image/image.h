@@ -76,7 +76,7 @@ image *image_read_bytes(const char *name, GBytes *bytes,
 /** @brief Writes by the name's extension (.exr, .png, .jpg, .hdr, .pfm): to a temporary
  * name beside it, synced and renamed, so that no partial file is ever seen under the
  * name. Formats other than EXR write channels R, G, B (and A for PNG, as it stands) only,
- * those of eight bits image_shown_colors; EXR writes all, as 32-bit float, and the header
+ * those of eight bits image_shown_pixel; EXR writes all, as 32-bit float, and the header
  * as string attributes.
  *  @param options NULL = exposure 0. @return false with ERROR_INPUT (unknown extension,
  *  unwritable, no R, G, B) or ERROR_FAILED (disk);

@@ -32,9 +32,9 @@ typedef struct jpeg_job {
     image *read;
     const float *table;
     JSAMPLE *row;
-    size_t reserved; /* bytes of what libjpeg keeps */
-    float scale;     /* 2^exposure */
-    int rgba[4];     /* channels of to_write */
+    size_t reserved;   /* bytes of what libjpeg keeps */
+    float scale;       /* 2^exposure */
+    image_shown shown; /* channels of to_write */
 } jpeg_job;
 
 static void on_error(j_common_ptr info)
@@ -180,9 +180,12 @@ static image *read_jpeg(const image_source *source, const image_read_options *op
 
 static void encode_row(const jpeg_job *job, const float *pixel)
 {
-    for (int x = 0; x < job->to_write->width; x++, pixel += job->to_write->n_channels)
+    float rgb[3];
+    for (int x = 0; x < job->to_write->width; x++, pixel += job->to_write->n_channels) {
+        image_shown_pixel(&job->shown, pixel, 1.0f / job->scale, rgb);
         for (int c = 0; c < 3; c++)
-            job->row[3 * x + c] = srgb_code(pixel[job->rgba[c]] * job->scale);
+            job->row[3 * x + c] = srgb_code(rgb[c] * job->scale);
+    }
 }
 
 static void write_file(jpeg_job *job)
@@ -220,7 +223,7 @@ static bool write_jpeg(const image *img, const image_sink *sink,
     job->row = g_malloc_n((gsize)img->width, 3);
     job->out.err = handlers(job);
     job->out.client_data = job;
-    bool written = image_shown(img, sink->path, job->rgba, error);
+    bool written = image_to_show(img, sink->path, &job->shown, error);
     if (written && !guarded(job, write_file)) {
         error_set(error, ERROR_FAILED, "%s: cannot be written: %s", sink->path,
                   job->message);

@@ -1,5 +1,6 @@
 #include "image/layers.h"
 
+#include <math.h>
 #include <string.h>
 
 static int channel_named(const image *img, const char *layer, const char *suffix)
@@ -47,6 +48,15 @@ static char *list_layers(const image *img)
     return g_strjoinv(", ", (char **)names->pdata);
 }
 
+/* R, G and B, to be filled; in the same colours. */
+static image *picture_like(const image *img, GError **error)
+{
+    image *out = image_new(img->width, img->height, 3, image_rgb_names, error);
+    if (out)
+        memcpy(out->chromaticities, img->chromaticities, sizeof out->chromaticities);
+    return out;
+}
+
 image *image_layer(const image *img, const char *name, GError **error)
 {
     int channels[4];
@@ -57,22 +67,48 @@ image *image_layer(const image *img, const char *name, GError **error)
                   *list ? list : "the image has none", name);
         return NULL;
     }
-    image *out = image_new(img->width, img->height, 3, image_rgb_names, error);
+    image *out = picture_like(img, error);
     size_t n = (size_t)img->width * (size_t)img->height;
     for (size_t i = 0; out && i < n; i++)
         for (int k = 0; k < 3; k++)
             out->pixels[3 * i + (size_t)k] =
                 img->pixels[i * (size_t)img->n_channels + (size_t)channels[k]];
-    if (out)
-        memcpy(out->chromaticities, img->chromaticities, sizeof out->chromaticities);
     return out;
 }
 
-bool image_shown_colors(const image *img, int rgba[4])
+bool image_find_shown(const image *img, image_shown *out)
 {
-    bool found = image_colors(img, rgba);
+    bool found = image_colors(img, out->rgba);
     int denoised[3];
     if (layer_channels(img, "denoised", denoised))
-        memcpy(rgba, denoised, sizeof denoised);
+        memcpy(out->rgba, denoised, sizeof denoised);
+    bool has_lights = layer_channels(img, "lights", out->lights);
+    out->lights[3] = has_lights ? image_channel(img, "lights.A") : -1;
     return found;
+}
+
+void image_shown_pixel(const image_shown *shown, const float *pixel, float white,
+                       float rgb[3])
+{
+    float part = shown->lights[3] >= 0 ? pixel[shown->lights[3]] : 1.0f;
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = pixel[shown->rgba[c]];
+        if (part > 0.0f && part < 1.0f)
+            rgb[c] -= fmaxf(pixel[shown->lights[c]] - part * white, 0.0f);
+    }
+}
+
+image *image_as_shown(const image *img, float white, GError **error)
+{
+    image_shown shown;
+    if (!image_find_shown(img, &shown)) {
+        error_set(error, ERROR_INPUT, "the image has no channels 'R', 'G', 'B' or 'Y'");
+        return NULL;
+    }
+    image *out = picture_like(img, error);
+    size_t n = (size_t)img->width * (size_t)img->height;
+    for (size_t i = 0; out && i < n; i++)
+        image_shown_pixel(&shown, img->pixels + i * (size_t)img->n_channels, white,
+                          out->pixels + 3 * i);
+    return out;
 }

@@ -25,8 +25,8 @@ typedef struct png_job {
     int width, height, n_values, depth;
     const image *img;
     const image_sink *sink;
-    float scale;    /* 2^exposure */
-    int channel[4]; /* of img: R, G, B, A or -1 */
+    float scale;       /* 2^exposure */
+    image_shown shown; /* channels of img */
 } png_job;
 
 static void on_error(png_structp png, png_const_charp message)
@@ -205,11 +205,13 @@ static image *read_png(const image_source *source, const image_read_options *opt
 static void encode_row(const png_job *job, const float *pixel)
 {
     png_byte *out = job->bytes;
+    float rgb[3];
     for (int x = 0; x < job->width; x++, pixel += job->img->n_channels) {
+        image_shown_pixel(&job->shown, pixel, 1.0f / job->scale, rgb);
         for (int c = 0; c < 3; c++)
-            *out++ = srgb_code(pixel[job->channel[c]] * job->scale);
+            *out++ = srgb_code(rgb[c] * job->scale);
         if (job->n_values == 4) {
-            float alpha = pixel[job->channel[3]];
+            float alpha = pixel[job->shown.rgba[3]];
             *out++ = (png_byte)(fminf(fmaxf(alpha, 0.0f), 1.0f) * 255.0f + 0.5f);
         }
     }
@@ -257,8 +259,8 @@ static bool write_png(const image *img, const image_sink *sink,
     job->height = img->height;
     job->scale = exp2f(options->exposure);
     job->bytes = g_malloc_n((gsize)img->width, 4);
-    bool written = image_shown(img, sink->path, job->channel, error);
-    job->n_values = job->channel[3] >= 0 ? 4 : 3;
+    bool written = image_to_show(img, sink->path, &job->shown, error);
+    job->n_values = job->shown.rgba[3] >= 0 ? 4 : 3;
     written = written && write_guarded(job, error);
     g_free(job->bytes);
     g_free(job);

@@ -174,7 +174,8 @@ static void test_algorithms(void)
     }
 }
 
-/* What is beside it is the same to the bit, and so is it with any number of threads. */
+/* What is beside it (and lights in sight) is the same to the bit, and so is it with any
+   number of threads. */
 static void test_raw_stays(void)
 {
     g_autoptr(view) v = view_of(HALL);
@@ -183,7 +184,7 @@ static void test_raw_stays(void)
         render_with(v, "integrator=auto spp=1 passes=3 threads=1 denoise=on");
     g_autoptr(image) others =
         render_with(v, "integrator=auto spp=1 passes=3 threads=3 denoise=on");
-    g_assert_cmpint(on->n_channels, ==, off->n_channels + 3);
+    g_assert_cmpint(on->n_channels, ==, off->n_channels + 7);
     for (int c = 0; c < off->n_channels; c++) {
         g_assert_cmpstr(on->channels[c], ==, off->channels[c]);
         for (size_t i = 0; i < pixels_of(on); i++)
@@ -269,7 +270,7 @@ static void test_files(void)
 {
     g_autoptr(view) v = view_of(HALL);
     g_autoptr(image) img = hall(v, "path", 2, 1);
-    g_autoptr(image) denoised = image_layer(img, "denoised", NULL);
+    g_autoptr(image) denoised = image_as_shown(img, 1.0f, NULL);
     g_autoptr(image) raw = image_layer(img, "raw", NULL);
     g_autofree char *folder = g_dir_make_tmp("denoise-XXXXXX", NULL);
     g_autofree char *png = g_build_filename(folder, "a.png", NULL);
@@ -282,6 +283,48 @@ static void test_files(void)
     g_assert_nonnull(strstr(error->message, "raw"));
     remove(png);
     g_rmdir(folder);
+}
+
+/* ---- Edges of lights ---- */
+
+/* A lamp over white by far from the left edge to a third of the fourth pixel of eight, a
+   metre a pixel, and one that is smaller than the pixel it is in. */
+#define EDGE                                                                             \
+    "LookAt 0 0 9 0 0 0 0 1 0 Scale -1 1 1 Camera \"orthographic\" \"float "             \
+    "screenwindow\" "                                                                    \
+    "[-4 4 -4 4]\n" SIZE(8) "WorldBegin\n"                                               \
+                            "AreaLightSource \"diffuse\" \"rgb L\" [500 500 500]\n"      \
+                            "Shape \"trianglemesh\" \"point3 P\" [-9 -9 0 -0.6667 -9 0 " \
+                            "-0.6667 9 0 -9 9 0] "                                       \
+                            "\"integer indices\" [0 1 2 0 2 3]\n"                        \
+                            "Shape \"trianglemesh\" \"point3 P\" [2.2 1.2 0 2.5 1.2 0 "  \
+                            "2.5 1.5 0 2.2 1.5 0] "                                      \
+                            "\"integer indices\" [0 1 2 0 2 3]\n"
+
+/* Pixel (x, 2) of eight by eight. */
+static const float *in_row(const image *img, int x)
+{
+    return img->pixels + (size_t)(2 * 8 + x) * (size_t)img->n_channels;
+}
+
+/* A pixel of which a lamp fills a third is seen a third as bright as white at any
+   exposure, though its mean is far above it; the mean stays in the floats. A lamp within
+   a pixel, beside which none is full, keeps its mean. */
+static void test_edges_of_lights(void)
+{
+    g_autoptr(view) v = view_of(EDGE);
+    g_autoptr(image) img = render_with(v, "denoise=on integrator=path spp=64 passes=4");
+    g_autoptr(image) floats = image_layer(img, "denoised", NULL);
+    g_assert_cmpfloat(in_row(floats, 3)[0], >, 100.0f);
+    for (float white = 0.5f; white <= 2.0f; white *= 2.0f) {
+        g_autoptr(image) seen = image_as_shown(img, white, NULL);
+        g_assert_cmpfloat(in_row(seen, 2)[0], >, white);
+        g_assert_cmpfloat(fabsf(in_row(seen, 3)[0] / white - 1.0f / 3.0f), <, 0.05f);
+        g_assert_cmpfloat(in_row(seen, 4)[0], <, 1e-3f);
+        g_assert_cmpfloat(in_row(seen, 6)[0], >, white);
+    }
+    g_autoptr(image) all = image_as_shown(img, INFINITY, NULL);
+    g_assert_cmpfloat(fabsf(in_row(all, 3)[0] - in_row(floats, 3)[0]), <, 1e-3f);
 }
 
 int main(int argc, char **argv)
@@ -298,5 +341,6 @@ int main(int argc, char **argv)
     g_test_add_func("/film-denoise/no-time", test_no_time);
     g_test_add_func("/film-denoise/units", test_units);
     g_test_add_func("/film-denoise/files", test_files);
+    g_test_add_func("/film-denoise/edges-of-lights", test_edges_of_lights);
     return g_test_run();
 }

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "color/balance.h"
 #include "render/film/film_halves.h"
+#include "render/film/film_lights.h"
 #include "render/film/gbuffer.h"
 
 enum { LUMINANCE = 1 /* of X, Y, Z */ };
@@ -285,6 +286,8 @@ static GPtrArray *channel_names(const film *f, bool denoised)
             g_ptr_array_add(names, g_strdup_printf("light.%s.%c", f->group_names[i], *c));
     }
     gbuffer_add_names(f, names);
+    for (const char *c = "RGBA"; *c && denoised; c++)
+        g_ptr_array_add(names, g_strdup_printf("lights.%c", *c));
     for (const char *c = "RGB"; *c && denoised; c++)
         g_ptr_array_add(names, g_strdup_printf("denoised.%c", *c));
     return names;
@@ -370,8 +373,10 @@ static void write_pixels(size_t begin, size_t end, unsigned thread, void *data)
         size_t n = (size_t)loop->image->n_channels;
         float *pixel = loop->image->pixels + i * n;
         write_pixel(loop->film, loop->first + i, pixel);
-        for (size_t c = 0; c < 3 && loop->denoised; c++)
-            pixel[n - 3 + c] = loop->denoised[3 * i + c];
+        if (!loop->denoised)
+            continue;
+        film_lights(loop->film, loop->first + i, pixel + n - 7);
+        memcpy(pixel + n - 3, loop->denoised + 3 * i, 3 * sizeof(float));
     }
 }
 

@@ -138,9 +138,9 @@ void film_to_rgb(const film *f, const double sum[3], double weight, float out[3]
 /** @brief The picture: R G B, the layers' R G B, albedo, normal, depth; linear, film's
  * space. With two passes or more also variance.Y, the square of the standard error of
  * the luminance; with light groups their layers light.NAME; then those of a gbuffer; last
- * denoised.R G B, where there is enough for film_denoise.
- * All of the pass under way, too, as far as its n_cells say; where that is all there is,
- * pixels that are still to come look like those beside.
+ * lights.R G B A (film_lights.h) and denoised.R G B, where there is enough for
+ * film_denoise. All of the pass under way, too, as far as its n_cells say; where that is
+ * all there is, pixels that are still to come look like those beside.
  * @param cancel ends the taking out of noise; may be NULL */
 image *film_image(const film *f, unsigned threads, const cancel_flag *cancel,
                   GError **error);

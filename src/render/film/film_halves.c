@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "image/denoise/denoise.h"
+#include "render/film/film_lights.h"
 
 enum { LUMINANCE = 1 /* of X, Y, Z */, TRIAL_ROWS = 24 };
 
@@ -50,7 +51,9 @@ void guide_add(guide_sum *sum, const film_pass *pass, const radiance_sample *sam
                float weight)
 {
     const light_guide *guide = &sample->guide;
+    const spectrum in_sight = sample->layers[LAYER_EMISSION] + guide->lights;
     add_xyz(sum->lights, pass->w, guide->lights, weight);
+    sum->lit += spectrum_is_black(in_sight) ? 0.0f : weight;
     if (!(guide->weight > 0.0f))
         return;
     float share = weight / guide->weight;
@@ -334,27 +337,13 @@ typedef struct out_loop {
     float *out;
 } out_loop;
 
-/* What is not filtered: lights in sight, and in mirrors. Their edges are sharper than any
-   filter keeps them with a few samples a pixel, and beside them there may be nothing. */
-static void put_emission(size_t begin, size_t end, unsigned thread, void *data)
+/* These are not filtered. */
+static void put_lights(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
     const out_loop *loop = data;
-    const film *f = loop->f;
-    for (size_t i = begin; i < end; i++) {
-        film_sum sum = f->pixels[i].sum;
-        guide_sum guides = f->halves[i].guides;
-        if (f->n_cells > 0 && film_pass_counts(f, i)) {
-            film_add_pass(&sum, &f->pass[i]);
-            add_floats(&guides, &f->pass_guides[i], GUIDE_NUMBERS);
-        }
-        double *seen = sum.color[LAYER_EMISSION];
-        for (int c = 0; c < 3; c++)
-            seen[c] += (double)guides.lights[c];
-        film_to_rgb(f, seen, sum.weight, loop->out + 3 * i);
-        for (int c = 0; c < 3; c++)
-            loop->out[3 * i + (size_t)c] *= f->scale;
-    }
+    for (size_t i = begin; i < end; i++)
+        film_lights_in_sight(loop->f, i, loop->out + 3 * i);
 }
 
 static void add_light(size_t begin, size_t end, unsigned thread, void *data)
@@ -369,7 +358,7 @@ static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
                           unsigned threads, float *out, GError **error)
 {
     out_loop all = {f, room->out, out};
-    parallel_for(n_pixels(f), ITEMS_AT_ONCE, threads, NULL, put_emission, &all);
+    parallel_for(n_pixels(f), ITEMS_AT_ONCE, threads, NULL, put_lights, &all);
     for (int l = 0; l < N_LIGHTS; l++) {
         read_loop loop = {f, room, NULL, l};
         const denoise_layer layer = {3, {room->half[0], room->half[1]}, room->variance};

@@ -23,6 +23,7 @@ typedef struct guide_sum {
     float albedo[3], lights[3]; /**< XYZ */
     float normal[3], depth;
     float weight; /**< of the samples that ended at a surface */
+    float lit; /**< weight of the samples that have a light in sight, also by mirrors */
 } guide_sum;
 
 enum {
