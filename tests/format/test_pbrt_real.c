@@ -315,9 +315,27 @@ static void test_curve_normals(void)
     g_assert_cmpuint(v->scene->shapes->len, ==, 1);
 }
 
+/* ---- Parameters ---- */
+
+/* pbrt reads it with every filter. */
+static void test_anisotropy(void)
+{
+    scene_folder f = folder_new(
+        WORLD "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.pfm\"\n"
+              "\"float maxanisotropy\" 8 \"string wrap\" \"repeat\"\n"
+              "Material \"diffuse\" \"texture reflectance\" \"t\"\nShape \"sphere\"\n");
+    folder_write(&f, "t.pfm", "Pf\n1 1\n-1\n\0\0\0?", 14);
+    g_autoptr(GError) error = NULL;
+    g_autoptr(view) v = load_view(f.main, NULL, &error);
+    g_assert_no_error(error);
+    g_assert_cmpuint(v->scene->shapes->len, ==, 1);
+    folder_remove(&f);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/pbrt-real/anisotropy", test_anisotropy);
     g_test_add_func("/pbrt-real/flattened-meshes", test_flattened_meshes);
     g_test_add_func("/pbrt-real/flattened-rest", test_flattened_rest);
     g_test_add_func("/pbrt-real/transforms", test_transforms_that_do_nothing);
