@@ -332,10 +332,40 @@ static void test_anisotropy(void)
     folder_remove(&f);
 }
 
+static float height_of(const scene *s)
+{
+    const shape *on = s->shapes->pdata[0];
+    box3 b = on->kind->bounds(on->self);
+    return b.high[2] - b.low[2];
+}
+
+/* The last directive of an included file goes on behind the Include, through the ends of
+ * as many files as there are; an Import ends with its file. */
+static void test_parameters_behind_an_include(void)
+{
+    scene_folder f = folder_new(WORLD "Include \"outer.pbrt\"\n\"float radius\" 3\n"
+                                      "\"bool camera_visible\" false\n"
+                                      "Import \"inner.pbrt\"\nShape \"disk\"\n");
+    folder_write(&f, "outer.pbrt", "Include \"inner.pbrt\" # no more\n", -1);
+    folder_write(&f, "inner.pbrt", "Shape \"sphere\" \"float zmax\" 1\n", -1);
+    g_autoptr(GError) error = NULL;
+    g_autoptr(view) v = load_view(f.main, NULL, &error);
+    g_assert_no_error(error);
+    g_assert_cmpuint(v->scene->shapes->len, ==, 3);
+    g_assert_cmpfloat(fabsf(height_of(v->scene) - 4.0f), <, 1e-4f);
+    folder_write(&f, "scene.pbrt",
+                 WORLD "Import \"inner.pbrt\"\n\"float radius\" 3\nShape \"disk\"\n", -1);
+    g_autoptr(view) wrong = load_view(f.main, NULL, &error);
+    g_assert_null(wrong);
+    g_assert_nonnull(strstr(error->message, "expected a directive, found"));
+    folder_remove(&f);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/pbrt-real/anisotropy", test_anisotropy);
+    g_test_add_func("/pbrt-real/behind-an-include", test_parameters_behind_an_include);
     g_test_add_func("/pbrt-real/flattened-meshes", test_flattened_meshes);
     g_test_add_func("/pbrt-real/flattened-rest", test_flattened_rest);
     g_test_add_func("/pbrt-real/transforms", test_transforms_that_do_nothing);
