@@ -361,11 +361,38 @@ static void test_parameters_behind_an_include(void)
     folder_remove(&f);
 }
 
+/* Where pbrt moves vertices, it is said that none moves. */
+static void test_displaced_mesh(void)
+{
+    scene_folder f = folder_new(
+        WORLD "Texture \"f\" \"float\" \"fbm\"\n"
+              "Shape \"plymesh\" \"string filename\" \"m.ply\" \"texture displacement\" "
+              "\"f\" \"float displacement.edgelength\" 0.1\n");
+    folder_write(&f, "m.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                 "property float y\nproperty float z\nelement face 1\n"
+                 "property list uchar int vertex_indices\nend_header\n"
+                 "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+                 -1);
+    g_autoptr(GString) lines = g_string_new(NULL);
+    g_autoptr(GError) error = NULL;
+    const log_sink sink = {keep_line, lines};
+    g_autoptr(view) v = load_view(f.main, &sink, &error);
+    g_assert_no_error(error);
+    g_assert_cmpuint(v->scene->shapes->len, ==, 1);
+    g_assert_cmpstr(
+        lines->str, ==,
+        "warning:6:43: 'displacement' of a mesh moves nothing: it stays as its "
+        "file has it\n");
+    folder_remove(&f);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/pbrt-real/anisotropy", test_anisotropy);
     g_test_add_func("/pbrt-real/behind-an-include", test_parameters_behind_an_include);
+    g_test_add_func("/pbrt-real/displaced-mesh", test_displaced_mesh);
     g_test_add_func("/pbrt-real/flattened-meshes", test_flattened_meshes);
     g_test_add_func("/pbrt-real/flattened-rest", test_flattened_rest);
     g_test_add_func("/pbrt-real/transforms", test_transforms_that_do_nothing);
