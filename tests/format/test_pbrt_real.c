@@ -361,6 +361,23 @@ static void test_parameters_behind_an_include(void)
     folder_remove(&f);
 }
 
+/* What pbrt's paths from both ends are told beside their length: none changes the
+ * picture. */
+static void test_bidirectional_words(void)
+{
+    g_autoptr(view) v = read_saying(
+        "Integrator \"bdpt\" \"bool visualizestrategies\" false\n"
+        "\"bool visualizeweights\" true \"string lightsampler\" \"power\"\n" WORLD
+        "Shape \"sphere\"\n",
+        "note:2:30: 'lightsampler' of integrator 'bdpt' has no meaning here\n"
+        "note:1:19: 'visualizestrategies' of integrator 'bdpt' has no meaning here\n"
+        "note:2:1: 'visualizeweights' of integrator 'bdpt' has no meaning here\n"
+        "note:1:12: integrator 'bdpt' becomes vcm with 16 passes of 4 samples a pixel "
+        "and "
+        "maxdepth 5, connections alone\n");
+    g_assert_cmpuint(v->scene->shapes->len, ==, 1);
+}
+
 /* Where pbrt moves vertices, it is said that none moves. */
 static void test_displaced_mesh(void)
 {
@@ -392,6 +409,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/pbrt-real/anisotropy", test_anisotropy);
     g_test_add_func("/pbrt-real/behind-an-include", test_parameters_behind_an_include);
+    g_test_add_func("/pbrt-real/bidirectional-words", test_bidirectional_words);
     g_test_add_func("/pbrt-real/displaced-mesh", test_displaced_mesh);
     g_test_add_func("/pbrt-real/flattened-meshes", test_flattened_meshes);
     g_test_add_func("/pbrt-real/flattened-rest", test_flattened_rest);
