@@ -125,8 +125,10 @@ typedef struct feature_note {
 } feature_note;
 
 static const feature_note notes[] = {
-    {"Shape", "plymesh", "rendered", "a triangle mesh from a file", NULL,
-     "filename alpha camera_visible"},
+    {"Shape", "plymesh", "approximated",
+     "a triangle mesh from a file; `displacement` moves nothing, with a warning",
+     "displacement displacement.edgelength",
+     "filename alpha camera_visible displacement displacement.edgelength"},
     {"Shape", "trianglemesh", "rendered", "`faceIndices` are for `ptex`", "faceIndices",
      NULL},
     {"Shape", "bilinearmesh", "rendered",

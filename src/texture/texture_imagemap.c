@@ -33,17 +33,12 @@ static void imagemap_free(void *self)
     g_free(m);
 }
 
-/* Stretched footprints are looked up as round ones, so the limit has nothing to limit. */
-static bool read_anisotropy(const imagemap *m, const params *p, GError **error)
+/* Stretched footprints are looked up as round ones, so the limit has nothing to limit;
+ * pbrt reads it with every filter, and uses it with "EWA". */
+static bool read_anisotropy(const params *p, GError **error)
 {
     float most = 8.0f;
-    if (!params_float(p, "maxanisotropy", &most, error))
-        return false;
-    if (most >= 1.0f && (m->filter == FILTER_EWA || !params_has(p, "maxanisotropy")))
-        return true;
-    error_at(error, params_find(p, "maxanisotropy")->place,
-             "parameter 'maxanisotropy': expected a number >= 1 and the filter \"EWA\"");
-    return false;
+    return params_float(p, "maxanisotropy", &most, error);
 }
 
 static bool read_options(imagemap *m, const params *p, GError **error)
@@ -59,7 +54,7 @@ static bool read_options(imagemap *m, const params *p, GError **error)
                 params_float(p, "scale", &m->scale, error) &&
                 params_bool(p, "invert", &m->invert, error);
     m->filter = MIN(m->filter, FILTER_EWA);
-    return done && read_anisotropy(m, p, error);
+    return done && read_anisotropy(p, error);
 }
 
 /* "sRGB", "linear" or "gamma 2.2". */

@@ -315,9 +315,102 @@ static void test_curve_normals(void)
     g_assert_cmpuint(v->scene->shapes->len, ==, 1);
 }
 
+/* ---- Parameters ---- */
+
+/* pbrt reads it with every filter. */
+static void test_anisotropy(void)
+{
+    scene_folder f = folder_new(
+        WORLD "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.pfm\"\n"
+              "\"float maxanisotropy\" 8 \"string wrap\" \"repeat\"\n"
+              "Material \"diffuse\" \"texture reflectance\" \"t\"\nShape \"sphere\"\n");
+    folder_write(&f, "t.pfm", "Pf\n1 1\n-1\n\0\0\0?", 14);
+    g_autoptr(GError) error = NULL;
+    g_autoptr(view) v = load_view(f.main, NULL, &error);
+    g_assert_no_error(error);
+    g_assert_cmpuint(v->scene->shapes->len, ==, 1);
+    folder_remove(&f);
+}
+
+static float height_of(const scene *s)
+{
+    const shape *on = s->shapes->pdata[0];
+    box3 b = on->kind->bounds(on->self);
+    return b.high[2] - b.low[2];
+}
+
+/* The last directive of an included file goes on behind the Include, through the ends of
+ * as many files as there are; an Import ends with its file. */
+static void test_parameters_behind_an_include(void)
+{
+    scene_folder f = folder_new(WORLD "Include \"outer.pbrt\"\n\"float radius\" 3\n"
+                                      "\"bool camera_visible\" false\n"
+                                      "Import \"inner.pbrt\"\nShape \"disk\"\n");
+    folder_write(&f, "outer.pbrt", "Include \"inner.pbrt\" # no more\n", -1);
+    folder_write(&f, "inner.pbrt", "Shape \"sphere\" \"float zmax\" 1\n", -1);
+    g_autoptr(GError) error = NULL;
+    g_autoptr(view) v = load_view(f.main, NULL, &error);
+    g_assert_no_error(error);
+    g_assert_cmpuint(v->scene->shapes->len, ==, 3);
+    g_assert_cmpfloat(fabsf(height_of(v->scene) - 4.0f), <, 1e-4f);
+    folder_write(&f, "scene.pbrt",
+                 WORLD "Import \"inner.pbrt\"\n\"float radius\" 3\nShape \"disk\"\n", -1);
+    g_autoptr(view) wrong = load_view(f.main, NULL, &error);
+    g_assert_null(wrong);
+    g_assert_nonnull(strstr(error->message, "expected a directive, found"));
+    folder_remove(&f);
+}
+
+/* What pbrt's paths from both ends are told beside their length: none changes the
+ * picture. */
+static void test_bidirectional_words(void)
+{
+    g_autoptr(view) v = read_saying(
+        "Integrator \"bdpt\" \"bool visualizestrategies\" false\n"
+        "\"bool visualizeweights\" true \"string lightsampler\" \"power\"\n" WORLD
+        "Shape \"sphere\"\n",
+        "note:2:30: 'lightsampler' of integrator 'bdpt' has no meaning here\n"
+        "note:1:19: 'visualizestrategies' of integrator 'bdpt' has no meaning here\n"
+        "note:2:1: 'visualizeweights' of integrator 'bdpt' has no meaning here\n"
+        "note:1:12: integrator 'bdpt' becomes vcm with 16 passes of 4 samples a pixel "
+        "and "
+        "maxdepth 5, connections alone\n");
+    g_assert_cmpuint(v->scene->shapes->len, ==, 1);
+}
+
+/* Where pbrt moves vertices, it is said that none moves. */
+static void test_displaced_mesh(void)
+{
+    scene_folder f = folder_new(
+        WORLD "Texture \"f\" \"float\" \"fbm\"\n"
+              "Shape \"plymesh\" \"string filename\" \"m.ply\" \"texture displacement\" "
+              "\"f\" \"float displacement.edgelength\" 0.1\n");
+    folder_write(&f, "m.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                 "property float y\nproperty float z\nelement face 1\n"
+                 "property list uchar int vertex_indices\nend_header\n"
+                 "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+                 -1);
+    g_autoptr(GString) lines = g_string_new(NULL);
+    g_autoptr(GError) error = NULL;
+    const log_sink sink = {keep_line, lines};
+    g_autoptr(view) v = load_view(f.main, &sink, &error);
+    g_assert_no_error(error);
+    g_assert_cmpuint(v->scene->shapes->len, ==, 1);
+    g_assert_cmpstr(
+        lines->str, ==,
+        "warning:6:43: 'displacement' of a mesh moves nothing: it stays as its "
+        "file has it\n");
+    folder_remove(&f);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/pbrt-real/anisotropy", test_anisotropy);
+    g_test_add_func("/pbrt-real/behind-an-include", test_parameters_behind_an_include);
+    g_test_add_func("/pbrt-real/bidirectional-words", test_bidirectional_words);
+    g_test_add_func("/pbrt-real/displaced-mesh", test_displaced_mesh);
     g_test_add_func("/pbrt-real/flattened-meshes", test_flattened_meshes);
     g_test_add_func("/pbrt-real/flattened-rest", test_flattened_rest);
     g_test_add_func("/pbrt-real/transforms", test_transforms_that_do_nothing);

@@ -213,7 +213,7 @@ static void test_refusals(void)
     refuse(list(NULL), "imagemap", "\"string filename\"");
     refuse(list("none.png"), "imagemap", "none.png");
     refuse(with_word(list(colour_path), "filter", "cubic"), "imagemap", "found 'cubic'");
-    refuse(with_number(list(colour_path), "maxanisotropy", 4), "imagemap",
+    refuse(with_word(list(colour_path), "maxanisotropy", "much"), "imagemap",
            "'maxanisotropy'");
     refuse(with_word(list(colour_path), "wrap", "mirror"), "imagemap", "found 'mirror'");
     refuse(with_word(list(colour_path), "mapping", "cubic"), "imagemap", "found 'cubic'");

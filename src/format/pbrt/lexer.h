@@ -33,6 +33,7 @@ typedef struct lexer {
     int line;
     token ahead;
     bool has_ahead;
+    struct lexer *outer; /**< where a list goes on that this file's end leaves open */
 } lexer;
 
 lexer lexer_new(const char *file, const char *data, size_t size);

@@ -138,7 +138,7 @@ static void read_words(pbrt_parser *parser, lexer *words)
  * that is not pbrt's. */
 static void read_directives(pbrt_parser *parser, lexer *words, void *data)
 {
-    (void)data;
+    words->outer = data;
     token t = lexer_peek(words);
     if (t.kind == TOKEN_END || (t.kind == TOKEN_WORD && find_directive(&t)))
         read_words(parser, words);
@@ -148,7 +148,7 @@ static void read_directives(pbrt_parser *parser, lexer *words, void *data)
 
 void pbrt_include(pbrt_parser *parser, const char *name, source_place place)
 {
-    pbrt_read_file(parser, name, place, read_directives, NULL);
+    pbrt_read_file(parser, name, place, read_directives, parser->words);
 }
 
 static bool handle_include(pbrt_parser *parser, source_place place)
@@ -170,7 +170,7 @@ static bool handle_import(pbrt_parser *parser, source_place place)
         return false;
     guint depth = parser->saved->len;
     pbrt_attribute_begin(parser, at);
-    pbrt_include(parser, name, at);
+    pbrt_read_file(parser, name, at, read_directives, NULL);
     pbrt_close_attributes(parser, depth + 1);
     if (parser->saved->len > depth)
         pbrt_attribute_end(parser, at);

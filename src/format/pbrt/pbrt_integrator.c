@@ -33,7 +33,8 @@ static const path_integrator path_integrators[] = {
     {"simplevolpath", "auto", NULL, PLAIN_PATHS, ""},
     {"randomwalk", "auto", NULL, PLAIN_PATHS, ""},
     {"lightpath", "vcm", "light", ", light paths alone", ""},
-    {"bdpt", "vcm", "bpt", ", connections alone", "regularize"},
+    {"bdpt", "vcm", "bpt", ", connections alone",
+     "regularize lightsampler visualizestrategies visualizeweights"},
     {"mlt", "vcm", "all", ", without mutations",
      "regularize bootstrapsamples chains mutationsperpixel largestepprobability sigma"},
 };

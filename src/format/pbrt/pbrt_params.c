@@ -343,17 +343,35 @@ static bool read_param(pbrt_parser *parser, params *p)
     return fine;
 }
 
+/* The end of an included file does not end its last directive: parameters behind the
+ * Include are of that one. */
+static token next_of_list(pbrt_parser *parser)
+{
+    token t = lexer_peek(parser->words);
+    lexer *words = parser->words;
+    while (t.kind == TOKEN_END && words->outer) {
+        words = words->outer;
+        t = lexer_peek(words);
+    }
+    if (t.kind == TOKEN_STRING)
+        parser->words = words;
+    return lexer_peek(parser->words);
+}
+
 bool pbrt_read_param_list(pbrt_parser *parser, params *p)
 {
-    for (bool fine = true; fine;) {
-        token t = lexer_peek(parser->words);
+    lexer *own = parser->words;
+    bool fine = true, ends = false;
+    while (fine && !ends) {
+        token t = next_of_list(parser);
         if (t.kind == TOKEN_STRING)
             fine = read_param(parser, p);
-        else if (!parser->is_v3 || !token_is(&t, "Include") ||
-                 !pbrt_include_parameters(parser, p, &fine))
-            return true;
+        else
+            ends = !parser->is_v3 || !token_is(&t, "Include") ||
+                   !pbrt_include_parameters(parser, p, &fine);
     }
-    return false;
+    parser->words = own;
+    return fine;
 }
 
 params *pbrt_read_params(pbrt_parser *parser, source_place place)

@@ -337,11 +337,29 @@ static bool add_ply(pbrt_parser *parser, const params *p, const shape_place *at,
     return false;
 }
 
+/* pbrt refines the mesh and moves its vertices. */
+static bool pass_displacement(pbrt_parser *parser, const params *p, GError **error)
+{
+    float_input depth;
+    float edge = 1.0f;
+    const param *given = params_find(p, "displacement");
+    if (!params_float(p, "displacement.edgelength", &edge, error) ||
+        !float_input_init(&depth, &parser->builder->build, p, "displacement", 0.0f,
+                          error))
+        return false;
+    if (given)
+        pbrt_warning(
+            parser, given->place,
+            "'displacement' of a mesh moves nothing: it stays as its file has it");
+    return true;
+}
+
 static bool add_still_shape(pbrt_parser *parser, const arguments *a,
                             const shape_place *at, GError **error)
 {
     bool is_ply = strcmp(a->kind, "plymesh") == 0;
-    return is_ply ? add_ply(parser, a->p, at, error)
+    return is_ply ? pass_displacement(parser, a->p, error) &&
+                        add_ply(parser, a->p, at, error)
                   : builder_add_shape(parser->builder, a->kind, a->p, at, error);
 }
 
