@@ -13,6 +13,7 @@
  *   pbrt_lens.c       realistic cameras
  *   pbrt_late.c       what is named before it is made
  *   pbrt_v3_names.c   what is named again, in pbrt-v3
+ *   pbrt_v3_values.c  numbers with something behind them, in pbrt-v3
  *   pbrt_v3_kinds.c   what pbrt-v3 does not know, and goes on
  *   pbrt_mesh.c       meshes whose arrays do not fit
  *   pbrt_texture.c    textures
@@ -120,8 +121,9 @@ typedef struct pbrt_parser {
 
     bool is_v3; /**< the main file is of pbrt-v3 (pbrt_v3.h) */
     bool in_world;
-    bool has_ended; /**< pbrt-v3's WorldEnd was read */
-    int object;     /**< index of the one that is being defined, or NO_INDEX */
+    bool has_cut_numbers; /**< pbrt-v3: a word was read as the number it begins with */
+    bool has_ended;       /**< pbrt-v3's WorldEnd was read */
+    int object;           /**< index of the one that is being defined, or NO_INDEX */
     source_place object_place;
     double times[2]; /**< s: of the start and the end transforms */
     graphics_state state;
@@ -245,6 +247,12 @@ bool pbrt_fit_mesh(pbrt_parser *parser, const directive_arguments *a);
 /** @brief A texture of a kind by a name; what is wrong is reported. */
 void pbrt_make_texture(pbrt_parser *parser, const char *name, bool is_spectrum,
                        const char *kind, const params *p);
+
+/* ---- pbrt_v3_values.c ---- */
+
+/** @brief pbrt-v3: the number that a word begins with. The first time it is said. @return
+ * false: it begins with none, or the scene is another's */
+bool pbrt_v3_number(pbrt_parser *parser, const token *t, double *out);
 
 /* ---- pbrt_v3_names.c ---- */
 

@@ -209,7 +209,10 @@ static void add_texture(pbrt_parser *parser, const char *name, const char *type,
 {
     bool is_spectrum = strcmp(type, "spectrum") == 0;
     late_maker make = is_spectrum ? make_spectrum_texture : make_float_texture;
-    if (!is_spectrum && strcmp(type, "float") != 0)
+    bool is_known = is_spectrum || strcmp(type, "float") == 0;
+    if (!is_known && parser->is_v3)
+        pbrt_warning(parser, type_at, "a texture of \"%s\" is left out", type);
+    else if (!is_known)
         pbrt_error(parser, type_at, "expected \"float\" or \"spectrum\", found \"%s\"",
                    type);
     else if (parser->is_v3)
