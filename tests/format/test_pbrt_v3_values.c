@@ -139,6 +139,60 @@ static void test_bounded_samples(void)
     g_assert_cmpfloat(mean_of(img, ""), <=, 0.2 * (1.0 + 1e-5));
 }
 
+/* What a shape says of its material goes before what the material says, for it alone. */
+static void test_materials_of_shapes(void)
+{
+#define LEFT(more) "Translate -1 0 .7 Shape \"sphere\" \"float radius\" .7 " more "\n"
+#define RIGHT "Translate 2 0 0 Shape \"sphere\" \"float radius\" .7\n"
+#define BLUE "Material \"matte\" \"rgb Kd\" [.1 .1 .9] "
+#define NAMED(name, rgb)                                                                 \
+    "MakeNamedMaterial \"" name "\" \"string type\" \"matte\" \"rgb Kd\" [" rgb "]\n"
+    static const pair pairs[] = {
+        {"of its own", WORLD3(BLUE LEFT("\"rgb Kd\" [.9 .1 .1]") RIGHT),
+         WORLD3(RED LEFT("") BLUE RIGHT)},
+        {"named",
+         WORLD3(NAMED("m", ".1 .1 .9") "NamedMaterial \"m\" " LEFT(
+             "\"color Kd\" [.9 .1 .1]") RIGHT),
+         WORLD3(RED LEFT("") BLUE RIGHT)},
+        {"default", WORLD3(LEFT("\"rgb Kd\" [.9 .1 .1]") RIGHT),
+         WORLD3(RED LEFT("") "Material \"matte\" " RIGHT)},
+        {"beside",
+         WORLD3("Material \"glass\" \"float index\" 1.7 " LEFT("\"rgb Kt\" [.9 .1 .1]")),
+         WORLD3(
+             "Material \"glass\" \"float index\" 1.7 \"rgb Kt\" [.9 .1 .1] " LEFT(""))},
+        {"ended",
+         WORLD3(RED "AttributeBegin " BLUE "AttributeEnd " LEFT("\"float sigma\" 0")
+                    RIGHT),
+         WORLD3(RED LEFT("") RIGHT)},
+    };
+    check_all(pairs, G_N_ELEMENTS(pairs));
+}
+
+/* Nothing else is said than what there is to say. */
+static void keep_notes(log_level level, const char *text, void *data)
+{
+    if (level == LOG_NOTE || level == LOG_WARNING)
+        g_string_append_printf(data, "%s\n", text);
+}
+
+static void test_notes(void)
+{
+    scene_folder f = folder_new(
+        LOOK FILM3 "WorldBegin\n" LAMP NAMED("m", ".1 .1 .9") "NamedMaterial \"m\" " LEFT(
+            "\"rgb Kd\" [.9 .1 .1]") "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] "
+                                     "ObjectBegin \"o\" Shape \"disk\" ObjectEnd "
+                                     "ObjectInstance \"o\"\nWorldEnd\n");
+    g_autoptr(GString) notes = g_string_new(NULL);
+    const log_sink sink = {keep_notes, notes};
+    g_autoptr(GError) error = NULL;
+    scene *s = format_load(f.main, 1, &sink, &error);
+    g_assert_no_error(error);
+    g_assert_nonnull(strstr(notes->str, "does not shine"));
+    g_assert_null(strstr(notes->str, "unknown parameter"));
+    scene_free(s);
+    folder_remove(&f);
+}
+
 /* ---- NURBS ---- */
 
 static const source_place nowhere = {"a file", 1, 1};
@@ -217,6 +271,8 @@ int main(int argc, char **argv)
     g_test_add_func("/pbrt-v3-values/lights", test_lights);
     g_test_add_func("/pbrt-v3-values/black-bodies", test_black_bodies);
     g_test_add_func("/pbrt-v3-values/bounded-samples", test_bounded_samples);
+    g_test_add_func("/pbrt-v3-values/materials-of-shapes", test_materials_of_shapes);
+    g_test_add_func("/pbrt-v3-values/notes", test_notes);
     g_test_add_func("/pbrt-v3-values/cylinder", test_cylinder);
     g_test_add_func("/pbrt-v3-values/pole", test_pole);
     return g_test_run();

@@ -26,6 +26,65 @@ bool pbrt_v3_number(pbrt_parser *parser, const token *t, double *out)
     return false;
 }
 
+/* ---- Of a shape's material ---- */
+
+static bool is_of_material(const param *q)
+{
+    static const char *const names[] = {"Kd",
+                                        "Ks",
+                                        "Kr",
+                                        "Kt",
+                                        "reflect",
+                                        "transmit",
+                                        "opacity",
+                                        "color",
+                                        "eta",
+                                        "k",
+                                        "index",
+                                        "sigma",
+                                        "roughness",
+                                        "uroughness",
+                                        "vroughness",
+                                        "amount",
+                                        "bumpmap",
+                                        "metallic",
+                                        "sheen",
+                                        "sheentint",
+                                        "clearcoat",
+                                        "anisotropic",
+                                        "spectrans",
+                                        "thin",
+                                        "clearcoatgloss",
+                                        "difftrans",
+                                        "flatness",
+                                        "speculartint",
+                                        "remaproughness",
+                                        NULL};
+    return g_strv_contains(names, q->name);
+}
+
+params *pbrt_v3_material_of_shape(const pbrt_parser *parser, params *p)
+{
+    const params *given = parser->state.v3_given;
+    params *out = NULL;
+    for (guint i = 0; i < p->list->len;) {
+        const param *q = p->list->pdata[i];
+        if (!is_of_material(q)) {
+            i++;
+            continue;
+        }
+        out = out ? out : params_new_like(given ? given : p);
+        params_add_copy(out, q, NULL);
+        g_ptr_array_remove_index(p->list, i);
+    }
+    for (guint i = 0; out && given && i < given->list->len; i++) {
+        const param *q = given->list->pdata[i];
+        if (!params_find(out, q->name))
+            params_add_copy(out, q, NULL);
+    }
+    return out;
+}
+
 /* ---- Colours ---- */
 
 bool pbrt_v3_luminance(const translation *t, const param *q, double *out)
