@@ -77,6 +77,19 @@ static void test_left_out(void)
          WORLD3("Material \"matte\" " BALL)},
         {"odd spectrum", WORLD3("Material \"matte\" \"spectrum Kd\" [400 .7 500] " BALL),
          WORLD3("Material \"matte\" \"spectrum Kd\" [400 .7] " BALL)},
+        {"mapping",
+         WORLD3("Texture \"t\" \"color\" \"checkerboard\" \"string mapping\" \"odd\" "
+                "Material \"matte\" \"texture Kd\" \"t\" " BALL),
+         WORLD3("Texture \"t\" \"color\" \"checkerboard\" Material \"matte\" "
+                "\"texture Kd\" \"t\" " BALL)},
+        {"picture",
+         WORLD3("Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"\" "
+                "Material \"matte\" \"texture Kd\" \"t\" " BALL),
+         WORLD3("Material \"matte\" \"rgb Kd\" [1 1 1] " BALL)},
+        {"window",
+         LOOK "Film \"image\" \"float cropwindow\" [0 .5] \"integer xresolution\" 8 "
+              "\"integer yresolution\" 6 WorldBegin " LAMP FLOOR "WorldEnd\n",
+         WORLD3("")},
         {"texture", WORLD3(RED "Texture \"t\" \"rgb\" \"constant\" " BALL),
          WORLD3(RED BALL)},
     };

@@ -214,6 +214,9 @@ static void translate_film(const translation *t)
         give_integer(t->p, "xresolution", 640);
     if (!find(t, "yresolution"))
         give_integer(t->p, "yresolution", 480);
+    const param *crop = find(t, "cropwindow");
+    if (crop && crop->n != 4)
+        drop_noted(t, "cropwindow", "'cropwindow' is left out: it has not four numbers");
     double most = number(t, "maxsampleluminance", 0.0);
     drop(t, "scale");
     drop_noted(t, "maxsampleluminance",
