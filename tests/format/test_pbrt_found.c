@@ -282,6 +282,16 @@ static void test_names_that_are_not_there(void)
     g_assert_cmpuint(n_shapes(v), ==, 2);
 }
 
+/* Of a light that no shape has nothing is asked, and all of it is known. */
+static void test_light_of_object(void)
+{
+    g_autoptr(view) v = view_of(
+        "Camera \"perspective\" WorldBegin LightSource \"point\"\n"
+        "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] ObjectBegin \"o\" Shape \"disk\" "
+        "ObjectEnd ObjectInstance \"o\"\n");
+    g_assert_cmpuint(v->scene->lights->len, ==, 1);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -299,5 +309,6 @@ int main(int argc, char **argv)
     g_test_add_func("/pbrt-found/v3-names-that-end", test_names_that_end);
     g_test_add_func("/pbrt-found/v3-xyz", test_xyz);
     g_test_add_func("/pbrt-found/v3-no-names", test_names_that_are_not_there);
+    g_test_add_func("/pbrt-found/light-of-object", test_light_of_object);
     return g_test_run();
 }

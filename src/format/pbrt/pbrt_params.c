@@ -116,7 +116,11 @@ static bool wrong_value(pbrt_parser *parser, const declaration *d, const char *w
 static bool push_float(pbrt_parser *parser, const declaration *d, const token *t)
 {
     float value;
-    if (t->kind != TOKEN_WORD || !number_float(t->text, t->length, &value))
+    double cut;
+    if (t->kind == TOKEN_WORD && !number_float(t->text, t->length, &value) &&
+        pbrt_v3_number(parser, t, &cut))
+        value = (float)cut;
+    else if (t->kind != TOKEN_WORD || !number_float(t->text, t->length, &value))
         return wrong_value(parser, d, "a number", t);
     float *to = push(parser);
     if (to)
@@ -129,7 +133,7 @@ static bool cut_number(pbrt_parser *parser, const declaration *d, const token *t
                        int *out)
 {
     double x;
-    if (!number_double(t->text, t->length, &x))
+    if (!number_double(t->text, t->length, &x) && !pbrt_v3_number(parser, t, &x))
         return false;
     *out = (int)CLAMP(x, (double)INT_MIN, (double)INT_MAX);
     if (fabs((double)*out - x) > 0.0)
@@ -208,12 +212,24 @@ static bool skip_values(pbrt_parser *parser, const token *first)
     return true;
 }
 
+/* pbrt-v3 leaves out words where it wants numbers, and the other way round. */
+static bool is_of_class(const declaration *d, const token *first)
+{
+    bool is_text = first->kind == TOKEN_STRING, is_word = first->kind == TOKEN_WORD;
+    if (d->type->values == STRINGS)
+        return !is_word;
+    if (d->type->values == BOOLS)
+        return !is_word || token_is(first, "true") || token_is(first, "false");
+    return d->type->values == SPECTRA || !is_text;
+}
+
 /** All values of one parameter, into parser->values or strings. */
 static bool read_values(pbrt_parser *parser, const declaration *d, GPtrArray *strings)
 {
     parser->values.n = 0;
     token t = lexer_next(parser->words);
-    if (!d->type)
+    token first = t.kind == TOKEN_LEFT ? lexer_peek(parser->words) : t;
+    if (!d->type || (parser->is_v3 && !is_of_class(d, &first)))
         return skip_values(parser, &t);
     if (t.kind != TOKEN_LEFT)
         return push_value(parser, d, &t, strings);
@@ -286,6 +302,20 @@ static void turn_to_rgb(float *numbers, size_t n)
     }
 }
 
+/* pbrt-v3 leaves out numbers at the end that make no colour, point or pair. */
+static void drop_excess(pbrt_parser *parser, const declaration *d)
+{
+    if (!parser->is_v3 || !d->type || d->type->values == STRINGS)
+        return;
+    size_t excess =
+        parser->values.n % (d->type->values == SPECTRA ? (size_t)2 : d->type->n);
+    if (excess > 0)
+        pbrt_warning(parser, d->token.place,
+                     "parameter '%s': the last %zu of %zu numbers are left out", d->name,
+                     excess, parser->values.n);
+    parser->values.n -= excess;
+}
+
 /* Of pbrt-v3: without a type that it knows, or without a value. */
 static bool is_passed_over(const pbrt_parser *parser, const declaration *d,
                            const GPtrArray *strings)
@@ -334,6 +364,8 @@ static bool read_param(pbrt_parser *parser, params *p)
     g_autoptr(GPtrArray) strings = g_ptr_array_new_with_free_func(g_free);
     GError *error = NULL;
     bool fine = read_declaration(parser, &d) && read_values(parser, &d, strings);
+    if (fine)
+        drop_excess(parser, &d);
     if (fine && !is_passed_over(parser, &d, strings) && replace_older(parser, p, &d) &&
         !add_values(parser, p, &d, strings, &error)) {
         pbrt_report(parser, error);

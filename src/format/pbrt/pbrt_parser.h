@@ -13,6 +13,7 @@
  *   pbrt_lens.c       realistic cameras
  *   pbrt_late.c       what is named before it is made
  *   pbrt_v3_names.c   what is named again, in pbrt-v3
+ *   pbrt_v3_values.c  numbers with something behind them, in pbrt-v3
  *   pbrt_v3_kinds.c   what pbrt-v3 does not know, and goes on
  *   pbrt_mesh.c       meshes whose arrays do not fit
  *   pbrt_texture.c    textures
@@ -80,7 +81,9 @@ typedef struct graphics_state {
     const color_space *space;
     medium_name inside, outside;
     const attribute *attributes[N_TARGETS];
-    v3_name *v3_names; /**< names in force (pbrt_v3_names.c); NULL: none */
+    const char *v3_material; /**< interned: the material's kind in pbrt-v3; NULL: none */
+    const params *v3_given;  /**< and what was said of it; owned by the parser */
+    v3_name *v3_names;       /**< names in force (pbrt_v3_names.c); NULL: none */
 } graphics_state;
 
 typedef struct saved_state {
@@ -120,8 +123,9 @@ typedef struct pbrt_parser {
 
     bool is_v3; /**< the main file is of pbrt-v3 (pbrt_v3.h) */
     bool in_world;
-    bool has_ended; /**< pbrt-v3's WorldEnd was read */
-    int object;     /**< index of the one that is being defined, or NO_INDEX */
+    bool has_cut_numbers; /**< pbrt-v3: a word was read as the number it begins with */
+    bool has_ended;       /**< pbrt-v3's WorldEnd was read */
+    int object;           /**< index of the one that is being defined, or NO_INDEX */
     source_place object_place;
     double times[2]; /**< s: of the start and the end transforms */
     graphics_state state;
@@ -246,6 +250,16 @@ bool pbrt_fit_mesh(pbrt_parser *parser, const directive_arguments *a);
 void pbrt_make_texture(pbrt_parser *parser, const char *name, bool is_spectrum,
                        const char *kind, const params *p);
 
+/* ---- pbrt_v3_values.c ---- */
+
+/** @brief pbrt-v3: the number that a word begins with. The first time it is said. @return
+ * false: it begins with none, or the scene is another's */
+bool pbrt_v3_number(pbrt_parser *parser, const token *t, double *out);
+/** @brief What a shape says of its material is taken from it. @return that and what the
+ * material says else, in pbrt-v3's words; NULL: the shape says nothing. Owned by the
+ * caller. */
+params *pbrt_v3_material_of_shape(const pbrt_parser *parser, params *p);
+
 /* ---- pbrt_v3_names.c ---- */
 
 /** @brief A texture by a name that may be there already; a->p is taken. */
@@ -254,6 +268,12 @@ void pbrt_v3_add_texture(pbrt_parser *parser, const char *name, bool is_spectrum
 /** @brief The name in the scene for a material that the file calls so from here on. */
 const char *pbrt_v3_new_material(pbrt_parser *parser, const char *name,
                                  source_place place);
+/** @brief The material of that name now, or, without a name, the one of the state is of
+ * that kind, said in pbrt-v3's words: shapes may say more of it. */
+void pbrt_v3_keep_material(pbrt_parser *parser, const char *name, const char *kind,
+                           const params *p);
+/** @brief What was kept of the material that the file means by a name is the state's. */
+void pbrt_v3_take_material(pbrt_parser *parser, const char *name);
 /** @brief Names that were given since `before` are in force no more. */
 void pbrt_v3_end_names(v3_name *given, const v3_name *before);
 /** @brief What the scene calls the material that the file means by a name here. */

@@ -13,7 +13,8 @@ static bool read_numbers(pbrt_parser *parser, double *out, int n)
 {
     for (int i = 0; i < n; i++) {
         token t = lexer_peek(parser->words);
-        if (t.kind != TOKEN_WORD || !number_double(t.text, t.length, &out[i]))
+        if (t.kind != TOKEN_WORD || (!number_double(t.text, t.length, &out[i]) &&
+                                     !pbrt_v3_number(parser, &t, &out[i])))
             return pbrt_expected(parser, "a number", &t);
         lexer_next(parser->words);
     }

@@ -9,7 +9,6 @@
 #include "format/pbrt/pbrt_v3_words.h"
 
 #include "base/intern.h"
-#include "base/memory.h"
 #include "medium/medium_presets.h"
 
 #include <math.h>
@@ -104,7 +103,7 @@ static double lost_scale(const translation *t, const char *name)
 
 static void translate_emission(const translation *t, const char *name)
 {
-    double scale = lost_scale(t, name);
+    double scale = lost_scale(t, name), luminance;
     const param *by = find(t, "scale");
     if (is_rgb(by)) {
         double factor[3];
@@ -120,6 +119,10 @@ static void translate_emission(const translation *t, const char *name)
         drop(t, "scale");
     } else if (is_number(by)) {
         scale *= (double)by->numbers[0];
+    } else if (by && pbrt_v3_luminance(t, by, &luminance)) {
+        note(t, by, "a light is multiplied by the luminance of its scale");
+        scale *= luminance;
+        drop(t, "scale");
     }
     if (fabs(scale - 1.0) > 1e-9)
         set_number(t, "scale", scale);
@@ -143,12 +146,21 @@ static double take_tint(const translation *t, const char *name)
     return mean;
 }
 
+/* No name is no picture. */
+static void drop_empty(const translation *t, const char *name)
+{
+    const param *q = find(t, name);
+    if (q && q->type == PARAM_STRING && q->n == 1 && !*q->strings[0])
+        drop(t, name);
+}
+
 static void translate_light(const translation *t)
 {
     bool parallel = strcmp(*t->kind, "distant") == 0 || strcmp(*t->kind, "infinite") == 0;
     if (strcmp(*t->kind, "exinfinite") == 0)
         set_kind(t, "infinite");
     rename_to(t, "mapname", "filename");
+    drop_empty(t, "filename");
     const char *name = parallel ? "L" : "I";
     bool has_own = strcmp(*t->kind, "goniometric") == 0;
     bool is_tinted = find(t, "filename") && !has_own && find(t, name);
@@ -163,109 +175,6 @@ static void translate_area_light(const translation *t)
     if (strcmp(*t->kind, "area") == 0)
         set_kind(t, "diffuse");
     translate_emission(t, "L");
-}
-
-/* ---- Shapes ---- */
-
-/* Of the unit square, two triangles a cell. */
-typedef struct grid {
-    size_t nu, nv;
-    const float *z;
-    float *points, *uv;
-    int *indices;
-} grid;
-
-static size_t n_corners(const grid *g)
-{
-    return 6 * (g->nu - 1) * (g->nv - 1);
-}
-
-static bool has_arrays(grid *g, GError **error)
-{
-    size_t n = g->nu * g->nv;
-    g->points = big_alloc(n, 3 * sizeof(float), "a heightfield", error);
-    if (g->points)
-        g->uv = big_alloc(n, 2 * sizeof(float), "a heightfield", error);
-    if (g->uv)
-        g->indices = big_alloc(n_corners(g), sizeof(int), "a heightfield", error);
-    return g->indices != NULL;
-}
-
-static void fill_grid(grid *g)
-{
-    int *corner = g->indices;
-    for (size_t y = 0; y < g->nv; y++)
-        for (size_t x = 0; x < g->nu; x++) {
-            size_t i = y * g->nu + x;
-            g->points[3 * i] = g->uv[2 * i] = (float)x / (float)(g->nu - 1);
-            g->points[3 * i + 1] = g->uv[2 * i + 1] = (float)y / (float)(g->nv - 1);
-            g->points[3 * i + 2] = g->z[i];
-            const size_t up = i + g->nu, cell[] = {i, i + 1, up + 1, i, up + 1, up};
-            if (x + 1 < g->nu && y + 1 < g->nv)
-                for (int k = 0; k < 6; k++)
-                    *corner++ = (int)cell[k];
-        }
-}
-
-static bool add_grid(const translation *t, grid *g)
-{
-    size_t n = g->nu * g->nv;
-    bool done = has_arrays(g, t->error);
-    if (done) {
-        fill_grid(g);
-        done = params_add_numbers(t->p, t->p->place, PARAM_POINT3, "P", g->points, 3 * n,
-                                  t->error) &&
-               params_add_numbers(t->p, t->p->place, PARAM_POINT2, "uv", g->uv, 2 * n,
-                                  t->error) &&
-               params_add_integers(t->p, t->p->place, PARAM_INTEGER, "indices",
-                                   g->indices, n_corners(g), t->error);
-    }
-    big_free(g->points);
-    big_free(g->uv);
-    big_free(g->indices);
-    return done;
-}
-
-static int count_of(const translation *t, const char *name)
-{
-    const param *q = find(t, name);
-    return q && q->type == PARAM_INTEGER && q->n == 1 ? q->integers[0] : 0;
-}
-
-/* What does not fit stays as it is, to be refused. */
-static void translate_heightfield(const translation *t)
-{
-    enum { MOST = 32768 };
-    const param *z = find(t, "Pz");
-    int nu = count_of(t, "nu"), nv = count_of(t, "nv");
-    if (nu < 2 || nv < 2 || nu > MOST || nv > MOST || !z || z->type != PARAM_FLOAT ||
-        z->n != (size_t)nu * (size_t)nv)
-        return;
-    grid g = {.nu = (size_t)nu, .nv = (size_t)nv, .z = z->numbers};
-    if (!add_grid(t, &g))
-        return;
-    set_kind(t, "trianglemesh");
-    drop(t, "nu");
-    drop(t, "nv");
-    drop(t, "Pz");
-}
-
-static void translate_shape(const translation *t)
-{
-    param *uv = find(t, "uv");
-    if (!uv)
-        uv = find(t, "st");
-    if (uv && (uv->type == PARAM_FLOAT || uv->type == PARAM_POINT2)) {
-        uv->name = intern("uv");
-        uv->type = PARAM_POINT2;
-    }
-    if (strcmp(*t->kind, "heightfield") == 0)
-        translate_heightfield(t);
-    if (strcmp(*t->kind, "loopsubdiv") == 0)
-        rename_to(t, "nlevels", "levels");
-    drop(t, "discarddegenerateUVs");
-    drop_noted(t, "shadowalpha",
-               "'shadowalpha' is left out: shadows are cut out by 'alpha'");
 }
 
 /* ---- Media ---- */
@@ -305,8 +214,15 @@ static void translate_film(const translation *t)
         give_integer(t->p, "xresolution", 640);
     if (!find(t, "yresolution"))
         give_integer(t->p, "yresolution", 480);
+    const param *crop = find(t, "cropwindow");
+    if (crop && crop->n != 4)
+        drop_noted(t, "cropwindow", "'cropwindow' is left out: it has not four numbers");
+    double most = number(t, "maxsampleluminance", 0.0);
     drop(t, "scale");
-    drop(t, "maxsampleluminance");
+    drop_noted(t, "maxsampleluminance",
+               "'maxsampleluminance' bounds each component, not the luminance");
+    if (most > 0.0 && most * scale > 0.0 && !isinf(most))
+        give_float(t->p, "maxcomponentvalue", most * scale);
     if (fabs(scale - 1.0) > 1e-9)
         give_float(t->p, "iso", 100.0 * scale);
 }
@@ -356,15 +272,21 @@ static void translate_sampler(const translation *t)
 
 static void translate_integrator(const translation *t)
 {
-    static const char *const dropped[] = {
-        "rrthreshold", "lightsamplestrategy", "imagewritefrequency", "pixelbounds",
-        "strategy",    "visualizestrategies", "visualizeweights",    "cossample",
-        "nsamples"};
+    static const char *const dropped[] = {"rrthreshold",         "lightsamplestrategy",
+                                          "imagewritefrequency", "strategy",
+                                          "cossample",           "nsamples"};
+    static const char *const lost[] = {"pixelbounds", "visualizestrategies",
+                                       "visualizeweights"};
     static const char *const ours[] = {
         "path", "volpath", "simplepath", "simplevolpath", "randomwalk", "lightpath",
         "bdpt", "mlt",     "photonmap",  "auto",          "vcm",        NULL};
     for (size_t i = 0; i < G_N_ELEMENTS(dropped); i++)
         drop(t, dropped[i]);
+    for (size_t i = 0; i < G_N_ELEMENTS(lost); i++) {
+        g_autofree char *text =
+            g_strdup_printf("'%s' is left out: the whole picture is rendered", lost[i]);
+        drop_noted(t, lost[i], text);
+    }
     if (strcmp(*t->kind, "sppm") == 0) {
         param *passes = find(t, "numiterations");
         if (!passes)
@@ -425,7 +347,7 @@ bool pbrt_v3_translate(pbrt_v3_target target, char **kind, params *p, const log_
         [V3_MEDIUM] = translate_medium,
         [V3_LIGHT] = translate_light,
         [V3_AREA_LIGHT] = translate_area_light,
-        [V3_SHAPE] = translate_shape,
+        [V3_SHAPE] = pbrt_v3_shape,
         [V3_FILM] = translate_film,
         [V3_FILTER] = translate_filter,
         [V3_SAMPLER] = translate_sampler,
@@ -437,6 +359,8 @@ bool pbrt_v3_translate(pbrt_v3_target target, char **kind, params *p, const log_
     if (target == V3_MATERIAL || target == V3_LIGHT || target == V3_AREA_LIGHT ||
         target == V3_MEDIUM)
         drop_numbers(&t);
+    if (target == V3_MATERIAL || target == V3_TEXTURE || target == V3_MEDIUM)
+        pbrt_v3_heat(&t);
     translators[target](&t);
     if (refused)
         error_move_at(error, p->place, refused);

@@ -23,7 +23,7 @@ struct v3_name {
     name_kind kind;
     const char *name;    /* interned: as the file has it */
     const char *actual;  /* interned: as the scene has it */
-    const char *texture; /* interned: its kind */
+    const char *kind_of; /* interned: the texture's or material's, "mix" or "matte" */
     const params *given; /* kept by the parser */
     const char *twin;    /* the scene's name of the same in the other type, or NULL */
     v3_name *before;     /* in force when it was given */
@@ -109,6 +109,31 @@ const char *pbrt_v3_material_name(const pbrt_parser *parser, const char *name)
     return n ? n->actual : name;
 }
 
+void pbrt_v3_keep_material(pbrt_parser *parser, const char *name, const char *kind,
+                           const params *p)
+{
+    params *given = params_new_like(p);
+    for (guint i = 0; i < p->list->len; i++)
+        if (p->list->pdata[i] != params_find(p, "type"))
+            params_add_copy(given, p->list->pdata[i], NULL);
+    g_ptr_array_add(parser->kept, given);
+    v3_name *n = name ? find_name(parser, MATERIAL, name) : NULL;
+    if (n) {
+        n->kind_of = intern(kind);
+        n->given = given;
+    } else {
+        parser->state.v3_material = intern(kind);
+        parser->state.v3_given = given;
+    }
+}
+
+void pbrt_v3_take_material(pbrt_parser *parser, const char *name)
+{
+    const v3_name *n = find_name(parser, MATERIAL, name);
+    parser->state.v3_material = n ? n->kind_of : NULL;
+    parser->state.v3_given = n ? n->given : NULL;
+}
+
 /* ---- Twins ---- */
 
 static bool is_number_param(const char *name)
@@ -182,7 +207,7 @@ static const char *twin_of(pbrt_parser *parser, v3_name *n)
     g_autoptr(params) p =
         is_color ? in_numbers(parser, n->given) : as_grey(n->given, n->actual);
     n->twin = intern(name);
-    pbrt_make_texture(parser, name, !is_color, is_color ? n->texture : "mix", p);
+    pbrt_make_texture(parser, name, !is_color, is_color ? n->kind_of : "mix", p);
     return n->twin;
 }
 
@@ -210,7 +235,7 @@ void pbrt_v3_add_texture(pbrt_parser *parser, const char *name, bool is_spectrum
     pbrt_v3_resolve(parser, a->p, is_spectrum);
     v3_name *n = give_name(parser, is_spectrum ? COLOR_TEXTURE : NUMBER_TEXTURE, name,
                            a->p->place);
-    n->texture = intern(a->kind);
+    n->kind_of = intern(a->kind);
     n->given = a->p;
     g_ptr_array_add(parser->kept, g_steal_pointer(&a->p));
     if (is_spectrum && is_noise(a->kind))

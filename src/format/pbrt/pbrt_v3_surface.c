@@ -285,6 +285,26 @@ static void translate_uv(const translation *t)
     note(t, NULL, "texture uv becomes bilerp, which does not repeat");
 }
 
+static bool has_text(const translation *t, const char *name)
+{
+    return *text_of(t, name) != '\0';
+}
+
+static void drop_unknown_mapping(const translation *t)
+{
+    static const char *const known[] = {"uv", "spherical", "cylindrical", "planar", NULL};
+    if (has_text(t, "mapping") && !g_strv_contains(known, text_of(t, "mapping")))
+        drop_noted(t, "mapping", "a mapping that is unknown is 'uv'");
+}
+
+/* pbrt-v3's for a picture that can not be read. */
+static void to_white(const translation *t)
+{
+    note(t, NULL, "a picture without a name is white");
+    set_kind(t, "constant");
+    g_ptr_array_set_size(t->p->list, 0);
+}
+
 void pbrt_v3_texture(const translation *t)
 {
     const param *gamma = find(t, "gamma"), *trilinear = find(t, "trilinear");
@@ -293,8 +313,13 @@ void pbrt_v3_texture(const translation *t)
     if (strcmp(*t->kind, "uv") == 0)
         translate_uv(t);
     drop(t, "aamode");
+    drop_unknown_mapping(t);
     if (strcmp(*t->kind, "imagemap") != 0)
         return;
+    if (!has_text(t, "filename")) {
+        to_white(t);
+        return;
+    }
     if (gamma && gamma->type == PARAM_BOOL && gamma->n == 1)
         give_text(t->p, PARAM_STRING, "encoding", gamma->integers[0] ? "sRGB" : "linear");
     if (trilinear && trilinear->type == PARAM_BOOL && trilinear->n == 1 &&

@@ -117,3 +117,14 @@ static inline void clamp_rgb(const translation *t, const char *name)
 
 void pbrt_v3_material(const translation *t);
 void pbrt_v3_texture(const translation *t);
+
+/* ---- pbrt_v3_shape.c ---- */
+
+void pbrt_v3_shape(const translation *t);
+
+/* ---- pbrt_v3_values.c ---- */
+
+/* Black bodies with a scale become spectra. */
+void pbrt_v3_heat(const translation *t);
+/* The luminance of a spectrum, 1 for one that is 1; false: it is none. */
+bool pbrt_v3_luminance(const translation *t, const param *q, double *out);

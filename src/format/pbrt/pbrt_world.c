@@ -100,6 +100,8 @@ bool pbrt_material(pbrt_parser *parser, source_place place)
     if (!read_arguments(parser, place, TARGET_MATERIAL, &a))
         return false;
     is_known(parser, V3_MATERIAL, &a);
+    if (parser->is_v3)
+        pbrt_v3_keep_material(parser, NULL, a.kind, a.p);
     translate(parser, V3_MATERIAL, &a);
     if (pbrt_must_wait(parser, a.p))
         let_material_wait(parser, NULL, &a);
@@ -126,11 +128,13 @@ static void add_named(pbrt_parser *parser, const arguments *named, const char *k
 {
     arguments a = {.kind = g_strdup(kind), .at = named->at, .p = named->p};
     is_known(parser, V3_MATERIAL, &a);
-    translate(parser, V3_MATERIAL, &a);
     g_hash_table_add(parser->given_materials, g_strdup(named->kind));
     const char *name = parser->is_v3
                            ? pbrt_v3_new_material(parser, named->kind, named->at)
                            : named->kind;
+    if (parser->is_v3)
+        pbrt_v3_keep_material(parser, named->kind, a.kind, a.p);
+    translate(parser, V3_MATERIAL, &a);
     make_material(parser, name, &a);
     g_free(a.kind);
 }
@@ -187,6 +191,8 @@ bool pbrt_named_material(pbrt_parser *parser, source_place place)
     }
     if (!is_known_material(parser, actual))
         pbrt_await_material(parser, actual, at);
+    if (parser->is_v3)
+        pbrt_v3_take_material(parser, name);
     bool is_none = g_hash_table_contains(parser->interfaces, actual);
     parser->state.material =
         is_none ? NO_INDEX : builder_find_material(parser->builder, actual);
@@ -209,7 +215,10 @@ static void add_texture(pbrt_parser *parser, const char *name, const char *type,
 {
     bool is_spectrum = strcmp(type, "spectrum") == 0;
     late_maker make = is_spectrum ? make_spectrum_texture : make_float_texture;
-    if (!is_spectrum && strcmp(type, "float") != 0)
+    bool is_known = is_spectrum || strcmp(type, "float") == 0;
+    if (!is_known && parser->is_v3)
+        pbrt_warning(parser, type_at, "a texture of \"%s\" is left out", type);
+    else if (!is_known)
         pbrt_error(parser, type_at, "expected \"float\" or \"spectrum\", found \"%s\"",
                    type);
     else if (parser->is_v3)
@@ -423,8 +432,23 @@ static void make_shape(pbrt_parser *parser, const char *name, const arguments *a
         return;
     }
     pbrt_check_used(parser, a->p, "shape", a->kind);
-    if (at.area_light)
+    bool shines = parser->object == NO_INDEX && !pbrt_is_moving(parser);
+    if (at.area_light && shines)
         pbrt_check_used(parser, at.area_light, "light", "diffuse");
+}
+
+/* pbrt-v3: what a shape says of its material goes before what the material says. */
+static void make_own_material(pbrt_parser *parser, const arguments *a)
+{
+    const char *kind = parser->state.v3_material;
+    bool is_none = parser->state.material == NO_INDEX;
+    params *p = is_none ? NULL : pbrt_v3_material_of_shape(parser, a->p);
+    if (!p)
+        return;
+    arguments own = {.kind = g_strdup(kind ? kind : "matte"), .at = a->at, .p = p};
+    translate(parser, V3_MATERIAL, &own);
+    parser->state.material = add_material(parser, NULL, own.kind, own.p);
+    pbrt_clear_arguments(&own);
 }
 
 bool pbrt_shape(pbrt_parser *parser, source_place place)
@@ -436,12 +460,16 @@ bool pbrt_shape(pbrt_parser *parser, source_place place)
         pbrt_clear_arguments(&a);
         return true;
     }
+    int material_before = parser->state.material;
+    if (parser->is_v3)
+        make_own_material(parser, &a);
     translate(parser, V3_SHAPE, &a);
     bool waits = pbrt_must_wait(parser, a.p) || pbrt_awaits_media(parser);
     if (waits && parser->object == NO_INDEX)
         pbrt_wait(parser, LATE_SHAPE, make_shape, NULL, &a);
     else
         make_shape(parser, NULL, &a);
+    parser->state.material = material_before;
     pbrt_clear_arguments(&a);
     return true;
 }
