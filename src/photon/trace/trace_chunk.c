@@ -1,6 +1,7 @@
 #include "photon/trace/trace_chunk.h"
 
-enum { BLOCK = 256 }; /* size: photons; half of it a chunk is not filled */
+/* size: of photons; half of it a chunk is not filled */
+enum { BLOCK = AHEAD_STREAMS * AHEAD_STREAMS };
 
 /* @return NULL: memory was refused */
 static photon_store *open_block(photon_blocks *of, GError **error)
