@@ -18,12 +18,6 @@ typedef struct choice {
     bool gathers;
 } choice;
 
-/* Air that scatters half of all light that goes through the room. */
-#define FOGGY(size)                                                                      \
-    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" "           \
-    "[.5 .5 .5] \"rgb sigma_a\" [.02 .02 .02] MediumInterface \"\" \"fog\" " ROOM_CAMERA \
-    SIZE(size) "WorldBegin MediumInterface \"fog\" \"fog\" " ROOM_LAMP("") ROOM_WALLS
-
 #define QUICK "integrator=auto spp=1 passes=16 seed=2 threads=1"
 
 static const choice choices[] = {
@@ -31,7 +25,6 @@ static const choice choices[] = {
     {"room-with-glass", ROOM_OF(128) GLASS_BALL, QUICK, true},
     {"shown-once", ROOM_OF(128) GLASS_BALL, QUICK " denoise=on passes=1 photons=24576",
      true},
-    {"fog", FOGGY(128), QUICK " denoise=on", true},
     {"open", OPEN_OF(128), QUICK, false},
     {"unwanted", ROOM_OF(128), QUICK " gather_indirect=off", false},
     {"bounded", ROOM_OF(128), QUICK " max_backward_bounces=9", false},

@@ -58,13 +58,14 @@ enum { N_BY_MAPS = 2 + 1 + 2 + 1, N_BY_PATHS = 2 }; /* math: as many */
 
 /* ---- Trial passes ---- */
 
-/* Bounds on bounces bound different paths where photons meet the eye's. */
+/* In a medium the bias is not known: its discs have one radius for good. Bounds on
+   bounces bound different paths where photons meet the eye's. */
 static bool may_gather(const transport_plan *plan)
 {
     const settings *how = &plan->how;
     return how->gather_indirect && how->direct_illumination &&
-           how->max_backward_bounces < 0 && how->max_forward_bounces < 0 &&
-           scene_is_lit(plan->scene) &&
+           !scene_has_media(plan->scene) && how->max_backward_bounces < 0 &&
+           how->max_forward_bounces < 0 && scene_is_lit(plan->scene) &&
            plan_grant(plan, 1.0) >= LEAST_TRIALS * (N_BY_MAPS + N_BY_PATHS) * SAMPLE_RAYS;
 }
 
@@ -123,53 +124,26 @@ static void widen(photonmap_pass *pass, double by)
         pass->estimates[c].radius *= (float)by;
 }
 
-/* A pass of few photons, whose radii hold as many as those of the plan. In media one for
-   all: places' own are kept for good. */
-static void plan_few(gather_trial *t, int i)
+/* A pass of few photons, whose radii hold as many as those of the plan. */
+static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError **error)
 {
     transport_plan *few = &t->few[i];
+    transport_counts counts = {0};
     *few = t->plan;
     few->how.seed =
         (int64_t)(hash_mix((uint64_t)t->plan.how.seed, 0x676174686572u + (uint64_t)i) >>
                   1);
-    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
         if (few->n_photons[c] > 0)
             few->n_photons[c] = (uint64_t)MAX((double)few->n_photons[c] / t->fewer, 1.0);
-        few->radius_in_media[c] *= sqrt(t->fewer);
-        few->radius_cache_in_media[c] = NULL;
-    }
-}
-
-/* @param wider than they are planned, radii are */
-static bool send_few(gather_trial *t, int i, double wider, const cancel_flag *cancel,
-                     GError **error)
-{
-    transport_counts counts = {0};
-    t->maps[i] = transport_photonmap.begin_pass(&t->few[i], 0, cancel, &counts, error);
+    t->maps[i] = transport_photonmap.begin_pass(few, 0, cancel, &counts, error);
     if (!t->maps[i])
         return false;
-    widen(t->maps[i], wider * sqrt(t->fewer));
+    widen(t->maps[i], sqrt(t->fewer));
     double rays = plan_rays_of_photons(&counts);
-    t->photon_rays = rays * t->fewer;
+    t->photon_rays += 0.5 * rays * t->fewer;
     t->plan.planning += rays;
     return true;
-}
-
-/* The same photons, whose radii are wider. In media discs have theirs from the start. */
-static bool widen_maps(gather_trial *t, const cancel_flag *cancel, GError **error)
-{
-    bool ok = true;
-    for (int i = 0; i < 2 && ok; i++) {
-        if (!scene_has_media(t->plan.scene)) {
-            widen(t->maps[i], WIDER);
-            continue;
-        }
-        for (int c = 0; c < N_PHOTON_CLASSES; c++)
-            t->few[i].radius_in_media[c] *= WIDER;
-        transport_photonmap.end_pass(g_steal_pointer(&t->maps[i]));
-        ok = send_few(t, i, WIDER, cancel, error);
-    }
-    return ok;
 }
 
 /* ---- Trial samples ---- */
@@ -309,9 +283,10 @@ static bool run_places(gather_trial *t, transport_plan *plan, const path_pass *p
     if (!parallel_work(t->n - task.first, LEAST_TRIALS, by, ask_maps_of_some, &task,
                        error))
         return false;
+    for (int i = 0; i < 2; i++)
+        widen(t->maps[i], WIDER);
     task.first = 0;
-    if (!widen_maps(t, cancel, error) ||
-        !parallel_work(t->n, LEAST_TRIALS, by, ask_wider_of_some, &task, error))
+    if (!parallel_work(t->n, LEAST_TRIALS, by, ask_wider_of_some, &task, error))
         return false;
     sum_rays(t, plan);
     return true;
@@ -396,14 +371,11 @@ static double bias_of_passes(double alpha, double passes)
     return pow(passes, alpha - 1.0) / tgamma(1.0 + alpha);
 }
 
-/* Noise is taken out of two passes or more. In media the filter has no features to go by,
-   and paths that meet a lamp are rare and loud: in a foggy room 16 passes of paths
-   without their noise had relMSE .022 to .035, one of photons, in a third of the time,
-   .015. */
+/* Noise is taken out of two passes or more. */
 static double weight_of_blotches(const transport_plan *plan)
 {
     bool filtered = plan->how.denoise && settings_planned_passes(&plan->how) >= 2.0;
-    return filtered && !scene_has_media(plan->scene) ? BLOTCHES : 1.0;
+    return filtered ? BLOTCHES : 1.0;
 }
 
 /* Squared error of the picture times the samples of a pixel: comparable to the variance
@@ -478,10 +450,8 @@ bool gather_decide(transport_plan *plan, const path_pass *paths,
     double n = n_photons(&t->plan);
     double most = plan_trials_for(plan, 0.5, 2.0 * PHOTON_RAYS, UINT32_MAX);
     t->fewer = fmax(n / most, 1.0);
-    for (int i = 0; i < 2 && ok; i++) {
-        plan_few(t, i);
-        ok = send_few(t, i, 1.0, cancel, error);
-    }
+    for (int i = 0; i < 2 && ok; i++)
+        ok = send_few(t, i, cancel, error);
     plan->planning = t->plan.planning;
     ok = ok && run_places(t, plan, paths, cancel, error);
     if (ok && gathering_pays(plan, t))
