@@ -13,13 +13,10 @@
 #include <unistd.h>
 
 enum {
-    ALIGNMENT = 64,    /* bytes: a cache line */
-    LEAST_PAGE = 4096, /* bytes: of any system */
-    MUCH = 4 << 20,    /* bytes, from which on it is worth telling the system */
+    ALIGNMENT = 64,       /* bytes: a cache line */
+    HUGE_ARRAY = 4 << 20, /* bytes, from which on it is worth asking the system for more
+                             than it does by itself */
 };
-
-#define HUGE_PAGE ((size_t)2 << 20) /* bytes: of most systems */
-#define REGION ((size_t)16 << 20)   /* bytes of address space: see open_region */
 
 #define DEFAULT_SHARE 0.8
 
@@ -195,16 +192,28 @@ bool memory_ask(size_t bytes, const char *what, GError **error)
 
 /* ---- Arrays ---- */
 
-/* Small ones come from calloc, and before each stand how large it is and where it begins.
- * Large ones come from the system: of what malloc is given back it keeps pieces, which do
- * not fit what comes next. A large array is not touched before it is used, nor by one
- * thread only. */
+/* Fewer page faults while an array fills, fewer misses of the TLB when it is read in no
+   order. Only a hint. */
+static void use_huge_pages(char *base, size_t bytes)
+{
+    uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
+    uintptr_t begin = ((uintptr_t)base + page - 1) & ~(page - 1);
+    madvise((void *)begin, ((uintptr_t)base + bytes - begin) & ~(page - 1),
+            MADV_HUGEPAGE);
+}
+
+/* From calloc, which knows which memory is zero already: a big array is then not touched
+ * before it is used, nor by one thread only. Before the array stand how large it is and
+ * where it begins; an odd place says that it is the system's. */
 typedef struct array_head {
     size_t bytes;
-    void *base;
+    uintptr_t base;
 } array_head;
 
-/* A sanitizer watches what comes from malloc only. */
+enum { IS_MAPPED = 1 };
+
+/* From the system where an array is large: of what malloc is given back it keeps pieces,
+   which do not fit what comes next. A sanitizer watches what comes from malloc only. */
 static bool is_large(size_t bytes)
 {
 #ifdef SANITIZED
@@ -215,154 +224,38 @@ static bool is_large(size_t bytes)
 #endif
 }
 
-/* Large arrays lie beside one another in regions of the system's, so that those of less
- * than a huge page share one:
- *
- *   region  │ array │ array │   array   │ given back │ array │ not taken yet        │
- *           └──── huge page ────┴──── huge page ────┴──── huge page ────┴── .. ─────┘
- *
- * The memory of each goes back alone, in whole pages; the region's addresses go with its
- * last array. What stands in a head elsewhere is kept apart from them: a head would be
- * touched before it is known which thread fills the array. */
-typedef struct region {
-    char *next, *end; /* what is not taken yet */
-    char *begin;
-    size_t n_arrays;
-} region;
-
-typedef struct mapped_array {
-    size_t bytes;
-    region *in;
-} mapped_array;
-
-static struct {
-    GMutex lock;
-    GHashTable *arrays; /* under the lock, as all of it: mapped_array by place, owned */
-    region *last;       /* where the next array will be; NULL: there is none */
-} mapped;
-
-static size_t whole_pages(size_t bytes, size_t page)
+static bool is_mapped(const array_head *head)
 {
-    return (bytes + page - 1) & ~(page - 1);
+    return head->base & IS_MAPPED;
 }
 
-static size_t page_size(void)
+/* There may be so many pieces of the system's and no more. @return 0: no memory */
+static uintptr_t take(size_t bytes)
 {
-    return (size_t)sysconf(_SC_PAGESIZE);
+    void *base = MAP_FAILED;
+    if (is_large(bytes))
+        base =
+            mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (base != MAP_FAILED)
+        return (uintptr_t)base | IS_MAPPED;
+    return (uintptr_t)calloc(1, bytes);
 }
 
-static void close_region(region *r)
+static void give_back(const array_head *head)
 {
-    if (!r || r->n_arrays > 0)
-        return;
-    munmap(r->begin, (size_t)(r->end - r->begin));
-    g_free(r);
+    if (is_mapped(head))
+        munmap((void *)(head->base - IS_MAPPED), head->bytes);
+    else
+        free((void *)head->base);
 }
 
-/* One that begins with a huge page, and holds so many bytes at least. Fewer faults while
-   arrays fill, fewer misses of the TLB when they are read in no order: but that pages
-   are huge is only a hint. @return NULL: no memory */
-static region *open_region(size_t bytes)
+/* Behind room for the head. */
+static void *array_of(const array_head *head)
 {
-    size_t size = whole_pages(MAX(bytes, REGION), HUGE_PAGE), room = size + HUGE_PAGE;
-    char *base =
-        mmap(NULL, room, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (base == MAP_FAILED)
-        return NULL;
-    size_t before = whole_pages((uintptr_t)base, HUGE_PAGE) - (uintptr_t)base;
-    if (before > 0)
-        munmap(base, before);
-    if (before < HUGE_PAGE)
-        munmap(base + before + size, HUGE_PAGE - before);
-    region *r = g_new0(region, 1);
-    r->begin = r->next = base + before;
-    r->end = r->begin + size;
-    madvise(r->begin, size, MADV_HUGEPAGE);
-    return r;
-}
-
-/* The region with room for so many bytes. NULL: no memory */
-static region *region_for(size_t bytes)
-{
-    region *last = mapped.last;
-    if (last && bytes <= (size_t)(last->end - last->next))
-        return last;
-    region *next = open_region(bytes);
-    if (next) {
-        close_region(last);
-        mapped.last = next;
-    }
-    return next;
-}
-
-/* @return NULL: no memory */
-static void *map_array(size_t bytes)
-{
-    void *array = NULL;
-    const size_t size = whole_pages(bytes, page_size());
-    g_mutex_lock(&mapped.lock);
-    if (!mapped.arrays)
-        mapped.arrays = g_hash_table_new_full(NULL, NULL, NULL, g_free);
-    region *in = region_for(size);
-    if (in) {
-        mapped_array *noted = g_new(mapped_array, 1);
-        *noted = (mapped_array){bytes, in};
-        array = in->next;
-        in->next += size;
-        in->n_arrays++;
-        g_hash_table_insert(mapped.arrays, array, noted);
-    }
-    g_mutex_unlock(&mapped.lock);
-    return array;
-}
-
-/* Gives back what of an array is behind the first bytes; 0: all of it. @return how many
-   bytes that is */
-static size_t cut_mapped(void *array, size_t bytes)
-{
-    const size_t page = page_size(), kept = whole_pages(bytes, page);
-    g_mutex_lock(&mapped.lock);
-    mapped_array *noted = g_hash_table_lookup(mapped.arrays, array);
-    size_t before = noted->bytes, whole = whole_pages(before, page);
-    noted->bytes = bytes;
-    if (kept < whole)
-        madvise((char *)array + kept, whole - kept, MADV_DONTNEED);
-    if (bytes == 0) {
-        region *in = noted->in;
-        in->n_arrays--;
-        if (in != mapped.last)
-            close_region(in);
-        g_hash_table_remove(mapped.arrays, array);
-    }
-    g_mutex_unlock(&mapped.lock);
-    return before - bytes;
-}
-
-/* Only they begin with a page. */
-static bool is_mapped(const void *array)
-{
-    return (uintptr_t)array % LEAST_PAGE == 0;
-}
-
-/* Behind room for the head, and at no page's begin. */
-static void *array_behind(const array_head *head)
-{
-    uintptr_t place = ((uintptr_t)head->base + ALIGNMENT) & ~(uintptr_t)(ALIGNMENT - 1);
-    place += place % LEAST_PAGE == 0 ? ALIGNMENT : 0;
-    array_head *array = (array_head *)place;
+    uintptr_t base = head->base & ~(uintptr_t)IS_MAPPED;
+    array_head *array = (array_head *)((base + ALIGNMENT) & ~(uintptr_t)(ALIGNMENT - 1));
     array[-1] = *head;
     return array;
-}
-
-/* There may be so many pieces of the system's and no more. @return NULL: no memory */
-static void *take(size_t bytes)
-{
-    void *array = is_large(bytes) ? map_array(bytes) : NULL;
-    const array_head head = {bytes, array ? NULL : calloc(1, bytes + ALIGNMENT)};
-    if (!head.base)
-        return array;
-    atomic_fetch_add(&in_arrays, bytes);
-    return array_behind(&head);
 }
 
 /* With the head. */
@@ -380,12 +273,16 @@ static void *make_array(size_t n, size_t size, const char *what, bool fails,
     size_t total = bytes_for(fits ? bytes : SIZE_MAX / 2);
     if (!memory_reserve(total, what, error))
         return NULL;
-    void *array = fails ? NULL : take(total);
-    if (!array) {
+    const array_head head = {total, fails ? 0 : take(total)};
+    if (!head.base) {
         memory_release(total);
         refuse(total, what, error);
+        return NULL;
     }
-    return array;
+    if (total > HUGE_ARRAY)
+        use_huge_pages((char *)(head.base & ~(uintptr_t)IS_MAPPED), total - ALIGNMENT);
+    atomic_fetch_add(&in_arrays, is_mapped(&head) ? 0 : total);
+    return array_of(&head);
 }
 
 void *big_alloc(size_t n, size_t size, const char *what, GError **error)
@@ -420,38 +317,48 @@ void *big_fit(void *array, size_t n, size_t size)
 {
     if (!array)
         return NULL;
-    if (!is_mapped(array))
+    array_head *head = (array_head *)array - 1;
+    if (!is_mapped(head))
         return moved(array, n, size);
-    memory_release(cut_mapped(array, bytes_for(n * size)));
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), before = head->bytes;
+    size_t kept = (bytes_for(n * size) + page - 1) & ~(page - 1);
+    if (kept >= before ||
+        munmap((char *)(head->base - IS_MAPPED) + kept, before - kept) != 0)
+        return array;
+    memory_release(before - kept);
+    head->bytes = kept;
     return array;
 }
 
 void big_zero(void *array, size_t bytes)
 {
-    const size_t whole = bytes & ~(page_size() - 1);
-    size_t done = 0;
-    if (is_mapped(array) && whole > 0 && madvise(array, whole, MADV_DONTNEED) == 0)
-        done = whole;
-    memset((char *)array + done, 0, bytes - done);
+    const array_head *head = (const array_head *)array - 1;
+    const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
+    char *end = (char *)array + bytes;
+    char *first = (char *)(((uintptr_t)array + page - 1) & ~(page - 1));
+    char *last = (char *)((uintptr_t)end & ~(page - 1));
+    if (!is_mapped(head) || first >= last ||
+        madvise(first, (size_t)(last - first), MADV_DONTNEED) != 0) {
+        memset(array, 0, bytes);
+        return;
+    }
+    memset(array, 0, (size_t)(first - (char *)array));
+    memset(last, 0, (size_t)(end - last));
 }
 
 void big_free(void *array)
 {
     if (!array)
         return;
-    if (is_mapped(array)) {
-        memory_release(cut_mapped(array, 0));
-        return;
-    }
     const array_head head = ((array_head *)array)[-1];
     memory_release(head.bytes);
-    atomic_fetch_sub(&in_arrays, head.bytes);
-    free(head.base);
+    atomic_fetch_sub(&in_arrays, is_mapped(&head) ? 0 : head.bytes);
+    give_back(&head);
 }
 
 void memory_give_back(size_t freed)
 {
-    if (freed > MUCH)
+    if (freed > HUGE_ARRAY)
         malloc_trim(0);
 }
 

@@ -106,74 +106,6 @@ static void test_fit(void)
     memory_set_limit(0);
 }
 
-/* ---- Large arrays side by side ---- */
-
-enum { N_SIDE = 64 };
-#define EACH (300 * KIB)
-
-static bool has_huge_pages(void)
-{
-    g_autofree char *choice = NULL;
-    return g_file_get_contents("/sys/kernel/mm/transparent_hugepage/enabled", &choice,
-                               NULL, NULL) &&
-           !strstr(choice, "[never]");
-}
-
-static long faults(void)
-{
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    return usage.ru_minflt;
-}
-
-static void take_side_by_side(unsigned char *arrays[N_SIDE])
-{
-    for (int i = 0; i < N_SIDE; i++)
-        arrays[i] = big_alloc(EACH, 1, "side by side", NULL);
-    for (int i = 0; i < N_SIDE; i++)
-        memset(arrays[i], i + 1, EACH);
-}
-
-/* Arrays of less than a huge page share one, so that few pages are met for the first
-   time: by the system's own count. */
-static void test_share_huge_pages(void)
-{
-    unsigned char *arrays[N_SIDE];
-    long before = faults(), pages = N_SIDE * EACH / sysconf(_SC_PAGESIZE);
-    take_side_by_side(arrays);
-    long met = faults() - before;
-    for (int i = 0; i < N_SIDE; i++)
-        big_free(arrays[i]);
-    if (MEMORY_IS_WATCHED || !has_huge_pages())
-        g_test_skip("there are no huge pages");
-    else
-        g_assert_cmpint(met, <, pages / 4);
-}
-
-/* What is freed between others goes back to the system, none of theirs with it, and new
-   arrays are zero. */
-static void test_side_by_side(void)
-{
-    unsigned char *arrays[N_SIDE];
-    size_t left = memory_left(), most = 0;
-    for (int round = 0; round < 8; round++) {
-        take_side_by_side(arrays);
-        for (int i = 0; i < N_SIDE; i += 2) {
-            big_free(arrays[i]);
-            arrays[i] = big_alloc(EACH, 1, "side by side", NULL);
-        }
-        for (int i = 0; i < N_SIDE; i++)
-            for (size_t k = 0; k < EACH; k++)
-                g_assert_cmpuint(arrays[i][k], ==, i % 2 ? i + 1 : 0);
-        for (int i = 0; i < N_SIDE; i++)
-            big_free(arrays[i]);
-        most = round == 0 ? memory_resident() : most;
-        g_assert_cmpuint(memory_left(), ==, left);
-    }
-    if (!MEMORY_IS_WATCHED)
-        g_assert_cmpuint(memory_resident(), <, most + N_SIDE * EACH / 4);
-}
-
 static void *claim(void *data)
 {
     (void)data;
@@ -465,8 +397,6 @@ int main(int argc, char **argv)
     g_test_add_func("/memory/fit", test_fit);
     g_test_add_func("/memory/fit/unheard", test_fit_fails_unheard);
     g_test_add_func("/memory/zero", test_zero);
-    g_test_add_func("/memory/side-by-side", test_side_by_side);
-    g_test_add_func("/memory/side-by-side/huge-pages", test_share_huge_pages);
     g_test_add_func("/memory/threads", test_threads);
     g_test_add_func("/memory/cgroups", test_cgroups);
     g_test_add_func("/memory/machine", test_machine);
