@@ -13,10 +13,11 @@
 #include <unistd.h>
 
 enum {
-    ALIGNMENT = 64,       /* bytes: a cache line */
-    HUGE_ARRAY = 4 << 20, /* bytes, from which on it is worth asking the system for more
-                             than it does by itself */
+    ALIGNMENT = 64, /* bytes: a cache line */
+    MUCH = 4 << 20, /* bytes, from which on it is worth telling the system */
 };
+
+#define HUGE_PAGE ((size_t)2 << 20) /* bytes: of most systems */
 
 #define DEFAULT_SHARE 0.8
 
@@ -192,16 +193,6 @@ bool memory_ask(size_t bytes, const char *what, GError **error)
 
 /* ---- Arrays ---- */
 
-/* Fewer page faults while an array fills, fewer misses of the TLB when it is read in no
-   order. Only a hint. */
-static void use_huge_pages(char *base, size_t bytes)
-{
-    uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
-    uintptr_t begin = ((uintptr_t)base + page - 1) & ~(page - 1);
-    madvise((void *)begin, ((uintptr_t)base + bytes - begin) & ~(page - 1),
-            MADV_HUGEPAGE);
-}
-
 /* From calloc, which knows which memory is zero already: a big array is then not touched
  * before it is used, nor by one thread only. Before the array stand how large it is and
  * where it begins; an odd place says that it is the system's. */
@@ -229,13 +220,35 @@ static bool is_mapped(const array_head *head)
     return head->base & IS_MAPPED;
 }
 
+static char *map(size_t bytes)
+{
+    return mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+}
+
+/* From where a huge page begins: fewer faults while an array fills, which are dear where
+   a system runs in another, and fewer misses of the TLB when it is read in no order. What
+   is less than a huge page at its end is of small ones, so that nothing is taken that is
+   not used. That pages are huge is only a hint. */
+static char *map_huge(size_t bytes)
+{
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), size = (bytes + page - 1) & ~(page - 1);
+    char *base = map(size + HUGE_PAGE);
+    if (base == MAP_FAILED)
+        return base;
+    size_t before = -(uintptr_t)base & (HUGE_PAGE - 1);
+    if (before > 0)
+        munmap(base, before);
+    munmap(base + before + size, HUGE_PAGE - before);
+    madvise(base + before, size & ~(HUGE_PAGE - 1), MADV_HUGEPAGE);
+    return base + before;
+}
+
 /* There may be so many pieces of the system's and no more. @return 0: no memory */
 static uintptr_t take(size_t bytes)
 {
-    void *base = MAP_FAILED;
+    char *base = MAP_FAILED;
     if (is_large(bytes))
-        base =
-            mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        base = bytes < HUGE_PAGE ? map(bytes) : map_huge(bytes);
     if (base != MAP_FAILED)
         return (uintptr_t)base | IS_MAPPED;
     return (uintptr_t)calloc(1, bytes);
@@ -279,8 +292,6 @@ static void *make_array(size_t n, size_t size, const char *what, bool fails,
         refuse(total, what, error);
         return NULL;
     }
-    if (total > HUGE_ARRAY)
-        use_huge_pages((char *)(head.base & ~(uintptr_t)IS_MAPPED), total - ALIGNMENT);
     atomic_fetch_add(&in_arrays, is_mapped(&head) ? 0 : total);
     return array_of(&head);
 }
@@ -358,7 +369,7 @@ void big_free(void *array)
 
 void memory_give_back(size_t freed)
 {
-    if (freed > HUGE_ARRAY)
+    if (freed > MUCH)
         malloc_trim(0);
 }
 
