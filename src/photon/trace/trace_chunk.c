@@ -1,7 +1,6 @@
 #include "photon/trace/trace_chunk.h"
 
-/* size: of photons; half of it a chunk is not filled */
-enum { BLOCK = AHEAD_STREAMS * AHEAD_STREAMS };
+enum { BLOCK = 256 }; /* size: photons; half of it a chunk is not filled */
 
 /* @return NULL: memory was refused */
 static photon_store *open_block(photon_blocks *of, GError **error)
