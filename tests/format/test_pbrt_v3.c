@@ -2,13 +2,12 @@
  * pbrt-v3: scenes in its words against the same written by hand in pbrt-v4's; both must
  * render alike. And what tells one from the other.
  */
+#include "alike.h"
 #include "format/pbrt/pbrt_v3.h"
-#include "rooms.h"
 
 #include <math.h>
 #include <string.h>
 
-#define HOW "integrator=path passes=1 spp=4"
 #define LOOK "LookAt 0 -5 2  0 0 0.3  0 0 1 Camera \"perspective\" \"float fov\" 40\n"
 #define FILM3 "Film \"image\" \"integer xresolution\" 8 \"integer yresolution\" 6\n"
 #define FILM4                                                                            \
@@ -17,26 +16,6 @@
 #define LAMP "LightSource \"point\" \"rgb I\" [20 18 16] \"point from\" [1 -2 4]\n"
 #define FLOOR "Shape \"disk\" \"float radius\" 4\n"
 #define BALL "Translate 0 0 .8 Shape \"sphere\" \"float radius\" .7\n"
-
-typedef struct pair {
-    const char *name, *v3, *v4;
-} pair;
-
-static void check_alike(const pair *p)
-{
-    g_autoptr(view) a = view_of(p->v3), b = view_of(p->v4);
-    g_autoptr(image) x = render_with(a, HOW), y = render_with(b, HOW);
-    g_assert_cmpint(x->width, ==, y->width);
-    g_assert_cmpint(x->height, ==, y->height);
-    size_t n = (size_t)x->width * (size_t)x->height * (size_t)x->n_channels;
-    double off = 0, sum = 0;
-    for (size_t i = 0; i < n; i++) {
-        off += fabs((double)x->pixels[i] - (double)y->pixels[i]);
-        sum += fabs((double)y->pixels[i]);
-    }
-    if (!(off <= 2e-4 * sum) || !(mean_of(x, "") > 0.0))
-        g_error("%s: differs by %g of %g", p->name, off, sum);
-}
 
 #define WORLD3(text) LOOK FILM3 "WorldBegin\n" LAMP FLOOR text "WorldEnd\n"
 #define WORLD4(text) LOOK FILM4 "WorldBegin\n" LAMP FLOOR text
@@ -93,8 +72,7 @@ static void test_materials(void)
                 "NamedMaterial \"a\" " BALL),
          WORLD4("Material \"diffuse\" \"rgb reflectance\" [.1 .5 .1] " BALL)},
     };
-    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
-        check_alike(&pairs[i]);
+    check_all(pairs, G_N_ELEMENTS(pairs));
 }
 
 static void test_lights(void)
@@ -121,8 +99,7 @@ static void test_lights(void)
          WORLD4("LightSource \"infinite\" \"spectrum L\" [300 1 900 1] \"float scale\" "
                 "3\n")},
     };
-    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
-        check_alike(&pairs[i]);
+    check_all(pairs, G_N_ELEMENTS(pairs));
 }
 
 static void test_rest(void)
@@ -168,8 +145,7 @@ static void test_rest(void)
              "\"matte\" \"texture Kd\" \"t\" " BALL),
          WORLD4("Material \"diffuse\" \"rgb reflectance\" [.3 .2 .1] " BALL)},
     };
-    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
-        check_alike(&pairs[i]);
+    check_all(pairs, G_N_ELEMENTS(pairs));
 }
 
 static void keep_note(log_level level, const char *text, void *data)
@@ -229,8 +205,7 @@ static void test_names_given_again(void)
                 "TransformEnd\n" RIGHT),
          WORLD4(MATTE4(".9 .1 .1") RIGHT)},
     };
-    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
-        check_alike(&pairs[i]);
+    check_all(pairs, G_N_ELEMENTS(pairs));
 }
 
 /* Colours where pbrt-v4 wants numbers, and the other way round. */
@@ -276,8 +251,7 @@ static void test_types_of_textures(void)
              "\"texture "
              "reflectance\" \"t\" " BALL)},
     };
-    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
-        check_alike(&pairs[i]);
+    check_all(pairs, G_N_ELEMENTS(pairs));
 }
 
 /* pbrt-v3 tells of what is not there and goes on. */
@@ -292,8 +266,7 @@ static void test_what_is_not_there(void)
          WORLD4("Material \"diffuse\" " BALL)},
         {"object", WORLD3("ObjectInstance \"gold\" " BALL), WORLD4(BALL)},
     };
-    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
-        check_alike(&pairs[i]);
+    check_all(pairs, G_N_ELEMENTS(pairs));
 }
 
 static void test_include_among_parameters(void)
@@ -333,8 +306,7 @@ static void test_disney(void)
          WORLD4("Material \"gltf\" \"float metallic\" 0 \"float roughness\" 0 \"float "
                 "transmission\" 1 \"bool thin\" false " BALL)},
     };
-    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
-        check_alike(&pairs[i]);
+    check_all(pairs, G_N_ELEMENTS(pairs));
 }
 
 /* What else pbrt-v3 takes, in pbrt-v4's words. */
@@ -364,8 +336,7 @@ static void test_rest_of_v3(void)
          "Accelerator \"grid\" " LOOK FILM3 "WorldBegin\n" LAMP FLOOR "WorldEnd\n",
          LOOK FILM4 "WorldBegin\n" LAMP FLOOR},
     };
-    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
-        check_alike(&pairs[i]);
+    check_all(pairs, G_N_ELEMENTS(pairs));
 }
 
 /* v3 multiplies the picture of a sky by "L", too. */
@@ -387,7 +358,7 @@ static void test_tinted_pictures(void)
         g_autoptr(GError) error = NULL;
         g_autoptr(view) v = load_view(f.main, NULL, &error);
         g_assert_no_error(error);
-        g_autoptr(image) img = render_with(v, HOW);
+        g_autoptr(image) img = render_with(v, ALIKE_HOW);
         means[i] = mean_of(img, "");
         folder_remove(&f);
     }
@@ -447,8 +418,7 @@ static void test_texture_before_value(void)
                         "Kd\" \"t\" " BALL),
          WORLD3(STRIPES "Material \"matte\" \"texture Kd\" \"t\" " BALL)},
     };
-    for (size_t i = 0; i < G_N_ELEMENTS(pairs); i++)
-        check_alike(&pairs[i]);
+    check_all(pairs, G_N_ELEMENTS(pairs));
 }
 
 /* Film and integrator where nothing is said, or in v3's words. */

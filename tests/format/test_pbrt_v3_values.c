@@ -2,15 +2,14 @@
  * Values as pbrt-v3 reads them: what follows a number is passed over, names of no picture
  * are none, colours are scaled by spectra and are black bodies, and NURBS are meshes.
  */
+#include "alike.h"
 #include "format/pbrt/pbrt_v3.h"
-#include "rooms.h"
 
 #include "params/params.h"
 
 #include <math.h>
 #include <string.h>
 
-#define HOW "integrator=path passes=1 spp=4"
 #define LOOK "LookAt 0 -5 2  0 0 0.3  0 0 1 Camera \"perspective\" \"float fov\" 40\n"
 #define FILM3                                                                            \
     "Film \"image\" \"integer xresolution\" 8 \"integer yresolution\" 6 PixelFilter "    \
@@ -19,30 +18,6 @@
 #define FLOOR "Shape \"disk\" \"float radius\" 4\n"
 #define BALL "Translate 0 0 .8 Shape \"sphere\" \"float radius\" .7\n"
 #define WORLD3(text) LOOK FILM3 "WorldBegin\n" LAMP FLOOR text "WorldEnd\n"
-
-typedef struct pair {
-    const char *name, *one, *other;
-} pair;
-
-static void check_alike(const pair *p)
-{
-    g_autoptr(view) a = view_of(p->one), b = view_of(p->other);
-    g_autoptr(image) x = render_with(a, HOW), y = render_with(b, HOW);
-    size_t n = (size_t)x->width * (size_t)x->height * (size_t)x->n_channels;
-    double off = 0, sum = 0;
-    for (size_t i = 0; i < n; i++) {
-        off += fabs((double)x->pixels[i] - (double)y->pixels[i]);
-        sum += fabs((double)y->pixels[i]);
-    }
-    if (!(off <= 2e-4 * sum) || !(mean_of(x, "") > 0.0))
-        g_error("%s: differs by %g of %g", p->name, off, sum);
-}
-
-static void check_all(const pair *pairs, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        check_alike(&pairs[i]);
-}
 
 static void test_numbers(void)
 {
@@ -148,7 +123,7 @@ static void test_bounded_samples(void)
         WITH("Film \"rgb\" \"float maxcomponentvalue\" .2 \"float iso\" 200 ")};
     check_alike(&p);
     g_autoptr(view) v = view_of(p.one);
-    g_autoptr(image) img = render_with(v, HOW);
+    g_autoptr(image) img = render_with(v, ALIKE_HOW);
     g_assert_cmpfloat(mean_of(img, ""), <=, 0.2 * (1.0 + 1e-5));
 }
 
