@@ -74,22 +74,40 @@ void photon_store_put(photon_store *store, const photon *p)
     photon_store_set(store, store->n++, p);
 }
 
-void photon_store_set(photon_store *store, size_t i, const photon *p)
+packed_photon photon_store_packed(const photon_store *store, const photon *p)
+{
+    return (packed_photon){
+        .flux = p->flux,
+        .p = {p->p[0], p->p[1], p->p[2]},
+        .wi = direction_pack(p->wi, p->flags),
+        .normal = store->oriented ? direction_pack(p->n, 0) : 0,
+        .tag = p->tag,
+        .home = p->home,
+    };
+}
+
+void photon_store_set_packed(photon_store *store, size_t i, const packed_photon *p)
 {
     store->x[i] = p->p[0];
     store->y[i] = p->p[1];
     store->z[i] = p->p[2];
-    store->wi[i] = direction_pack(p->wi, p->flags);
-    if (store->numbered)
-        store->number[i] = p->number;
-    else
+    store->wi[i] = p->wi;
+    if (!store->numbered)
         store->flux[i] = p->flux;
     if (store->oriented)
-        store->normal[i] = direction_pack(p->n, 0);
+        store->normal[i] = p->normal;
     if (store->tagged)
         store->tag[i] = p->tag;
     if (store->homed)
         store->home[i] = p->home;
+}
+
+void photon_store_set(photon_store *store, size_t i, const photon *p)
+{
+    const packed_photon packed = photon_store_packed(store, p);
+    photon_store_set_packed(store, i, &packed);
+    if (store->numbered)
+        store->number[i] = p->number;
 }
 
 photon photon_store_get(const photon_store *store, size_t i)

@@ -58,6 +58,14 @@ typedef struct photon {
                       owner keeps of it */
 } photon;
 
+/** @brief What stores keep of a photon, in a cache line: until it is known how many there
+ * are. */
+typedef struct packed_photon {
+    spectrum flux;
+    float p[3];
+    uint32_t wi, normal, tag, home;
+} packed_photon;
+
 /** @brief Photons as arrays of n, big_alloc'ed; capacity >= n. The arrays go on behind
  * capacity for at least one SIMD block, so that as many photons may be loaded from any.
  */
@@ -85,6 +93,10 @@ bool photon_store_reserve(photon_store *store, size_t capacity, GError **error);
 void photon_store_put(photon_store *store, const photon *p);
 /** @brief Writes photon i < capacity; n stays as it is. */
 void photon_store_set(photon_store *store, size_t i, const photon *p);
+/** @brief What this store keeps of a photon, its number apart. */
+packed_photon photon_store_packed(const photon_store *store, const photon *p);
+/** @brief As photon_store_set, of a store that is not numbered. */
+void photon_store_set_packed(photon_store *store, size_t i, const packed_photon *p);
 photon photon_store_get(const photon_store *store, size_t i);
 void photon_store_clear(photon_store *store);
 /** @brief Copies all photons of a store of the same sort to place `at` of another one,

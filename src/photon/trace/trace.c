@@ -66,13 +66,14 @@ typedef struct trace_loop {
     uint64_t first;     /* index of the first to emit */
     trace_result empty; /* stores of the sort that is wanted */
     trace_chunk *chunks;
+    slab **slabs; /* of each thread */
 } trace_loop;
 
 static void trace_some(size_t begin, size_t end, unsigned thread, void *data)
 {
-    (void)thread;
     trace_loop *loop = data;
     trace_chunk *out = &loop->chunks[begin / RAYS_AT_ONCE];
+    out->from = &loop->slabs[thread];
     out->photons.empty = loop->empty.photons;
     out->in_media.empty = loop->empty.in_media;
     const cancel_flag *cancel = loop->task->cancel;
@@ -97,6 +98,22 @@ static trace_result empty_result(const scene *s, bool oriented)
     };
 }
 
+/* In chunks of the task's photons. */
+static bool trace_chunks(trace_loop *loop, size_t n, trace_chunk *chunks, workers by,
+                         trace_result *result, GError **error)
+{
+    unsigned n_threads = parallel_threads(by.threads);
+    g_autofree slab **slabs = g_new0(slab *, n_threads);
+    loop->slabs = slabs;
+    bool traced = parallel_work(n, RAYS_AT_ONCE, by, trace_some, loop, error);
+    for (unsigned i = 0; i < n_threads; i++)
+        slab_close(slabs[i]);
+    size_t n_chunks = (n + RAYS_AT_ONCE - 1) / RAYS_AT_ONCE;
+    bool joined = traced && trace_chunks_join(chunks, n_chunks, by, result, error);
+    trace_chunks_clear(chunks, n_chunks);
+    return joined;
+}
+
 bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
                   GError **error)
 {
@@ -107,13 +124,10 @@ bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
     trace_chunk *chunks = big_alloc(n_chunks, sizeof *chunks, "photon chunks", error);
     if (!chunks)
         return false;
-    trace_loop loop = {task, task->first + task->begin, *result, chunks};
-    bool joined = parallel_work(n, RAYS_AT_ONCE, by, trace_some, &loop, error) &&
-                  trace_chunks_join(chunks, n_chunks, by, result, error);
-    trace_chunks_clear(chunks, n_chunks);
+    trace_loop loop = {task, task->first + task->begin, *result, chunks, NULL};
+    bool traced = trace_chunks(&loop, n, chunks, by, result, error);
     big_free(chunks);
-    memory_give_back(photon_store_bytes(&result->photons));
-    if (!joined)
+    if (!traced)
         trace_result_clear(result);
-    return joined;
+    return traced;
 }

@@ -1,39 +1,17 @@
 #include "photon/trace/trace_chunk.h"
 
-enum { BLOCK = 256 }; /* size: photons; half of it a chunk is not filled */
-
-/* @return NULL: memory was refused */
-static photon_store *open_block(photon_blocks *of, GError **error)
-{
-    photon_store block = of->empty;
-    if (!photon_store_reserve(&block, BLOCK, error))
-        return NULL;
-    of->all = g_renew(photon_store, of->all, of->n_blocks + 1);
-    of->all[of->n_blocks] = block;
-    return &of->all[of->n_blocks++];
-}
-
-void trace_chunk_put(trace_chunk *chunk, photon_blocks *to, const photon *p)
+void trace_chunk_put(trace_chunk *chunk, photon_list *to, const photon *p)
 {
     if (!spectrum_is_finite(p->flux)) {
         chunk->n_not_finite++;
         return;
     }
-    photon_store *last = to->n_blocks > 0 ? &to->all[to->n_blocks - 1] : NULL;
-    if (!chunk->error && (!last || last->n == last->capacity))
-        last = open_block(to, &chunk->error);
     if (chunk->error)
         return;
-    photon_store_put(last, p);
-    to->n++;
-}
-
-static void clear_blocks(photon_blocks *of)
-{
-    for (size_t i = 0; i < of->n_blocks; i++)
-        photon_store_clear(&of->all[i]);
-    g_free(of->all);
-    *of = (photon_blocks){0};
+    packed_photon *put =
+        slab_list_add(&to->all, sizeof *put, chunk->from, "photons", &chunk->error);
+    if (put)
+        *put = photon_store_packed(&to->empty, p);
 }
 
 typedef struct join_loop {
@@ -41,27 +19,37 @@ typedef struct join_loop {
     trace_chunk *chunks;
 } join_loop;
 
-/* Copies blocks to their place and frees them. */
-static void move_blocks(photon_store *to, photon_blocks *from)
+typedef struct photon_place {
+    photon_store *store;
+    size_t first;
+} photon_place;
+
+static void put_side_by_side(const void *elements, size_t n, size_t at, void *data)
 {
-    size_t at = from->offset;
-    for (size_t i = 0; i < from->n_blocks; at += from->all[i++].n)
-        photon_store_copy(to, at, &from->all[i]);
-    clear_blocks(from);
+    const photon_place *to = data;
+    const packed_photon *packed = elements;
+    for (size_t i = 0; i < n; i++)
+        photon_store_set_packed(to->store, to->first + at + i, &packed[i]);
+}
+
+static void move_photons(photon_store *store, photon_list *from)
+{
+    photon_place to = {store, from->first};
+    slab_list_move(&from->all, put_side_by_side, &to);
 }
 
 static void join_chunk(size_t i, size_t end, unsigned thread, void *data)
 {
     (void)end, (void)thread;
     join_loop *loop = data;
-    move_blocks(&loop->result->photons, &loop->chunks[i].photons);
-    move_blocks(&loop->result->in_media, &loop->chunks[i].in_media);
+    move_photons(&loop->result->photons, &loop->chunks[i].photons);
+    move_photons(&loop->result->in_media, &loop->chunks[i].in_media);
 }
 
-static void give_place(photon_blocks *blocks, size_t *total)
+static void give_place(photon_list *photons, size_t *total)
 {
-    blocks->offset = *total;
-    *total += blocks->n;
+    photons->first = *total;
+    *total += photons->all.n;
 }
 
 /* Gives each chunk its place in the whole. @return false if one failed. */
@@ -99,8 +87,8 @@ bool trace_chunks_join(trace_chunk *chunks, size_t n, workers by, trace_result *
 void trace_chunks_clear(trace_chunk *chunks, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
-        clear_blocks(&chunks[i].photons);
-        clear_blocks(&chunks[i].in_media);
+        slab_list_clear(&chunks[i].photons.all);
+        slab_list_clear(&chunks[i].in_media.all);
         g_clear_error(&chunks[i].error);
     }
 }

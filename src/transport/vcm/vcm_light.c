@@ -4,16 +4,16 @@
  * connected to the eye on the spot.
  */
 #include "base/memory.h"
+#include "base/slab_list.h"
 #include "transport/vcm/vcm.h"
 
 #include <string.h>
 
 /* What one chunk found, until the chunks are joined. */
 typedef struct light_chunk {
-    light_vertex *vertices;
-    splat *splats;
-    size_t n_vertices, vertex_capacity, n_splats, splat_capacity;
+    slab_list vertices, splats;
     size_t first_vertex, first_splat; /* of the whole, once that is known */
+    slab **from; /* of the thread that traces it; NULL: nothing is kept */
     uint64_t n_rays, n_shadow_rays, n_not_finite;
     point_hits hits; /* scratch */
     GError *error;
@@ -54,48 +54,35 @@ static void tell(const light_walk *l, photon_event_kind kind, const surface_hit 
 
 /* ---- What is kept ---- */
 
-static void *grown(void *array, size_t n, size_t *capacity, size_t size, GError **error)
-{
-    if (n < *capacity)
-        return array;
-    size_t room = MAX(2 * *capacity, RAYS_AT_ONCE);
-    void *grown_array = big_grow(array, n, room, size, "light vertices", error);
-    if (grown_array)
-        *capacity = room;
-    return grown_array;
-}
-
 static void keep(light_walk *l, const vcm_vertex *v)
 {
     light_chunk *out = l->out;
-    light_vertex *room = grown(out->vertices, out->n_vertices, &out->vertex_capacity,
-                               sizeof *room, &out->error);
-    if (!room)
-        return;
-    out->vertices = room;
-    room[out->n_vertices++] = (light_vertex){
-        .hit = hit_keep(&l->walk.at.ray, v->hit),
-        .flux = l->walk.at.throughput,
-        .weights = l->walk.weights,
-        .before = l->walk.counts,
-        .light = l->light,
-        .alone = v->alone,
-    };
+    light_vertex *kept = NULL;
+    if (out->from && !out->error)
+        kept = slab_list_add(&out->vertices, sizeof *kept, out->from, "light vertices",
+                             &out->error);
+    if (kept)
+        *kept = (light_vertex){
+            .hit = hit_keep(&l->walk.at.ray, v->hit),
+            .flux = l->walk.at.throughput,
+            .weights = l->walk.weights,
+            .before = l->walk.counts,
+            .light = l->light,
+            .alone = v->alone,
+        };
 }
 
 static void keep_splat(light_walk *l, const splat *s)
 {
     light_chunk *out = l->out;
-    if (!spectrum_is_finite(s->value)) {
+    splat *kept = NULL;
+    if (!spectrum_is_finite(s->value))
         out->n_not_finite++;
-        return;
-    }
-    splat *room = grown(out->splats, out->n_splats, &out->splat_capacity, sizeof *room,
-                        &out->error);
-    if (!room)
-        return;
-    out->splats = room;
-    room[out->n_splats++] = *s;
+    else if (out->from && !out->error)
+        kept =
+            slab_list_add(&out->splats, sizeof *kept, out->from, "splats", &out->error);
+    if (kept)
+        *kept = *s;
 }
 
 /* ---- To the eye ---- */
@@ -328,23 +315,22 @@ static light_walk walk_of(const vcm_pass *pass, size_t i)
 typedef struct light_loop {
     vcm_pass *pass;
     light_chunk *chunks;
+    slab **slabs; /* of each thread */
 } light_loop;
 
 static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
 {
-    (void)thread;
     light_loop *loop = data;
     light_chunk *out = &loop->chunks[begin / RAYS_AT_ONCE];
+    out->from = &loop->slabs[thread];
     const cancel_flag *cancel = loop->pass->plan->cancel;
     for (size_t i = begin; i < end && !out->error && !cancelled(cancel); i++) {
         light_walk l = walk_of(loop->pass, i);
         l.out = out;
         if (emit(&l))
             follow(&l);
-        loop->pass->light.end[i] = out->n_vertices;
+        loop->pass->light.end[i] = out->vertices.n;
     }
-    out->vertices = big_fit(out->vertices, out->n_vertices, sizeof *out->vertices);
-    out->splats = big_fit(out->splats, out->n_splats, sizeof *out->splats);
     if (out->hits.refused && !out->error)
         point_hits_refuse(&out->error);
     point_hits_clear(&out->hits);
@@ -352,8 +338,8 @@ static void trace_chunk(size_t begin, size_t end, unsigned thread, void *data)
 
 static void chunk_clear(light_chunk *chunk)
 {
-    big_free(chunk->vertices);
-    big_free(chunk->splats);
+    slab_list_clear(&chunk->vertices);
+    slab_list_clear(&chunk->splats);
     g_clear_error(&chunk->error);
     *chunk = (light_chunk){0};
 }
@@ -363,6 +349,16 @@ static size_t chunk_bytes(size_t n_vertices, size_t n_splats)
     return n_vertices * sizeof(light_vertex) + n_splats * sizeof(splat);
 }
 
+static void put_vertices(const void *elements, size_t n, size_t at, void *data)
+{
+    memcpy((light_vertex *)data + at, elements, n * sizeof(light_vertex));
+}
+
+static void put_splats(const void *elements, size_t n, size_t at, void *data)
+{
+    memcpy((splat *)data + at, elements, n * sizeof(splat));
+}
+
 /* Copies chunk c's vertices and splats to their place and frees them. */
 static void join_chunk(size_t c, size_t end, unsigned thread, void *data)
 {
@@ -370,16 +366,11 @@ static void join_chunk(size_t c, size_t end, unsigned thread, void *data)
     const light_loop *loop = data;
     const light_paths *to = &loop->pass->light;
     light_chunk *from = &loop->chunks[c];
-    if (from->n_vertices > 0)
-        memcpy(to->vertices + from->first_vertex, from->vertices,
-               from->n_vertices * sizeof *from->vertices);
-    if (from->n_splats > 0)
-        memcpy(to->splats + from->first_splat, from->splats,
-               from->n_splats * sizeof *from->splats);
     for (size_t i = c * RAYS_AT_ONCE; i < MIN((c + 1) * RAYS_AT_ONCE, to->n); i++)
         to->end[i] += from->first_vertex;
-    memory_count(chunk_bytes(from->n_vertices, from->n_splats));
-    chunk_clear(from);
+    memory_count(chunk_bytes(from->vertices.n, from->splats.n));
+    slab_list_move(&from->vertices, put_vertices, to->vertices + from->first_vertex);
+    slab_list_move(&from->splats, put_splats, to->splats + from->first_splat);
 }
 
 static bool join(light_loop *loop, size_t n, transport_counts *counts, GError **error)
@@ -394,8 +385,8 @@ static bool join(light_loop *loop, size_t n, transport_counts *counts, GError **
         }
         chunks[c].first_vertex = n_vertices;
         chunks[c].first_splat = n_splats;
-        n_vertices += chunks[c].n_vertices;
-        n_splats += chunks[c].n_splats;
+        n_vertices += chunks[c].vertices.n;
+        n_splats += chunks[c].splats.n;
         counts->photon_rays += chunks[c].n_rays;
         counts->n_not_finite += chunks[c].n_not_finite;
     }
@@ -427,6 +418,18 @@ void vcm_tell_light(const vcm_pass *pass, uint64_t i, photon_listener listener,
     chunk_clear(&unused);
 }
 
+static bool trace_chunks(light_loop *loop, workers by, GError **error)
+{
+    unsigned n_threads = parallel_threads(by.threads);
+    g_autofree slab **slabs = g_new0(slab *, n_threads);
+    loop->slabs = slabs;
+    bool traced =
+        parallel_work(loop->pass->light.n, RAYS_AT_ONCE, by, trace_chunk, loop, error);
+    for (unsigned i = 0; i < n_threads; i++)
+        slab_close(slabs[i]);
+    return traced;
+}
+
 bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts *counts,
                      GError **error)
 {
@@ -439,10 +442,9 @@ bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts
         big_free(chunks);
         return false;
     }
-    light_loop loop = {pass, chunks};
+    light_loop loop = {.pass = pass, .chunks = chunks};
     const workers by = {(unsigned)pass->plan->how.threads, cancel};
-    bool joined = parallel_work(paths->n, RAYS_AT_ONCE, by, trace_chunk, &loop, error) &&
-                  join(&loop, n_chunks, counts, error);
+    bool joined = trace_chunks(&loop, by, error) && join(&loop, n_chunks, counts, error);
     for (size_t c = 0; c < n_chunks; c++)
         chunk_clear(&chunks[c]);
     big_free(chunks);
