@@ -3,8 +3,8 @@
  * parameter is a GError **.
  *
  * The codes are the exit codes of the command line, so that the reason for a failure
- * survives from the deepest reader up to the shell. Messages name what stands in files, and
- * come out printable (printable.h): one line, and nothing that a terminal would obey.
+ * survives from the deepest reader up to the shell. Messages name what stands in files,
+ * and come out printable (printable.h): one line, and nothing that a terminal would obey.
  */
 #pragma once
 

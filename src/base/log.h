@@ -14,8 +14,8 @@ typedef struct log_sink {
     void *data;
 } log_sink;
 
-/** @brief Formats one line (without newline), makes it printable (printable.h) and hands it
- * to the sink, which may be NULL. */
+/** @brief Formats one line (without newline), makes it printable (printable.h) and hands
+ * it to the sink, which may be NULL. */
 void log_message(const log_sink *sink, log_level level, const char *format, ...)
     G_GNUC_PRINTF(3, 4);
 /** @brief The same of a place, which the line begins with as an error's does. */

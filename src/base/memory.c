@@ -12,10 +12,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum {
-    ALIGNMENT = 64, /* bytes: a cache line */
-    MUCH = 4 << 20, /* bytes, from which on it is worth telling the system */
-};
+enum { ALIGNMENT = 64 }; /* bytes: a cache line */
 
 #define HUGE_PAGE ((size_t)2 << 20) /* bytes: of most systems */
 
@@ -195,13 +192,17 @@ bool memory_ask(size_t bytes, const char *what, GError **error)
 
 /* From calloc, which knows which memory is zero already: a big array is then not touched
  * before it is used, nor by one thread only. Before the array stand how large it is and
- * where it begins; an odd place says that it is the system's. */
+ * where it begins; places are even by far, so bits are left to say whose it is. */
 typedef struct array_head {
     size_t bytes;
     uintptr_t base;
 } array_head;
 
-enum { IS_MAPPED = 1 };
+enum {
+    IS_MAPPED = 1,    /* from the system */
+    IS_UNCOUNTED = 2, /* its owner counts what is used of it */
+    FLAGS = IS_MAPPED | IS_UNCOUNTED,
+};
 
 /* From the system where an array is large: of what malloc is given back it keeps pieces,
    which do not fit what comes next. A sanitizer watches what comes from malloc only. */
@@ -254,18 +255,23 @@ static uintptr_t take(size_t bytes)
     return (uintptr_t)calloc(1, bytes);
 }
 
+static void *base_of(const array_head *head)
+{
+    return (void *)(head->base & ~(uintptr_t)FLAGS);
+}
+
 static void give_back(const array_head *head)
 {
     if (is_mapped(head))
-        munmap((void *)(head->base - IS_MAPPED), head->bytes);
+        munmap(base_of(head), head->bytes);
     else
-        free((void *)head->base);
+        free(base_of(head));
 }
 
 /* Behind room for the head. */
 static void *array_of(const array_head *head)
 {
-    uintptr_t base = head->base & ~(uintptr_t)IS_MAPPED;
+    uintptr_t base = (uintptr_t)base_of(head);
     array_head *array = (array_head *)((base + ALIGNMENT) & ~(uintptr_t)(ALIGNMENT - 1));
     array[-1] = *head;
     return array;
@@ -277,6 +283,16 @@ static size_t bytes_for(size_t bytes)
     return ((bytes + ALIGNMENT) & ~(size_t)(ALIGNMENT - 1)) + ALIGNMENT;
 }
 
+/* @param total with the head, which is counted already */
+static void *make_counted(size_t total, uintptr_t flags)
+{
+    const array_head head = {total, take(total) | flags};
+    if (head.base == flags)
+        return NULL;
+    atomic_fetch_add(&in_arrays, is_mapped(&head) ? 0 : total);
+    return array_of(&head);
+}
+
 /* @param fails as if there were no memory */
 static void *make_array(size_t n, size_t size, const char *what, bool fails,
                         GError **error)
@@ -286,19 +302,26 @@ static void *make_array(size_t n, size_t size, const char *what, bool fails,
     size_t total = bytes_for(fits ? bytes : SIZE_MAX / 2);
     if (!memory_reserve(total, what, error))
         return NULL;
-    const array_head head = {total, fails ? 0 : take(total)};
-    if (!head.base) {
+    void *array = fails ? NULL : make_counted(total, 0);
+    if (!array) {
         memory_release(total);
         refuse(total, what, error);
-        return NULL;
     }
-    atomic_fetch_add(&in_arrays, is_mapped(&head) ? 0 : total);
-    return array_of(&head);
+    return array;
 }
 
 void *big_alloc(size_t n, size_t size, const char *what, GError **error)
 {
     return make_array(n, size, what, must_fail(), error);
+}
+
+void *big_alloc_uncounted(size_t bytes, const char *what, GError **error)
+{
+    size_t total = bytes_for(bytes);
+    void *array = must_fail() ? NULL : make_counted(total, IS_UNCOUNTED);
+    if (!array)
+        refuse(total, what, error);
+    return array;
 }
 
 void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *what,
@@ -310,35 +333,6 @@ void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *w
     if (grown)
         big_free(old);
     return grown;
-}
-
-/* Where there is no room for it beside itself, it stays; nobody need be told. */
-static void *moved(void *array, size_t n, size_t size)
-{
-    void *fit = make_array(n, size, "", false, NULL);
-    if (!fit)
-        return array;
-    memcpy(fit, array, n * size);
-    big_free(array);
-    return fit;
-}
-
-/* Of what is the system's in whole pages, of malloc's by moving it. */
-void *big_fit(void *array, size_t n, size_t size)
-{
-    if (!array)
-        return NULL;
-    array_head *head = (array_head *)array - 1;
-    if (!is_mapped(head))
-        return moved(array, n, size);
-    size_t page = (size_t)sysconf(_SC_PAGESIZE), before = head->bytes;
-    size_t kept = (bytes_for(n * size) + page - 1) & ~(page - 1);
-    if (kept >= before ||
-        munmap((char *)(head->base - IS_MAPPED) + kept, before - kept) != 0)
-        return array;
-    memory_release(before - kept);
-    head->bytes = kept;
-    return array;
 }
 
 void big_zero(void *array, size_t bytes)
@@ -362,15 +356,9 @@ void big_free(void *array)
     if (!array)
         return;
     const array_head head = ((array_head *)array)[-1];
-    memory_release(head.bytes);
+    memory_release(head.base & IS_UNCOUNTED ? 0 : head.bytes);
     atomic_fetch_sub(&in_arrays, is_mapped(&head) ? 0 : head.bytes);
     give_back(&head);
-}
-
-void memory_give_back(size_t freed)
-{
-    if (freed > MUCH)
-        malloc_trim(0);
 }
 
 size_t memory_peak(void)

@@ -23,25 +23,20 @@
  */
 void *big_alloc(size_t n, size_t size, const char *what, GError **error);
 
+/** @brief The same, not counted as in use: its owner reserves what is used of it.
+ * @param bytes below half of all that there are */
+void *big_alloc_uncounted(size_t bytes, const char *what, GError **error);
+
 /** @brief Grows an array from n_old to n_new elements, keeping the contents; the old one
  * stays valid and owned by the caller when this fails. The new part is zeroed. */
 void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *what,
                GError **error);
-
-/** @brief Gives back what is behind the first n elements. @return the array, which may
- * have moved; NULL for NULL */
-void *big_fit(void *array, size_t n, size_t size);
 
 /** @brief Makes the first bytes of an array zero; large ones get fresh pages, which takes
  * no time until they are written to. */
 void big_zero(void *array, size_t bytes);
 /** @brief Frees what big_alloc or big_grow gave; NULL is allowed. */
 void big_free(void *array);
-
-/** @brief Gives the system what was freed in small pieces, if it is much. Each thread's
- * malloc keeps what it gave: where the next loop deals its work out otherwise, that would
- * stay beside what the loop takes. @param freed about so many bytes */
-void memory_give_back(size_t freed);
 
 /** @brief Counts bytes that come from elsewhere, or will be wanted later, as used.
  * @return false with ERROR_FAILED saying how much `what` wanted and how much of the limit

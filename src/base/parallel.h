@@ -59,9 +59,10 @@ typedef struct workers {
     const cancel_flag *cancel; /**< NULL: until it is done */
 } workers;
 
-/** @brief parallel_for by these. @return false with ERROR_CANCELLED if it was cancelled */
-bool parallel_work(size_t n, size_t chunk_size, workers by, parallel_body body, void *data,
-                   GError **error);
+/** @brief parallel_for by these. @return false with ERROR_CANCELLED if it was cancelled
+ */
+bool parallel_work(size_t n, size_t chunk_size, workers by, parallel_body body,
+                   void *data, GError **error);
 
 /** @brief Chunks that are worth a thread's while, where the result is the same with any
  * other: of elements that trace or ask something, some microseconds each, and of those

@@ -1,6 +1,7 @@
 /*
- * Text from files on its way to a person: what would command a terminal rather than be shown
- * by it (escape sequences, line ends, marks that turn the direction of writing) is spelt out.
+ * Text from files on its way to a person: what would command a terminal rather than be
+ * shown by it (escape sequences, line ends, marks that turn the direction of writing) is
+ * spelt out.
  */
 #pragma once
 

@@ -5,9 +5,8 @@
 #include <stdatomic.h>
 
 enum {
-    SLAB_BYTES = (2 << 20) - 128, /* size: a huge page with what stands before arrays */
-    PIECE_BYTES = 16 << 10,       /* size: so much a list leaves half of */
-    LINE = 64,                    /* bytes: of the cache */
+    PIECE_BYTES = 4 << 10, /* size: so much a list leaves half of */
+    LINE = 64,             /* bytes: of the cache */
 };
 
 struct slab {
@@ -22,6 +21,8 @@ struct slab_piece {
     size_t n;
 };
 
+/* Pieces count as memory in use, and not slabs, so that the memory of few elements tells
+   that of many. */
 static void release(slab *s)
 {
     if (atomic_fetch_sub(&s->n_used, 1) == 1)
@@ -39,7 +40,7 @@ static slab *slab_with_room(slab **from, const char *what, GError **error)
     slab *s = *from;
     if (s && s->cut + PIECE_BYTES <= SLAB_BYTES)
         return s;
-    slab *next = big_alloc(1, SLAB_BYTES, what, error);
+    slab *next = big_alloc_uncounted(SLAB_BYTES, what, error);
     if (!next)
         return NULL;
     atomic_init(&next->n_used, 1);
@@ -51,7 +52,7 @@ static slab *slab_with_room(slab **from, const char *what, GError **error)
 static slab_piece *cut_piece(slab **from, const char *what, GError **error)
 {
     slab *s = slab_with_room(from, what, error);
-    if (!s)
+    if (!s || !memory_reserve(PIECE_BYTES, what, error))
         return NULL;
     slab_piece *piece = (slab_piece *)((char *)s + s->cut);
     s->cut += PIECE_BYTES;
@@ -89,6 +90,13 @@ void *slab_list_add(slab_list *list, size_t size, slab **from, const char *what,
     return (char *)(list->last + 1) + list->last->n++ * size;
 }
 
+void slab_list_uncount(slab_list *list)
+{
+    for (const slab_piece *piece = list->first; piece; piece = piece->next)
+        memory_release(PIECE_BYTES);
+    list->uncounted = true;
+}
+
 void slab_list_move(slab_list *list, slab_visit visit, void *data)
 {
     size_t at = 0;
@@ -96,6 +104,7 @@ void slab_list_move(slab_list *list, slab_visit visit, void *data)
         visit(piece + 1, piece->n, at, data);
         at += piece->n;
         next = piece->next;
+        memory_release(list->uncounted ? 0 : PIECE_BYTES);
         release(piece->of);
     }
     *list = (slab_list){0};
@@ -109,11 +118,4 @@ static void pass_by(const void *elements, size_t n, size_t at, void *data)
 void slab_list_clear(slab_list *list)
 {
     slab_list_move(list, pass_by, NULL);
-}
-
-size_t slab_lists_bytes(size_t n, size_t size, size_t lists, unsigned threads)
-{
-    size_t pieces = n / elements_in_piece(size) + (lists + 1) / 2;
-    size_t a_slab = (SLAB_BYTES - sizeof(slab)) / PIECE_BYTES;
-    return (pieces / a_slab + threads) * SLAB_BYTES;
 }

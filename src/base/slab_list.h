@@ -15,7 +15,10 @@
 
 #include "base/error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
+
+enum { SLAB_BYTES = (2 << 20) - 128 }; /* size: with what stands before arrays */
 
 typedef struct slab slab;
 typedef struct slab_piece slab_piece;
@@ -23,7 +26,8 @@ typedef struct slab_piece slab_piece;
 /** @brief Elements of one size, at most a piece's. All zero: empty. */
 typedef struct slab_list {
     slab_piece *first, *last;
-    size_t n; /**< elements in all */
+    size_t n;       /**< elements in all */
+    bool uncounted; /**< see slab_list_uncount */
 } slab_list;
 
 /** @brief Adds an element.
@@ -38,6 +42,10 @@ void *slab_list_add(slab_list *list, size_t size, slab **from, const char *what,
  * number `at` of its list. */
 typedef void (*slab_visit)(const void *elements, size_t n, size_t at, void *data);
 
+/** @brief Counts it as memory in use no more: what it is moved to counts in its place,
+ * and grows as fast as the list shrinks. No element comes after that. */
+void slab_list_uncount(slab_list *list);
+
 /** @brief Visits all elements in the order they came in, and frees them. */
 void slab_list_move(slab_list *list, slab_visit visit, void *data);
 
@@ -46,7 +54,3 @@ void slab_list_clear(slab_list *list);
 
 /** @brief No piece will be cut from it any more. NULL is allowed. */
 void slab_close(slab *s);
-
-/** @brief The most that is taken at once, bytes, for lists of so many elements in all.
- * @param lists that are not empty */
-size_t slab_lists_bytes(size_t n, size_t size, size_t lists, unsigned threads);

@@ -1,6 +1,7 @@
 #include "render/footprint.h"
 
 #include "base/memory.h"
+#include "base/slab_list.h"
 #include "render/film/film_halves.h"
 #include "render/film/film_planes.h"
 #include "render/photon_share.h"
@@ -46,7 +47,8 @@ static size_t photon_bytes(const transport_plan *plan, double probe,
     double share = fmin(probe / (double)MAX(n_photons(plan), 1), 1.0);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         small.n_photons[c] = (uint64_t)ceil((double)plan->n_photons[c] * share);
-    return (size_t)((double)begin_and_end(&small, cancel) / share);
+    size_t slabs = parallel_threads((unsigned)plan->how.threads) * SLAB_BYTES;
+    return (size_t)((double)begin_and_end(&small, cancel) / share) + slabs;
 }
 
 static size_t plan_bytes(const view *v, const settings *how)

@@ -56,7 +56,6 @@ static void test_limit(void)
     memory_set_limit(0);
 }
 
-/* What is behind the first elements goes back to the limit, and to the system. */
 /* Zero as far as asked, of small arrays and of large ones, and no further. */
 static void test_zero(void)
 {
@@ -71,39 +70,6 @@ static void test_zero(void)
         big_free(array);
         g_assert_cmpuint(memory_left(), ==, left);
     }
-}
-
-/* It is no mistake where an array stays as large as it was: that is not told, and the
-   n-th allocation that is to fail is another one. */
-static void test_fit_fails_unheard(void)
-{
-    char *array = big_alloc(1000, 1, "test", NULL);
-    big_alloc_fail_at(1);
-    array = big_fit(array, 500, 1);
-    g_assert_cmpuint(big_alloc_fail_left(), ==, 1);
-    big_alloc_fail_at(0);
-    big_free(array);
-}
-
-static void test_fit(void)
-{
-    static const size_t sizes[] = {100, 3000, 200 * KIB, 9 * MIB};
-    for (size_t i = 0; i < G_N_ELEMENTS(sizes); i++) {
-        memory_set_limit(16 * MIB);
-        unsigned char *array = big_alloc(sizes[i], 1, "room", NULL);
-        memset(array, 7, sizes[i]);
-        size_t resident = memory_resident(), kept = sizes[i] / 3;
-        array = big_fit(array, kept, 1);
-        g_assert_true(is_left(16 * MIB - kept - 5 * KIB)); /* a page, a head */
-        for (size_t k = 0; k < kept; k++)
-            g_assert_cmpuint(array[k], ==, 7);
-        if (sizes[i] > MIB && !MEMORY_IS_WATCHED)
-            g_assert_cmpuint(memory_resident() + sizes[i] / 2, <, resident);
-        big_free(array);
-        g_assert_true(is_left(16 * MIB));
-    }
-    g_assert_null(big_fit(NULL, 0, 1));
-    memory_set_limit(0);
 }
 
 static void *claim(void *data)
@@ -394,8 +360,6 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/memory/limit", test_limit);
-    g_test_add_func("/memory/fit", test_fit);
-    g_test_add_func("/memory/fit/unheard", test_fit_fails_unheard);
     g_test_add_func("/memory/zero", test_zero);
     g_test_add_func("/memory/threads", test_threads);
     g_test_add_func("/memory/cgroups", test_cgroups);

@@ -113,10 +113,10 @@ static void test_info_tells(folder *f, gconstpointer data)
 /* Renders that take more than the limits below, most of it for photons. */
 static const example greedy[] = {
     {SPPM, "2 \"integer photonsperiteration\" 1500000", 64, 64, 0},
-    {AUTO, "2 \"integer caustic_photons\" 600000", 64, 64, 0},
+    {AUTO, "2 \"integer caustic_photons\" 900000", 64, 64, 0},
     {VCM, "2 " PHOTONS, 64, 64, 0},
-    {"Integrator \"photonmap\" " SAID, "2 " PHOTONS " \"bool final_gather\" true", 64, 64,
-     0},
+    {"Integrator \"photonmap\" " SAID,
+     "2 \"integer photons\" 2500000 \"bool final_gather\" true", 64, 64, 0},
 };
 
 /* @return MiB that were taken at most */
@@ -189,8 +189,8 @@ static void test_limit_is_of_one_process(folder *f, gconstpointer data)
 {
     (void)data;
     write_scene(f, &greedy[0]);
-    run_well(f, "render sized.pbrt -q -o a.exr --memory 60M");
-    run_well(f, "render sized.pbrt -q -o b.exr --memory 60M --passes 1 --set "
+    run_well(f, "render sized.pbrt -q -o a.exr --memory 50M");
+    run_well(f, "render sized.pbrt -q -o b.exr --memory 50M --passes 1 --set "
                 "planned_passes=2 --checkpoint kept");
     run_well(f, "render sized.pbrt -q -o b.exr --resume kept --passes 2");
     g_auto(result) same = run(f, "compare a.exr b.exr --json");

@@ -50,6 +50,7 @@ static void give_place(photon_list *photons, size_t *total)
 {
     photons->first = *total;
     *total += photons->all.n;
+    slab_list_uncount(&photons->all);
 }
 
 /* Gives each chunk its place in the whole. @return false if one failed. */

@@ -344,11 +344,6 @@ static void chunk_clear(light_chunk *chunk)
     *chunk = (light_chunk){0};
 }
 
-static size_t chunk_bytes(size_t n_vertices, size_t n_splats)
-{
-    return n_vertices * sizeof(light_vertex) + n_splats * sizeof(splat);
-}
-
 static void put_vertices(const void *elements, size_t n, size_t at, void *data)
 {
     memcpy((light_vertex *)data + at, elements, n * sizeof(light_vertex));
@@ -368,7 +363,6 @@ static void join_chunk(size_t c, size_t end, unsigned thread, void *data)
     light_chunk *from = &loop->chunks[c];
     for (size_t i = c * RAYS_AT_ONCE; i < MIN((c + 1) * RAYS_AT_ONCE, to->n); i++)
         to->end[i] += from->first_vertex;
-    memory_count(chunk_bytes(from->vertices.n, from->splats.n));
     slab_list_move(&from->vertices, put_vertices, to->vertices + from->first_vertex);
     slab_list_move(&from->splats, put_splats, to->splats + from->first_splat);
 }
@@ -387,17 +381,15 @@ static bool join(light_loop *loop, size_t n, transport_counts *counts, GError **
         chunks[c].first_splat = n_splats;
         n_vertices += chunks[c].vertices.n;
         n_splats += chunks[c].splats.n;
+        slab_list_uncount(&chunks[c].vertices);
+        slab_list_uncount(&chunks[c].splats);
         counts->photon_rays += chunks[c].n_rays;
         counts->n_not_finite += chunks[c].n_not_finite;
     }
-    /* Each chunk goes when it is copied: both are never there as a whole. */
-    memory_release(chunk_bytes(n_vertices, n_splats));
     to->vertices = big_alloc(n_vertices, sizeof *to->vertices, "light vertices", error);
     to->splats = big_alloc(n_splats, sizeof *to->splats, "splats", error);
-    if (!to->vertices || !to->splats) {
-        memory_count(chunk_bytes(n_vertices, n_splats));
+    if (!to->vertices || !to->splats)
         return false;
-    }
     to->n_vertices = n_vertices;
     to->n_splats = n_splats;
     parallel_for(n, 1, (unsigned)loop->pass->plan->how.threads, NULL, join_chunk, loop);
