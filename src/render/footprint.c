@@ -47,8 +47,13 @@ static size_t photon_bytes(const transport_plan *plan, double probe,
     double share = fmin(probe / (double)MAX(n_photons(plan), 1), 1.0);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         small.n_photons[c] = (uint64_t)ceil((double)plan->n_photons[c] * share);
-    size_t slabs = parallel_threads((unsigned)plan->how.threads) * SLAB_BYTES;
-    return (size_t)((double)begin_and_end(&small, cancel) / share) + slabs;
+    return (size_t)((double)begin_and_end(&small, cancel) / share);
+}
+
+/* Those that threads are still filling, as they take what does not count yet. */
+static size_t begun_slabs(const settings *how)
+{
+    return parallel_threads((unsigned)how->threads) * SLAB_BYTES;
 }
 
 static size_t plan_bytes(const view *v, const settings *how)
@@ -56,7 +61,7 @@ static size_t plan_bytes(const view *v, const settings *how)
     transport_plan plan = transport_plan_of(v, how);
     size_t bytes = 0;
     if (transport_plan_prepare(&plan, NULL, NULL) && n_photons(&plan) > 0)
-        bytes = photon_bytes(&plan, PROBE, NULL);
+        bytes = photon_bytes(&plan, PROBE, NULL) + begun_slabs(how);
     transport_plan_clear(&plan);
     return bytes;
 }
