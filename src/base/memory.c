@@ -12,9 +12,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum { ALIGNMENT = 64 }; /* bytes: a cache line */
+enum {
+    ALIGNMENT = 64,    /* bytes: a cache line */
+    LEAST_PAGE = 4096, /* bytes: of any system */
+};
 
 #define HUGE_PAGE ((size_t)2 << 20) /* bytes: of most systems */
+#define REGION ((size_t)16 << 20)   /* bytes of address space: see open_region */
 
 #define DEFAULT_SHARE 0.8
 
@@ -190,22 +194,20 @@ bool memory_ask(size_t bytes, const char *what, GError **error)
 
 /* ---- Arrays ---- */
 
-/* From calloc, which knows which memory is zero already: a big array is then not touched
- * before it is used, nor by one thread only. Before the array stand how large it is and
- * where it begins; places are even by far, so bits are left to say whose it is. */
+/* Small ones come from calloc, and before each stand how large it is and where it begins.
+ * Large ones come from the system: of what malloc is given back it keeps pieces, which do
+ * not fit what comes next. A large array is not touched before it is used, nor by one
+ * thread only. */
 typedef struct array_head {
-    size_t bytes;
-    uintptr_t base;
+    size_t bytes : 63;
+    bool is_counted : 1; /* as in use; if not, its owner counts what is used of it */
+    void *base;
 } array_head;
 
-enum {
-    IS_MAPPED = 1,    /* from the system */
-    IS_UNCOUNTED = 2, /* its owner counts what is used of it */
-    FLAGS = IS_MAPPED | IS_UNCOUNTED,
-};
+_Static_assert(sizeof(array_head) <= 16,
+               "there is so much room before what malloc gives");
 
-/* From the system where an array is large: of what malloc is given back it keeps pieces,
-   which do not fit what comes next. A sanitizer watches what comes from malloc only. */
+/* A sanitizer watches what comes from malloc only. */
 static bool is_large(size_t bytes)
 {
 #ifdef SANITIZED
@@ -216,81 +218,155 @@ static bool is_large(size_t bytes)
 #endif
 }
 
-static bool is_mapped(const array_head *head)
+/* Large arrays lie beside one another in regions of the system's, so that those of less
+ * than a huge page share one:
+ *
+ *   region  │ array │ array │   array   │ given back │ array │ not taken yet        │
+ *           └──── huge page ────┴──── huge page ────┴──── huge page ────┴── .. ─────┘
+ *
+ * The memory of each goes back alone, in whole pages; the region's addresses go with its
+ * last array. What stands in a head elsewhere is kept apart from them: a head would be
+ * touched before it is known which thread fills the array. */
+typedef struct region {
+    char *next, *end; /* what is not taken yet */
+    char *begin;
+    size_t n_arrays;
+} region;
+
+typedef struct mapped_array {
+    array_head head;
+    region *in;
+} mapped_array;
+
+static struct {
+    GMutex lock;
+    GHashTable *arrays; /* under the lock, as all of it: mapped_array by place, owned */
+    region *last;       /* where the next array will be; NULL: there is none */
+} mapped;
+
+static size_t whole_pages(size_t bytes, size_t page)
 {
-    return head->base & IS_MAPPED;
+    return (bytes + page - 1) & ~(page - 1);
 }
 
-static char *map(size_t bytes)
+static size_t page_size(void)
 {
-    return mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return (size_t)sysconf(_SC_PAGESIZE);
 }
 
-/* From where a huge page begins: fewer faults while an array fills, which are dear where
-   a system runs in another, and fewer misses of the TLB when it is read in no order. What
-   is less than a huge page at its end is of small ones, so that nothing is taken that is
-   not used. That pages are huge is only a hint. */
-static char *map_huge(size_t bytes)
+static void close_region(region *r)
 {
-    size_t page = (size_t)sysconf(_SC_PAGESIZE), size = (bytes + page - 1) & ~(page - 1);
-    char *base = map(size + HUGE_PAGE);
+    if (!r || r->n_arrays > 0)
+        return;
+    munmap(r->begin, (size_t)(r->end - r->begin));
+    g_free(r);
+}
+
+/* One that begins with a huge page, and holds so many bytes at least. Fewer faults while
+   arrays fill, fewer misses of the TLB when they are read in no order: but that pages
+   are huge is only a hint. @return NULL: no memory */
+static region *open_region(size_t bytes)
+{
+    size_t size = whole_pages(MAX(bytes, REGION), HUGE_PAGE), room = size + HUGE_PAGE;
+    char *base =
+        mmap(NULL, room, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (base == MAP_FAILED)
-        return base;
-    size_t before = -(uintptr_t)base & (HUGE_PAGE - 1);
+        return NULL;
+    size_t before = whole_pages((uintptr_t)base, HUGE_PAGE) - (uintptr_t)base;
     if (before > 0)
         munmap(base, before);
-    munmap(base + before + size, HUGE_PAGE - before);
-    madvise(base + before, size & ~(HUGE_PAGE - 1), MADV_HUGEPAGE);
-    return base + before;
+    if (before < HUGE_PAGE)
+        munmap(base + before + size, HUGE_PAGE - before);
+    region *r = g_new0(region, 1);
+    r->begin = r->next = base + before;
+    r->end = r->begin + size;
+    madvise(r->begin, size, MADV_HUGEPAGE);
+    return r;
 }
 
-/* There may be so many pieces of the system's and no more. @return 0: no memory */
-static uintptr_t take(size_t bytes)
+/* The region with room for so many bytes. NULL: no memory */
+static region *region_for(size_t bytes)
 {
-    char *base = MAP_FAILED;
-    if (is_large(bytes))
-        base = bytes < HUGE_PAGE ? map(bytes) : map_huge(bytes);
-    if (base != MAP_FAILED)
-        return (uintptr_t)base | IS_MAPPED;
-    return (uintptr_t)calloc(1, bytes);
+    region *last = mapped.last;
+    if (last && bytes <= (size_t)(last->end - last->next))
+        return last;
+    region *next = open_region(bytes);
+    if (next) {
+        close_region(last);
+        mapped.last = next;
+    }
+    return next;
 }
 
-static void *base_of(const array_head *head)
+/* @return NULL: no memory */
+static void *map_array(const array_head *head)
 {
-    return (void *)(head->base & ~(uintptr_t)FLAGS);
+    void *array = NULL;
+    const size_t size = whole_pages(head->bytes, page_size());
+    g_mutex_lock(&mapped.lock);
+    if (!mapped.arrays)
+        mapped.arrays = g_hash_table_new_full(NULL, NULL, NULL, g_free);
+    region *in = region_for(size);
+    if (in) {
+        mapped_array *noted = g_new(mapped_array, 1);
+        *noted = (mapped_array){*head, in};
+        array = in->next;
+        in->next += size;
+        in->n_arrays++;
+        g_hash_table_insert(mapped.arrays, array, noted);
+    }
+    g_mutex_unlock(&mapped.lock);
+    return array;
 }
 
-static void give_back(const array_head *head)
+static array_head unmap_array(void *array)
 {
-    if (is_mapped(head))
-        munmap(base_of(head), head->bytes);
-    else
-        free(base_of(head));
+    g_mutex_lock(&mapped.lock);
+    mapped_array *noted = g_hash_table_lookup(mapped.arrays, array);
+    const array_head head = noted->head;
+    region *in = noted->in;
+    madvise(array, whole_pages(head.bytes, page_size()), MADV_DONTNEED);
+    in->n_arrays--;
+    if (in != mapped.last)
+        close_region(in);
+    g_hash_table_remove(mapped.arrays, array);
+    g_mutex_unlock(&mapped.lock);
+    return head;
 }
 
-/* Behind room for the head. */
-static void *array_of(const array_head *head)
+/* Only they begin with a page. */
+static bool is_mapped(const void *array)
 {
-    uintptr_t base = (uintptr_t)base_of(head);
-    array_head *array = (array_head *)((base + ALIGNMENT) & ~(uintptr_t)(ALIGNMENT - 1));
+    return (uintptr_t)array % LEAST_PAGE == 0;
+}
+
+/* Behind room for the head, and at no page's begin. */
+static void *array_behind(const array_head *head)
+{
+    uintptr_t place = ((uintptr_t)head->base + ALIGNMENT) & ~(uintptr_t)(ALIGNMENT - 1);
+    place += place % LEAST_PAGE == 0 ? ALIGNMENT : 0;
+    array_head *array = (array_head *)place;
     array[-1] = *head;
     return array;
+}
+
+/* There may be so many pieces of the system's and no more. @return NULL: no memory */
+static void *take(array_head head)
+{
+    void *array = is_large(head.bytes) ? map_array(&head) : NULL;
+    if (array)
+        return array;
+    head.base = calloc(1, head.bytes + ALIGNMENT);
+    if (!head.base)
+        return NULL;
+    atomic_fetch_add(&in_arrays, head.bytes);
+    return array_behind(&head);
 }
 
 /* With the head. */
 static size_t bytes_for(size_t bytes)
 {
     return ((bytes + ALIGNMENT) & ~(size_t)(ALIGNMENT - 1)) + ALIGNMENT;
-}
-
-/* @param total with the head, which is counted already */
-static void *make_counted(size_t total, uintptr_t flags)
-{
-    const array_head head = {total, take(total) | flags};
-    if (head.base == flags)
-        return NULL;
-    atomic_fetch_add(&in_arrays, is_mapped(&head) ? 0 : total);
-    return array_of(&head);
 }
 
 /* @param fails as if there were no memory */
@@ -302,7 +378,7 @@ static void *make_array(size_t n, size_t size, const char *what, bool fails,
     size_t total = bytes_for(fits ? bytes : SIZE_MAX / 2);
     if (!memory_reserve(total, what, error))
         return NULL;
-    void *array = fails ? NULL : make_counted(total, 0);
+    void *array = fails ? NULL : take((array_head){total, true, NULL});
     if (!array) {
         memory_release(total);
         refuse(total, what, error);
@@ -318,7 +394,7 @@ void *big_alloc(size_t n, size_t size, const char *what, GError **error)
 void *big_alloc_uncounted(size_t bytes, const char *what, GError **error)
 {
     size_t total = bytes_for(bytes);
-    void *array = must_fail() ? NULL : make_counted(total, IS_UNCOUNTED);
+    void *array = must_fail() ? NULL : take((array_head){total, false, NULL});
     if (!array)
         refuse(total, what, error);
     return array;
@@ -337,28 +413,29 @@ void *big_grow(void *old, size_t n_old, size_t n_new, size_t size, const char *w
 
 void big_zero(void *array, size_t bytes)
 {
-    const array_head *head = (const array_head *)array - 1;
-    const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
-    char *end = (char *)array + bytes;
-    char *first = (char *)(((uintptr_t)array + page - 1) & ~(page - 1));
-    char *last = (char *)((uintptr_t)end & ~(page - 1));
-    if (!is_mapped(head) || first >= last ||
-        madvise(first, (size_t)(last - first), MADV_DONTNEED) != 0) {
-        memset(array, 0, bytes);
-        return;
-    }
-    memset(array, 0, (size_t)(first - (char *)array));
-    memset(last, 0, (size_t)(end - last));
+    const size_t whole = bytes & ~(page_size() - 1);
+    size_t done = 0;
+    if (is_mapped(array) && whole > 0 && madvise(array, whole, MADV_DONTNEED) == 0)
+        done = whole;
+    memset((char *)array + done, 0, bytes - done);
+}
+
+static array_head give_back(void *array)
+{
+    if (is_mapped(array))
+        return unmap_array(array);
+    const array_head head = ((array_head *)array)[-1];
+    atomic_fetch_sub(&in_arrays, head.bytes);
+    free(head.base);
+    return head;
 }
 
 void big_free(void *array)
 {
     if (!array)
         return;
-    const array_head head = ((array_head *)array)[-1];
-    memory_release(head.base & IS_UNCOUNTED ? 0 : head.bytes);
-    atomic_fetch_sub(&in_arrays, is_mapped(&head) ? 0 : head.bytes);
-    give_back(&head);
+    const array_head head = give_back(array);
+    memory_release(head.is_counted ? head.bytes : 0);
 }
 
 size_t memory_peak(void)

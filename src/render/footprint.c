@@ -25,6 +25,11 @@ static uint64_t n_photons(const transport_plan *plan)
     return n;
 }
 
+size_t footprint_begun(const settings *how)
+{
+    return (parallel_threads((unsigned)how->threads) + 1) * SLAB_BYTES;
+}
+
 /* The most that arrays had at once while a pass of this plan was begun. */
 static size_t begin_and_end(const transport_plan *plan, const cancel_flag *cancel)
 {
@@ -50,18 +55,12 @@ static size_t photon_bytes(const transport_plan *plan, double probe,
     return (size_t)((double)begin_and_end(&small, cancel) / share);
 }
 
-/* Those that threads are still filling, as they take what does not count yet. */
-static size_t begun_slabs(const settings *how)
-{
-    return parallel_threads((unsigned)how->threads) * SLAB_BYTES;
-}
-
 static size_t plan_bytes(const view *v, const settings *how)
 {
     transport_plan plan = transport_plan_of(v, how);
     size_t bytes = 0;
     if (transport_plan_prepare(&plan, NULL, NULL) && n_photons(&plan) > 0)
-        bytes = photon_bytes(&plan, PROBE, NULL) + begun_slabs(how);
+        bytes = photon_bytes(&plan, PROBE, NULL) + footprint_begun(how);
     transport_plan_clear(&plan);
     return bytes;
 }

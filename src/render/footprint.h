@@ -16,6 +16,10 @@
  * for nothing: nor will it render. Not for two threads at once. */
 size_t footprint_of(const view *v, const settings *how);
 
+/** @brief Bytes that are taken and not in use yet: each thread's slab that it fills, and the
+ * huge page where the next arrays will be. */
+size_t footprint_begun(const settings *how);
+
 /** @brief Whether a process that has so many bytes leaves room for anything more.
  * ERROR_FAILED saying how much it is and what the limit is. */
 bool footprint_check(size_t beside, GError **error);

@@ -20,7 +20,7 @@ render *render_new(const view *v, const settings *how, GError **error)
     r->statistics.noise = (double)INFINITY;
     bool open_end = how->passes == 0 && (how->time > 0.0 || how->noise > 0.0);
     r->statistics.passes_wanted = open_end ? 0 : (int64_t)ceil(settings_most_passes(how));
-    size_t before = memory_resident();
+    size_t before = memory_resident() + footprint_begun(how);
     bool open = film_open(&r->film, v, how->denoise, error);
     r->film.coarse = how->denoise_windows == WINDOWS_COARSE;
     if (open && footprint_check(r->beside = before + film_bytes_in_all(&r->film), error))
