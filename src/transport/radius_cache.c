@@ -1,14 +1,15 @@
 #include "transport/radius_cache.h"
 
 #include "base/parallel.h"
+#include "transport/near_places.h"
 
 #include <string.h>
 
 struct radius_cache {
     size_t n;
-    point_set *index;
-    vec3 *places; /* by the numbers of the index */
-    float *radii; /* likewise */
+    near_places *near;
+    vec3 *places;
+    float *radii; /* at each place */
 };
 
 float radius_of_nearest(const point_hits *nearest)
@@ -51,8 +52,8 @@ static radius_cache *cache_at(const vec3 *places, size_t n, GError **error)
     cache->radii = g_new0(float, MAX(n, 1));
     cache->places = g_aligned_alloc0(MAX(n, 1), sizeof *cache->places, 16);
     memcpy(cache->places, places, n * sizeof *places);
-    cache->index = point_set_build(places, n, 1, error);
-    return cache->index ? g_steal_pointer(&cache) : NULL;
+    cache->near = near_places_build(places, n, error);
+    return cache->near ? g_steal_pointer(&cache) : NULL;
 }
 
 radius_cache *radius_cache_of(const vec3 *places, const float *radii, size_t n,
@@ -84,7 +85,7 @@ void radius_cache_free(radius_cache *cache)
 {
     if (!cache)
         return;
-    point_set_free(cache->index);
+    near_places_free(cache->near);
     g_free(cache->radii);
     g_aligned_free(cache->places);
     g_free(cache);
@@ -105,9 +106,13 @@ float radius_cache_nth(const radius_cache *cache, size_t i)
     return cache->radii[i];
 }
 
-float radius_cache_at(const radius_cache *cache, vec3 p, float none, point_hits *hits)
+float radius_cache_at(const radius_cache *cache, vec3 p, float none, float *distance,
+                      point_hits *hits)
 {
-    if (!point_set_nearest(cache->index, p, 1, INFINITY, hits) || hits->n == 0)
+    near_place found;
+    if (!near_places_find(cache->near, p, &found, hits))
         return none;
-    return cache->radii[hits->index[0]];
+    if (distance)
+        *distance = sqrtf(found.distance2);
+    return cache->radii[found.which];
 }

@@ -57,5 +57,7 @@ vec3 radius_cache_place(const radius_cache *cache, size_t i);
 float radius_cache_nth(const radius_cache *cache, size_t i);
 
 /** @brief The radius nearest to p, or `none` if none is kept. Thread-safe.
- *  @param hits gets the place whose radius it is */
-float radius_cache_at(const radius_cache *cache, vec3 p, float none, point_hits *hits);
+ * @param distance gets that of its place, unless NULL or there is none
+ * @param hits scratch */
+float radius_cache_at(const radius_cache *cache, vec3 p, float none, float *distance,
+                      point_hits *hits);

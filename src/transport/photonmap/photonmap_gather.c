@@ -36,11 +36,11 @@ static float local_radius(const photonmap_pass *pass, photon_class c, vec3 p,
     float typical = pass->estimates[c].radius;
     if (!radii || pass->estimates[c].nearest > 0)
         return typical;
-    float r = radius_cache_at(radii, p, -1.0f, hits);
+    float distance = 0.0f, r = radius_cache_at(radii, p, -1.0f, &distance, hits);
     if (r < 0.0f)
         return typical;
     float shrunk = typical / (float)pass->plan->radius[c];
-    return minf(maxf(r, sqrtf(hits->distance2[0])) * shrunk,
+    return minf(maxf(r, distance) * shrunk,
                 WIDEST_OVER_TYPICAL * typical);
 }
 

@@ -25,7 +25,7 @@ static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
         float typical = (float)loop->typical;
         loop->radii[i] =
             loop->shrunk * (loop->of_pass_0
-                                ? radius_cache_at(loop->of_pass_0, p, typical, &hits)
+                                ? radius_cache_at(loop->of_pass_0, p, typical, NULL, &hits)
                                 : typical);
     }
     if (hits.refused)

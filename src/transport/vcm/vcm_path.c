@@ -94,7 +94,7 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
    vertex_radii; 0: too few to tell. */
 static float density_at(const transport_plan *plan, vec3 p, point_hits *hits)
 {
-    float radius = radius_cache_at(plan->vertex_radii, p, 0.0f, hits);
+    float radius = radius_cache_at(plan->vertex_radii, p, 0.0f, NULL, hits);
     if (!(radius > 0.0f))
         return 0.0f;
     float density =

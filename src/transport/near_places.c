@@ -1,0 +1,176 @@
+#include "transport/near_places.h"
+
+#include "base/parallel.h"
+
+typedef float floats4 __attribute__((vector_size(16)));
+
+/* Places that may be nearest, in fours of floats; behind the last they are nowhere. */
+typedef struct cell {
+    size_t n_fours; /* 0: the tree is asked */
+    struct four {
+        floats4 x, y, z;
+        uint32_t which[4];
+    } fours[];
+} cell;
+
+struct near_places {
+    size_t n;
+    vec3 *places;
+    point_set *tree;
+    vec3 low, size;         /* of the box around all; of a cell */
+    size_t n_cells[3];      /* along each axis */
+    _Atomic(cell *) *cells; /* NULL: not asked for yet; owned */
+};
+
+static void box_around(const vec3 *places, size_t n, vec3 *low, vec3 *extent)
+{
+    vec3 high = *low = n > 0 ? places[0] : (vec3){0};
+    for (size_t i = 1; i < n; i++) {
+        *low = min3(*low, places[i]);
+        high = max3(high, places[i]);
+    }
+    *extent = high - *low;
+}
+
+/* As wide as two cells for each place would be along each axis; a box that is flat has
+   one layer of them. */
+static void make_cells(near_places *near)
+{
+    vec3 extent;
+    box_around(near->places, near->n, &near->low, &extent);
+    float widest = maxf(maxf(extent[0], extent[1]), extent[2]), volume = 1.0f;
+    for (int axis = 0; axis < 3; axis++)
+        volume *= maxf(extent[axis], widest / (float)MAX(near->n, 1));
+    float wide = 0.5f * cbrtf(volume / (float)MAX(near->n, 1));
+    size_t n_all = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        size_t n = wide > 0.0f ? (size_t)ceilf(extent[axis] / wide) : 1;
+        near->n_cells[axis] = MAX(n, 1);
+        near->size[axis] = extent[axis] / (float)near->n_cells[axis];
+        n_all *= near->n_cells[axis];
+    }
+    near->cells = g_new0(_Atomic(cell *), n_all);
+}
+
+near_places *near_places_build(const vec3 *places, size_t n, GError **error)
+{
+    g_autoptr(near_places) near = g_aligned_alloc0(1, sizeof *near, 16);
+    near->n = n;
+    near->places = g_aligned_alloc0(MAX(n, 1), sizeof *near->places, 16);
+    for (size_t i = 0; i < n; i++)
+        near->places[i] = places[i];
+    make_cells(near);
+    near->tree = point_set_build(places, n, 1, error);
+    return near->tree ? g_steal_pointer(&near) : NULL;
+}
+
+void near_places_free(near_places *near)
+{
+    if (!near)
+        return;
+    size_t n_all = near->n_cells[0] * near->n_cells[1] * near->n_cells[2];
+    for (size_t i = 0; i < n_all; i++)
+        g_aligned_free(near->cells[i]);
+    g_free(near->cells);
+    point_set_free(near->tree);
+    g_aligned_free(near->places);
+    g_aligned_free(near);
+}
+
+/* @return false: p lies outside the box */
+static bool find_cell(const near_places *near, vec3 p, size_t at[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        float from = p[axis] - near->low[axis];
+        float cells = (float)near->n_cells[axis];
+        float place = near->size[axis] > 0.0f ? from / near->size[axis] : from;
+        if (!(place >= 0.0f && place <= cells))
+            return false;
+        at[axis] = MIN((size_t)place, near->n_cells[axis] - 1);
+    }
+    return true;
+}
+
+static void put_place(cell *c, size_t i, vec3 p, uint32_t which)
+{
+    struct four *four = &c->fours[i / 4];
+    four->x[i % 4] = p[0];
+    four->y[i % 4] = p[1];
+    four->z[i % 4] = p[2];
+    four->which[i % 4] = which;
+}
+
+/* Of the places in hits. */
+static cell *list_places(const near_places *near, const point_hits *hits)
+{
+    size_t n_fours = hits->n * hits->n <= near->n ? (hits->n + 3) / 4 : 0;
+    cell *c = g_aligned_alloc0(1, sizeof *c + n_fours * sizeof *c->fours, 16);
+    c->n_fours = n_fours;
+    for (size_t i = 0; i < 4 * n_fours; i++) {
+        bool is_there = i < hits->n;
+        uint32_t which = is_there ? hits->index[i] : UINT32_MAX;
+        put_place(c, i,
+                  is_there ? near->places[which]
+                           : vec3_make(INFINITY, INFINITY, INFINITY),
+                  which);
+    }
+    return c;
+}
+
+/* @return NULL: memory was refused */
+static cell *make_cell(const near_places *near, const size_t at[3], point_hits *hits)
+{
+    const float rounding = 1.0001f;
+    vec3 centre;
+    for (int axis = 0; axis < 3; axis++)
+        centre[axis] = near->low[axis] + ((float)at[axis] + 0.5f) * near->size[axis];
+    if (!point_set_nearest(near->tree, centre, 1, INFINITY, hits) || hits->n == 0)
+        return NULL;
+    float reach = sqrtf(hits->distance2[0]) + length3(near->size);
+    if (!point_set_within(near->tree, centre, rounding * reach, hits))
+        return NULL;
+    return list_places(near, hits);
+}
+
+static const cell *cell_at(const near_places *near, const size_t at[3], point_hits *hits)
+{
+    size_t i = (at[2] * near->n_cells[1] + at[1]) * near->n_cells[0] + at[0];
+    cell *c = atomic_load_explicit(&near->cells[i], memory_order_acquire), *none = NULL;
+    if (c)
+        return c;
+    c = make_cell(near, at, hits);
+    if (!c || atomic_compare_exchange_strong(&near->cells[i], &none, c))
+        return c;
+    g_aligned_free(c);
+    return none;
+}
+
+static near_place nearest_of(const cell *c, vec3 p)
+{
+    near_place best = {SIZE_MAX, INFINITY};
+    for (size_t i = 0; i < c->n_fours; i++) {
+        const struct four *four = &c->fours[i];
+        floats4 x = four->x - p[0], y = four->y - p[1], z = four->z - p[2];
+        floats4 d2 = x * x + y * y + z * z;
+        for (int k = 0; k < 4; k++)
+            if (d2[k] < best.distance2 ||
+                (d2[k] == best.distance2 && four->which[k] < best.which))
+                best = (near_place){four->which[k], d2[k]};
+    }
+    return best;
+}
+
+bool near_places_find(const near_places *near, vec3 p, near_place *found,
+                      point_hits *hits)
+{
+    size_t at[3];
+    const cell *c = find_cell(near, p, at) ? cell_at(near, at, hits) : NULL;
+    if (c && c->n_fours > 0) {
+        *found = nearest_of(c, p);
+        return true;
+    }
+    if (!point_set_nearest(near->tree, p, 1, INFINITY, hits) || hits->n == 0)
+        return false;
+    *found = (near_place){hits->index[0], hits->distance2[0]};
+    return true;
+}
