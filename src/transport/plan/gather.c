@@ -105,9 +105,7 @@ static bool plan_to_gather(transport_plan *plan, transport_plan *out,
         out->radius[c] = out->radius_in_media[c] = 0.0;
     }
     set_photons(plan, out);
-    bool ok = photonmap_choose_radii(out, cancel, error);
-    plan->planning = out->planning;
-    return ok;
+    return photonmap_choose_radii(out, cancel, error);
 }
 
 static double n_photons(const transport_plan *plan)
@@ -142,7 +140,8 @@ static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError *
     widen(t->maps[i], sqrt(t->fewer));
     double rays = plan_rays_of_photons(&counts);
     t->photon_rays += 0.5 * rays * t->fewer;
-    t->plan.planning += rays;
+    plan_note_photons(&t->plan, rays - (double)counts.photon_rays,
+                      (double)counts.photon_rays);
     return true;
 }
 
@@ -161,7 +160,6 @@ static double sample(radiance_function *radiance, const void *pass,
     spectrum sum = {0};
     vec2 u_lens = sampler_2d(&random);
     ray r = camera_ray(&plan->view->camera, raster, u_lens, sampler_1d(&random));
-    looked_around_forget(&scratch->estimate.looked);
     radiance(pass, &r, &random, scratch, &out);
     for (int i = 0; i < N_LAYERS; i++)
         if (i != LAYER_CAUSTIC || plan->n_photons[PHOTON_CAUSTIC] == 0)
@@ -193,7 +191,7 @@ static double later_rays(const gather_trial *t, const transport_plan *plan, vec2
     return plan_rays_of(scratch) - before;
 }
 
-/* Asks both maps at a place. */
+/* Asks both maps at a place: what is looked at for the first counts for all. */
 static void ask_maps(const gather_task *all, uint32_t i, transport_scratch *scratch)
 {
     const gather_trial *t = all->trial;
@@ -202,10 +200,12 @@ static void ask_maps(const gather_task *all, uint32_t i, transport_scratch *scra
     sampler random = sampler_make(all->key, i);
     vec2 raster = raster_of(plan, &random);
     double before = plan_rays_of(scratch);
+    looked_around_forget(&scratch->estimate.looked);
     at->map[0] = sample(photonmap_radiance, t->maps[0], plan, raster,
                         sampler_split(&random, 0), scratch);
     at->first_rays = plan_rays_of(scratch) - before;
-    at->later_rays = later_rays(t, plan, raster, sampler_split(&random, 2), scratch);
+    if (plan->how.spp > 1)
+        at->later_rays = later_rays(t, plan, raster, sampler_split(&random, 2), scratch);
     at->map[1] = sample(photonmap_radiance, t->maps[1], plan, raster,
                         sampler_split(&random, 1), scratch);
     at->other = sample(photonmap_radiance, t->maps[1], plan, raster,
@@ -221,6 +221,7 @@ static void ask_wider(const gather_task *all, uint32_t i, transport_scratch *scr
     sampler random = sampler_make(all->key, i);
     vec2 raster = raster_of(all->plan, &random);
     double before = plan_rays_of(scratch);
+    looked_around_forget(&scratch->estimate.looked);
     for (unsigned k = 0; k < 2; k++) {
         sampler own = sampler_split(&random, k);
         at->wider[k] =
@@ -252,12 +253,13 @@ static void ask_wider_of_some(size_t begin, size_t end, unsigned thread, void *d
     ask_some(data, ask_wider, begin, end);
 }
 
-/* As many places as the grant allows, by what the first of them cost. */
+/* As many places as the grant allows, by what the first of them cost: asking again with a
+   wider radius is no dearer. */
 static uint32_t count_places(const gather_trial *t, const transport_plan *plan)
 {
     double each = N_BY_PATHS * plan->sample_rays * LEAST_TRIALS;
     for (int i = 0; i < LEAST_TRIALS; i++)
-        each += t->places[i].first_rays * (N_BY_MAPS - 1.0) + t->places[i].later_rays;
+        each += 2.0 * t->places[i].all_rays;
     return plan_trials_for(plan, 1.0, each / LEAST_TRIALS, MOST_PLACES);
 }
 
@@ -448,7 +450,7 @@ bool gather_decide(transport_plan *plan, const path_pass *paths,
     gather_trial *t = g_aligned_alloc0(1, sizeof *t, 64);
     bool ok = plan_to_gather(plan, &t->plan, cancel, error);
     double n = n_photons(&t->plan);
-    double most = plan_trials_for(plan, 0.5, 2.0 * PHOTON_RAYS, UINT32_MAX);
+    double most = plan_trials_for(plan, 0.5, 2.0 * plan_photon_rays(&t->plan), UINT32_MAX);
     t->fewer = fmax(n / most, 1.0);
     for (int i = 0; i < 2 && ok; i++)
         ok = send_few(t, i, cancel, error);

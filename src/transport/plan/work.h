@@ -68,6 +68,12 @@ double plan_rays_of_photons(const transport_counts *counts);
  * edges is half a ray. */
 double plan_rays_of(const transport_scratch *scratch);
 
+/** @brief Notes photons of a trial, and the rays that were traced for them. */
+void plan_note_photons(transport_plan *plan, double n, double rays);
+
+/** @brief What one costs in a trial, in rays: as those before did. */
+double plan_photon_rays(const transport_plan *plan);
+
 /** @brief Camera samples of all passes that are planned. */
 double plan_samples(const transport_plan *plan);
 
