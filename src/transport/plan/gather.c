@@ -21,8 +21,7 @@ typedef struct gather_place {
     double map[2];     /* each with a sampler of its own */
     double other;      /* of the second map, with the sampler of the first one */
     double wider[2];   /* map[] again, with the wider radius */
-    double first_rays; /* of a pixel's first sample */
-    double later_rays; /* of another one, which shares the first one's looks */
+    double path_rays;  /* of a path */
     double all_rays;
 } gather_place;
 
@@ -33,7 +32,9 @@ typedef struct gather_trial {
     photonmap_pass *maps[2];
     double fewer;                  /* photons than the plan's, over them */
     double photon_rays;            /* of a whole pass */
-    double first_rays, later_rays; /* means over places */
+    double first_rays; /* of a pixel's first sample */
+    double later_rays; /* of another one, which shares the first one's looks */
+    double path_rays;  /* of a path */
     uint32_t n;
     gather_place *places;
 } gather_trial;
@@ -52,9 +53,8 @@ typedef struct gather_errors {
     double path, samples, photons, bias2;
 } gather_errors;
 
-/* Samples of a place: by maps map[], other, wider[] and a second one of the pixel, and
-   two by paths. */
-enum { N_BY_MAPS = 2 + 1 + 2 + 1, N_BY_PATHS = 2 }; /* math: as many */
+/* Samples of a place: by maps map[], other and wider[], and two by paths. */
+enum { N_BY_MAPS = 2 + 1 + 2, N_BY_PATHS = 2 }; /* math: as many */
 
 /* ---- Trial passes ---- */
 
@@ -122,7 +122,7 @@ static void widen(photonmap_pass *pass, double by)
         pass->estimates[c].radius *= (float)by;
 }
 
-/* A pass of few photons, whose radii hold as many as those of the plan. */
+/* A pass of few photons. */
 static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError **error)
 {
     transport_plan *few = &t->few[i];
@@ -137,7 +137,6 @@ static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError *
     t->maps[i] = transport_photonmap.begin_pass(few, 0, cancel, &counts, error);
     if (!t->maps[i])
         return false;
-    widen(t->maps[i], sqrt(t->fewer));
     double rays = plan_rays_of_photons(&counts);
     t->photon_rays += 0.5 * rays * t->fewer;
     plan_note_photons(&t->plan, rays - (double)counts.photon_rays,
@@ -176,19 +175,43 @@ static vec2 raster_of(const transport_plan *plan, sampler *random)
     return (vec2){u.x * (float)film->width, u.y * (float)film->height};
 }
 
-/* A second sample of the pixel: what it costs where looks for edges are shared. With
-   fewer photons radii are wider, and pixels with them. */
-static double later_rays(const gather_trial *t, const transport_plan *plan, vec2 raster,
-                         sampler random, transport_scratch *scratch)
+/* A second sample of the pixel. */
+static double later_rays(const gather_task *all, vec2 raster, sampler random,
+                         transport_scratch *scratch)
 {
     double before = plan_rays_of(scratch);
-    radiance_sample out = {.groups = NULL};
-    vec2 u = sampler_2d(&random), u_lens = sampler_2d(&random);
-    float wide = sqrtf((float)t->fewer);
-    vec2 beside = {raster.x + wide * (u.x - 0.5f), raster.y + wide * (u.y - 0.5f)};
-    ray r = camera_ray(&plan->view->camera, beside, u_lens, sampler_1d(&random));
-    photonmap_radiance(t->maps[0], &r, &random, scratch, &out);
+    vec2 u = sampler_2d(&random);
+    vec2 beside = {raster.x + u.x - 0.5f, raster.y + u.y - 0.5f};
+    sample(photonmap_radiance, all->trial->maps[0], all->plan, beside, random, scratch);
     return plan_rays_of(scratch) - before;
+}
+
+/* With the radii of the plan, before they are widened: discs that hold few photons now
+   will hold them then, and be looked around. @return rays that it took */
+static double find_price(const gather_task *all)
+{
+    gather_trial *t = all->trial;
+    transport_scratch scratch = {0};
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        t->maps[0]->estimates[c].looks_anyway = true;
+    for (uint32_t i = 0; i < LEAST_TRIALS; i++) {
+        sampler random = sampler_make(all->key, i);
+        vec2 raster = raster_of(all->plan, &random);
+        double before = plan_rays_of(&scratch);
+        looked_around_forget(&scratch.estimate.looked);
+        sample(photonmap_radiance, t->maps[0], all->plan, raster,
+               sampler_split(&random, 0), &scratch);
+        t->first_rays += (plan_rays_of(&scratch) - before) / LEAST_TRIALS;
+        if (all->plan->how.spp > 1)
+            t->later_rays +=
+                later_rays(all, raster, sampler_split(&random, 2), &scratch) /
+                LEAST_TRIALS;
+    }
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        t->maps[0]->estimates[c].looks_anyway = false;
+    double took = plan_rays_of(&scratch);
+    transport_scratch_clear(&scratch);
+    return took;
 }
 
 /* Asks both maps at a place: what is looked at for the first counts for all. */
@@ -203,9 +226,6 @@ static void ask_maps(const gather_task *all, uint32_t i, transport_scratch *scra
     looked_around_forget(&scratch->estimate.looked);
     at->map[0] = sample(photonmap_radiance, t->maps[0], plan, raster,
                         sampler_split(&random, 0), scratch);
-    at->first_rays = plan_rays_of(scratch) - before;
-    if (plan->how.spp > 1)
-        at->later_rays = later_rays(t, plan, raster, sampler_split(&random, 2), scratch);
     at->map[1] = sample(photonmap_radiance, t->maps[1], plan, raster,
                         sampler_split(&random, 1), scratch);
     at->other = sample(photonmap_radiance, t->maps[1], plan, raster,
@@ -213,7 +233,7 @@ static void ask_maps(const gather_task *all, uint32_t i, transport_scratch *scra
     at->all_rays += plan_rays_of(scratch) - before;
 }
 
-/* Both maps again, whose radii are wider now, and paths. */
+/* Both maps again, whose radii are wider now, and paths: each look for edges anew. */
 static void ask_wider(const gather_task *all, uint32_t i, transport_scratch *scratch)
 {
     const gather_trial *t = all->trial;
@@ -222,13 +242,18 @@ static void ask_wider(const gather_task *all, uint32_t i, transport_scratch *scr
     vec2 raster = raster_of(all->plan, &random);
     double before = plan_rays_of(scratch);
     looked_around_forget(&scratch->estimate.looked);
+    for (unsigned k = 0; k < 2; k++)
+        at->wider[k] = sample(photonmap_radiance, t->maps[k], all->plan, raster,
+                              sampler_split(&random, k), scratch);
+    double between = plan_rays_of(scratch);
     for (unsigned k = 0; k < 2; k++) {
-        sampler own = sampler_split(&random, k);
-        at->wider[k] =
-            sample(photonmap_radiance, t->maps[k], all->plan, raster, own, scratch);
-        at->path[k] = sample(path_radiance, all->paths, all->plan, raster, own, scratch);
+        looked_around_forget(&scratch->estimate.looked);
+        at->path[k] = sample(path_radiance, all->paths, all->plan, raster,
+                             sampler_split(&random, k), scratch);
     }
-    at->all_rays += plan_rays_of(scratch) - before;
+    double after = plan_rays_of(scratch);
+    at->path_rays = 0.5 * (after - between);
+    at->all_rays += after - before;
 }
 
 typedef void ask_function(const gather_task *all, uint32_t i, transport_scratch *scratch);
@@ -266,8 +291,7 @@ static uint32_t count_places(const gather_trial *t, const transport_plan *plan)
 static void sum_rays(gather_trial *t, transport_plan *plan)
 {
     for (uint32_t i = 0; i < t->n; i++) {
-        t->first_rays += t->places[i].first_rays / t->n;
-        t->later_rays += t->places[i].later_rays / t->n;
+        t->path_rays += t->places[i].path_rays / t->n;
         plan->planning += t->places[i].all_rays;
     }
 }
@@ -279,6 +303,9 @@ static bool run_places(gather_trial *t, transport_plan *plan, const path_pass *p
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x706c61636573u);
     gather_task task = {t, plan, paths, key, 0};
     t->places = g_new0(gather_place, MOST_PLACES);
+    plan->planning += find_price(&task);
+    for (int i = 0; i < 2; i++)
+        widen(t->maps[i], sqrt(t->fewer));
     ask_some(&task, ask_maps, 0, LEAST_TRIALS);
     t->n = count_places(t, plan);
     task.first = LEAST_TRIALS;
@@ -395,7 +422,7 @@ static bool gathering_pays(transport_plan *plan, const gather_trial *t)
 {
     double per_sample = settings_planned_passes(&plan->how) / plan_samples(plan);
     const gather_errors e = errors_of(t);
-    plan_cost without = {e.path, plan->sample_rays + plan->photon_rays};
+    plan_cost without = {e.path, t->path_rays + plan->photon_rays};
     plan_cost with = {error_of(plan, &e),
                       rays_of_sample(plan, t) + t->photon_rays * per_sample};
     bool pays = with.variance * with.rays < without.variance * without.rays;

@@ -12,7 +12,7 @@ double plan_rays_of(const transport_scratch *scratch)
 {
     const estimate_scratch *maps = &scratch->estimate;
     return (double)(scratch->camera_rays + scratch->shadow_rays) +
-           PHOTON_RAYS * (double)maps->n_queries + 0.5 * (double)maps->n_looks;
+           PHOTON_RAYS * (double)maps->n_queries + LOOK_RAYS * (double)maps->n_looks;
 }
 
 void plan_note_photons(transport_plan *plan, double n, double rays)
