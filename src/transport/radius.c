@@ -129,7 +129,8 @@ static photon_map *map_of(photon_store *from, unsigned threads, GError **error)
 {
     photon_store store = *from;
     *from = (photon_store){0};
-    return photon_map_build(MAP_KDTREE, &store, 0.0f, (workers){.threads = threads}, error);
+    return photon_map_build(MAP_KDTREE, &store, 0.0f, (workers){.threads = threads},
+                            error);
 }
 
 /* Of all classes that are sent one trial's share; the nearest ones of each are asked for.

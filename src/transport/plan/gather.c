@@ -18,10 +18,10 @@
 /* What two maps, each with two radii, and two paths say of a place of the film. */
 typedef struct gather_place {
     double path[2];
-    double map[2];     /* each with a sampler of its own */
-    double other;      /* of the second map, with the sampler of the first one */
-    double wider[2];   /* map[] again, with the wider radius */
-    double path_rays;  /* of a path */
+    double map[2];    /* each with a sampler of its own */
+    double other;     /* of the second map, with the sampler of the first one */
+    double wider[2];  /* map[] again, with the wider radius */
+    double path_rays; /* of a path */
     double all_rays;
 } gather_place;
 
@@ -30,12 +30,12 @@ typedef struct gather_trial {
     transport_plan plan; /* of photons, as it would be */
     transport_plan few[2];
     photonmap_pass *maps[2];
-    double fewer;                  /* photons than the plan's, over them */
-    double photon_rays;            /* of a whole pass */
-    double first_rays; /* of a pixel's first sample */
-    double later_rays; /* of another one, which shares the first one's looks */
-    double path_rays;  /* of a path */
-    uint32_t n;
+    double fewer;        /* photons than the plan's, over them */
+    double photon_rays;  /* of a whole pass */
+    double first_rays;   /* of a pixel's first sample */
+    double later_rays;   /* of another one, which shares the first one's looks */
+    double path_rays;    /* of a path */
+    uint32_t n, n_wider; /* places, and how many of them a wider radius is tried at */
     gather_place *places;
 } gather_trial;
 
@@ -54,7 +54,7 @@ typedef struct gather_errors {
 } gather_errors;
 
 /* Samples of a place: by maps map[], other and wider[], and two by paths. */
-enum { N_BY_MAPS = 2 + 1 + 2, N_BY_PATHS = 2 }; /* math: as many */
+enum { N_SAMPLES = 2 + 1 + 2 + 2 }; /* math: as many */
 
 /* ---- Trial passes ---- */
 
@@ -66,7 +66,7 @@ static bool may_gather(const transport_plan *plan)
     return how->gather_indirect && how->direct_illumination &&
            !scene_has_media(plan->scene) && how->max_backward_bounces < 0 &&
            how->max_forward_bounces < 0 && scene_is_lit(plan->scene) &&
-           plan_grant(plan, 1.0) >= LEAST_TRIALS * (N_BY_MAPS + N_BY_PATHS) * SAMPLE_RAYS;
+           plan_grant(plan, 1.0) >= LEAST_TRIALS * N_SAMPLES * SAMPLE_RAYS;
 }
 
 /* Photons as of photon mapping, but all of them together take no longer than the camera.
@@ -187,25 +187,26 @@ static double later_rays(const gather_task *all, vec2 raster, sampler random,
 }
 
 /* With the radii of the plan, before they are widened: discs that hold few photons now
-   will hold them then, and be looked around. @return rays that it took */
+   will hold them then, and be looked around. Of few places: these differ less by that
+   than by what they bring. @return rays that it took */
 static double find_price(const gather_task *all)
 {
     gather_trial *t = all->trial;
     transport_scratch scratch = {0};
+    const uint32_t n = LEAST_TRIALS / 2;
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         t->maps[0]->estimates[c].looks_anyway = true;
-    for (uint32_t i = 0; i < LEAST_TRIALS; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         sampler random = sampler_make(all->key, i);
         vec2 raster = raster_of(all->plan, &random);
         double before = plan_rays_of(&scratch);
         looked_around_forget(&scratch.estimate.looked);
         sample(photonmap_radiance, t->maps[0], all->plan, raster,
                sampler_split(&random, 0), &scratch);
-        t->first_rays += (plan_rays_of(&scratch) - before) / LEAST_TRIALS;
+        t->first_rays += (plan_rays_of(&scratch) - before) / n;
         if (all->plan->how.spp > 1)
             t->later_rays +=
-                later_rays(all, raster, sampler_split(&random, 2), &scratch) /
-                LEAST_TRIALS;
+                later_rays(all, raster, sampler_split(&random, 2), &scratch) / n;
     }
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         t->maps[0]->estimates[c].looks_anyway = false;
@@ -214,7 +215,8 @@ static double find_price(const gather_task *all)
     return took;
 }
 
-/* Asks both maps at a place: what is looked at for the first counts for all. */
+/* Asks both maps at a place, where what is looked at for the first counts for all, and
+   paths, which look for edges anew. */
 static void ask_maps(const gather_task *all, uint32_t i, transport_scratch *scratch)
 {
     const gather_trial *t = all->trial;
@@ -230,10 +232,18 @@ static void ask_maps(const gather_task *all, uint32_t i, transport_scratch *scra
                         sampler_split(&random, 1), scratch);
     at->other = sample(photonmap_radiance, t->maps[1], plan, raster,
                        sampler_split(&random, 0), scratch);
-    at->all_rays += plan_rays_of(scratch) - before;
+    double between = plan_rays_of(scratch);
+    for (unsigned k = 0; k < 2; k++) {
+        looked_around_forget(&scratch->estimate.looked);
+        at->path[k] = sample(path_radiance, all->paths, plan, raster,
+                             sampler_split(&random, k), scratch);
+    }
+    double after = plan_rays_of(scratch);
+    at->path_rays = 0.5 * (after - between);
+    at->all_rays += after - before;
 }
 
-/* Both maps again, whose radii are wider now, and paths: each look for edges anew. */
+/* Both maps again, whose radii are wider now. */
 static void ask_wider(const gather_task *all, uint32_t i, transport_scratch *scratch)
 {
     const gather_trial *t = all->trial;
@@ -245,15 +255,7 @@ static void ask_wider(const gather_task *all, uint32_t i, transport_scratch *scr
     for (unsigned k = 0; k < 2; k++)
         at->wider[k] = sample(photonmap_radiance, t->maps[k], all->plan, raster,
                               sampler_split(&random, k), scratch);
-    double between = plan_rays_of(scratch);
-    for (unsigned k = 0; k < 2; k++) {
-        looked_around_forget(&scratch->estimate.looked);
-        at->path[k] = sample(path_radiance, all->paths, all->plan, raster,
-                             sampler_split(&random, k), scratch);
-    }
-    double after = plan_rays_of(scratch);
-    at->path_rays = 0.5 * (after - between);
-    at->all_rays += after - before;
+    at->all_rays += plan_rays_of(scratch) - before;
 }
 
 typedef void ask_function(const gather_task *all, uint32_t i, transport_scratch *scratch);
@@ -278,13 +280,13 @@ static void ask_wider_of_some(size_t begin, size_t end, unsigned thread, void *d
     ask_some(data, ask_wider, begin, end);
 }
 
-/* As many places as the grant allows, by what the first of them cost: asking again with a
-   wider radius is no dearer. */
+/* As many places as the grant allows, by what the first of them cost: asking some of them
+   again with a wider radius is no dearer. */
 static uint32_t count_places(const gather_trial *t, const transport_plan *plan)
 {
-    double each = N_BY_PATHS * plan->sample_rays * LEAST_TRIALS;
+    double each = 0.0;
     for (int i = 0; i < LEAST_TRIALS; i++)
-        each += 2.0 * t->places[i].all_rays;
+        each += t->places[i].all_rays * (1.0 + 1.0 / t->fewer);
     return plan_trials_for(plan, 1.0, each / LEAST_TRIALS, MOST_PLACES);
 }
 
@@ -315,7 +317,8 @@ static bool run_places(gather_trial *t, transport_plan *plan, const path_pass *p
     for (int i = 0; i < 2; i++)
         widen(t->maps[i], WIDER);
     task.first = 0;
-    if (!parallel_work(t->n, LEAST_TRIALS, by, ask_wider_of_some, &task, error))
+    t->n_wider = (uint32_t)(t->n / t->fewer);
+    if (!parallel_work(t->n_wider, LEAST_TRIALS, by, ask_wider_of_some, &task, error))
         return false;
     sum_rays(t, plan);
     return true;
@@ -366,6 +369,8 @@ static double square_total(const square_sum *of)
     return of->sum - of->loudest + of->second;
 }
 
+/* The bias of the plan's radii is smaller by the square of how much fewer photons the
+   maps have, and fewer places tell as much of it. */
 static gather_errors errors_of(const gather_trial *t)
 {
     square_sum path = {0}, both = {0}, photons = {0};
@@ -378,13 +383,14 @@ static gather_errors errors_of(const gather_trial *t)
         square_add(&path, half * paths * paths);
         square_add(&both, half * maps * maps);
         square_add(&photons, half * same_way * same_way);
-        bias2 += w * (at->wider[0] - at->map[0]) * (at->wider[1] - at->map[1]);
+        if (i < t->n_wider)
+            bias2 += w * (at->wider[0] - at->map[0]) * (at->wider[1] - at->map[1]);
     }
     return (gather_errors){
         .path = square_total(&path),
         .samples = fmax(square_total(&both) - square_total(&photons), 0.0),
         .photons = square_total(&photons),
-        .bias2 = fmax(bias2, 0.0) / (t->fewer * t->fewer),
+        .bias2 = fmax(bias2, 0.0) * t->n / fmax(t->n_wider, 1.0) / (t->fewer * t->fewer),
     };
 }
 
@@ -477,7 +483,8 @@ bool gather_decide(transport_plan *plan, const path_pass *paths,
     gather_trial *t = g_aligned_alloc0(1, sizeof *t, 64);
     bool ok = plan_to_gather(plan, &t->plan, cancel, error);
     double n = n_photons(&t->plan);
-    double most = plan_trials_for(plan, 0.5, 2.0 * plan_photon_rays(&t->plan), UINT32_MAX);
+    double most =
+        plan_trials_for(plan, 0.5, 2.0 * plan_photon_rays(&t->plan), UINT32_MAX);
     t->fewer = fmax(n / most, 1.0);
     for (int i = 0; i < 2 && ok; i++)
         ok = send_few(t, i, cancel, error);

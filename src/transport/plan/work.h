@@ -16,12 +16,11 @@
 
 #include "transport/transport.h"
 
-/** A share of the work asked for. All seven took 1 to 5.4 % of the processor's time
- * (seven scenes, 32 x 32 to 256 x 256, 2 to 16 passes; most where paths then do without
- * photons), and 6.6 of a picture that is there in 40 ms; with four fifths of it /spots
- * loses its gain in a small picture with one of four seeds, and
- * /verify/caustic/guided-to-the-eye half of its. */
-#define TRIAL_SHARE 0.0105
+/** A share of the work asked for. All seven took 0.6 to 5.0 % of the processor's time
+ * (the scenes of bench/equal_time, 32 x 32 and 128 x 128, 1 to 16 passes; most where
+ * paths then do without photons) but for 5.9 of a picture that is there in 40 ms; with
+ * 0.008 /spots loses its gain in a small picture with one seed. */
+#define TRIAL_SHARE 0.0085
 
 /** What a camera sample costs, in rays, before any is traced: as many as a path goes on
  * for certain. Counted were 3.3 in scenes/cornell-box, 3.7 in scenes/ring, 4.0 in
@@ -34,8 +33,8 @@
  * and 1.0 in the other, where half of them gather. */
 #define PHOTON_RAYS 2.0
 
-/** What a short ray costs that looks for edges, in rays: by the clock 0.20 to 0.52, and in
- * the middle 0.33, with what is gathered again where one is found (the scenes of
+/** What a short ray costs that looks for edges, in rays: by the clock 0.20 to 0.52, and
+ * in the middle 0.33, with what is gathered again where one is found (the scenes of
  * bench/equal_time, sppm with and without edges). */
 #define LOOK_RAYS 0.33
 
