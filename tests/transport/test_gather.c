@@ -19,16 +19,12 @@ typedef struct choice {
 } choice;
 
 #define QUICK "integrator=auto spp=1 passes=16 seed=2 threads=1"
-#define ONCE QUICK " denoise=off passes=1 photons=24576"
 
 static const choice choices[] = {
     {"room", ROOM_OF(128), QUICK, true},
     {"room-with-glass", ROOM_OF(128) GLASS_BALL, QUICK, true},
     {"shown-once", ROOM_OF(128) GLASS_BALL, QUICK " denoise=on passes=1 photons=24576",
      true},
-    {"once", ROOM_OF(128), ONCE " seed=1", true},
-    {"once-again", ROOM_OF(128), ONCE " seed=3", true},
-    {"once-more", ROOM_OF(128), ONCE " seed=4", true},
     {"open", OPEN_OF(128), QUICK, false},
     {"unwanted", ROOM_OF(128), QUICK " gather_indirect=off", false},
     {"bounded", ROOM_OF(128), QUICK " max_backward_bounces=9", false},
