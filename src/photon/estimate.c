@@ -396,7 +396,7 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
                                 .n = g->query.at.n,
                                 .radius = root_within(g->r2),
                                 .time = options->time};
-    bool bounded = g->n > 0 && isfinite(hood.radius);
+    bool bounded = (g->n > 0 || options->looks_anyway) && isfinite(hood.radius);
     if (options->curve && bounded)
         area =
             flat_curve_area(options->curve, g->query.at.p, hood.radius, &options->kernel);

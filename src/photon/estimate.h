@@ -35,6 +35,7 @@ typedef struct estimate_options {
                                 neighbourhood.h); NULL: the disc is taken as whole */
     float time;              /**< of the shutter, at which they are looked for */
     bool shares_looks;       /**< with queries nearby: scratch->looked is of the pixel */
+    bool looks_anyway;       /**< for edges where no photons are, too */
     const flat_curve *curve; /**< that the point is on; NULL: on none */
     unsigned lobes;          /**< used for all photons, e.g. LOBE_GATHERED */
     unsigned

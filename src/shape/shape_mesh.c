@@ -37,6 +37,7 @@ typedef struct mesh_shape {
     mesh m;
     bool flip; /* for triangles without normals */
     distribution areas;
+    box3 box;
     vec3 *planes; /* per triangle: unit normal as the corners turn, and in the unused lane
                      1 / |e1 x e2|, which tells slivers */
     bool is_rectangle;
@@ -140,6 +141,16 @@ static bool init_triangles(mesh_shape *s, GError **error)
     return done;
 }
 
+static box3 box_around(const mesh *m)
+{
+    box3 box = box3_empty();
+    for (size_t i = 0; i < m->n_vertices; i++) {
+        const float *p = m->positions + 3 * i;
+        box = box3_with_point(box, vec3_make(p[0], p[1], p[2]));
+    }
+    return box;
+}
+
 static void mesh_shape_free(void *self)
 {
     mesh_shape *s = self;
@@ -160,8 +171,10 @@ void *mesh_shape_create(mesh *m, const shape_place *at, source_place place,
         move_to_world(&s->m, at);
         if (check_numbers(s->m.positions, s->m.n_vertices, 3, "transformed position",
                           place, error) &&
-            init_triangles(s, error))
+            init_triangles(s, error)) {
+            s->box = box_around(&s->m);
             return s;
+        }
     }
     mesh_shape_free(s);
     return NULL;
@@ -197,13 +210,7 @@ static void *create(const params *p, const shape_place *at, GError **error)
 
 static box3 bounds(const void *self)
 {
-    const mesh_shape *s = self;
-    box3 box = box3_empty();
-    for (size_t i = 0; i < s->m.n_vertices; i++) {
-        const float *p = s->m.positions + 3 * i;
-        box = box3_with_point(box, vec3_make(p[0], p[1], p[2]));
-    }
-    return box;
+    return ((const mesh_shape *)self)->box;
 }
 
 static const mesh *triangles(const void *self)

@@ -129,16 +129,19 @@ static photon_map *map_of(photon_store *from, unsigned threads, GError **error)
 {
     photon_store store = *from;
     *from = (photon_store){0};
-    return photon_map_build(MAP_KDTREE, &store, 0.0f, (workers){.threads = threads}, error);
+    return photon_map_build(MAP_KDTREE, &store, 0.0f, (workers){.threads = threads},
+                            error);
 }
 
-/* Of all classes that are sent one trial's share. */
+/* Of all classes that are sent one trial's share; the nearest ones of each are asked for.
+ */
 static uint64_t n_pilots(const transport_plan *plan, photon_class c)
 {
     int n_classes = 0;
     for (int i = 0; i < N_PHOTON_CLASSES; i++)
         n_classes += plan->n_photons[i] > 0;
-    uint32_t n = plan_trials_for(plan, 0.5, PHOTON_RAYS * n_classes, MOST_PILOTS);
+    double each = plan_photon_rays(plan) + PHOTON_RAYS;
+    uint32_t n = plan_trials_for(plan, 0.5, each * n_classes, MOST_PILOTS);
     return MIN(plan->n_photons[c], n);
 }
 
@@ -163,7 +166,7 @@ static bool send_pilot(const pilot *p, photon_class c, const cancel_flag *cancel
     *out = (pilot_maps){.n_emitted = task.n_photons};
     if (!photon_trace(&task, false, &traced, error))
         return false;
-    plan->planning += (double)traced.n_rays;
+    plan_note_photons(plan, (double)task.n_photons, (double)traced.n_rays);
     out->on_surfaces = map_of(&traced.photons, threads, error);
     if (out->on_surfaces)
         out->in_media = map_of(&traced.in_media, threads, error);

@@ -147,8 +147,10 @@ typedef struct transport_plan {
     const scene *scene;
     const view *view; /**< of it */
     settings how;
-    double work;     /**< asked for, in rays: a first guess */
-    double planning; /**< rays that trials cost */
+    double work;       /**< asked for, in rays: a first guess */
+    double planning;   /**< rays that trials cost */
+    double n_tried;    /**< photons of trials ... */
+    double tried_rays; /**< and what they took, in rays */
     plan_trial trials[MOST_PLAN_TRIALS];
     int n_trials;
     visible_point *sight; /**< where the camera looks; owned; NULL: not looked yet */

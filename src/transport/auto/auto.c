@@ -97,7 +97,7 @@ static transport_plan small_pass(const transport_plan *plan)
     transport_plan small = *plan;
     uint64_t *n = &small.n_photons[PHOTON_CAUSTIC];
     small.how.seed = (int64_t)(hash_mix((uint64_t)plan->how.seed, 0x736d616c6cu) >> 1);
-    *n = MIN(*n, plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_PILOTS));
+    *n = MIN(*n, plan_trials_for(plan, 0.5, plan_photon_rays(plan), MOST_PILOTS));
     double fewer = (double)plan->n_photons[PHOTON_CAUSTIC] / (double)MAX(*n, 1);
     small.radius[PHOTON_CAUSTIC] *= sqrt(fewer);
     small.radius_in_media[PHOTON_CAUSTIC] *= cbrt(fewer);
@@ -124,7 +124,8 @@ static bool try_pass(transport_plan *plan, const cancel_flag *cancel, GError **e
     path_pass *pass = begin_pass(&small, 0, cancel, &counts, error);
     if (!pass)
         return false;
-    plan->planning += (double)counts.photon_rays;
+    plan_note_photons(plan, (double)counts.emitted[PHOTON_CAUSTIC],
+                      (double)counts.photon_rays);
     bool ok = small.p_spots == 0.0f || spots_decide(plan, pass, cancel, error);
     pass->p_spots = plan->p_spots;
     ok = ok && gather_decide(plan, pass, cancel, error);

@@ -259,8 +259,8 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
     for (size_t i = 0; i < all->each; i++)
         add_round(&all->round, &records[i], noise[i].rays);
     all->n_arrived = keep_arrivals(records, noise, all->each);
-    all->plan->planning += all->round.rays;
-    all->spent += all->round.rays;
+    plan_note_photons(all->plan, all->round.n, all->round.rays);
+    all->spent += all->round.rays + all->round.n;
     if (all->result)
         note_result(all);
     all->n_known += all->n_arrived;
@@ -273,8 +273,8 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
    by what the last ones cost; light that is led into glass takes more rays than any. */
 static size_t count_trials(const trials *all, uint32_t rounds_left)
 {
-    double each = all->round.rays / fmax(all->round.n, 1.0);
-    double n = (all->grant - all->spent) / (fmax(each, 1.0) * fmax(rounds_left, 1.0));
+    double each = 1.0 + all->round.rays / fmax(all->round.n, 1.0);
+    double n = (all->grant - all->spent) / (each * fmax(rounds_left, 1.0));
     return (size_t)CLAMP(n, (double)LEAST_TRIALS, (double)all->each);
 }
 

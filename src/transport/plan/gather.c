@@ -18,11 +18,10 @@
 /* What two maps, each with two radii, and two paths say of a place of the film. */
 typedef struct gather_place {
     double path[2];
-    double map[2];     /* each with a sampler of its own */
-    double other;      /* of the second map, with the sampler of the first one */
-    double wider[2];   /* map[] again, with the wider radius */
-    double first_rays; /* of a pixel's first sample */
-    double later_rays; /* of another one, which shares the first one's looks */
+    double map[2];    /* each with a sampler of its own */
+    double other;     /* of the second map, with the sampler of the first one */
+    double wider[2];  /* map[] again, with the wider radius */
+    double path_rays; /* of a path */
     double all_rays;
 } gather_place;
 
@@ -31,10 +30,12 @@ typedef struct gather_trial {
     transport_plan plan; /* of photons, as it would be */
     transport_plan few[2];
     photonmap_pass *maps[2];
-    double fewer;                  /* photons than the plan's, over them */
-    double photon_rays;            /* of a whole pass */
-    double first_rays, later_rays; /* means over places */
-    uint32_t n;
+    double fewer;        /* photons than the plan's, over them */
+    double photon_rays;  /* of a whole pass */
+    double first_rays;   /* of a pixel's first sample */
+    double later_rays;   /* of another one, which shares the first one's looks */
+    double path_rays;    /* of a path */
+    uint32_t n, n_wider; /* places, and how many of them a wider radius is tried at */
     gather_place *places;
 } gather_trial;
 
@@ -52,9 +53,8 @@ typedef struct gather_errors {
     double path, samples, photons, bias2;
 } gather_errors;
 
-/* Samples of a place: by maps map[], other, wider[] and a second one of the pixel, and
-   two by paths. */
-enum { N_BY_MAPS = 2 + 1 + 2 + 1, N_BY_PATHS = 2 }; /* math: as many */
+/* Samples of a place: by maps map[], other and wider[], and two by paths. */
+enum { N_SAMPLES = 2 + 1 + 2 + 2 }; /* math: as many */
 
 /* ---- Trial passes ---- */
 
@@ -66,7 +66,7 @@ static bool may_gather(const transport_plan *plan)
     return how->gather_indirect && how->direct_illumination &&
            !scene_has_media(plan->scene) && how->max_backward_bounces < 0 &&
            how->max_forward_bounces < 0 && scene_is_lit(plan->scene) &&
-           plan_grant(plan, 1.0) >= LEAST_TRIALS * (N_BY_MAPS + N_BY_PATHS) * SAMPLE_RAYS;
+           plan_grant(plan, 1.0) >= LEAST_TRIALS * N_SAMPLES * SAMPLE_RAYS;
 }
 
 /* Photons as of photon mapping, but all of them together take no longer than the camera.
@@ -105,9 +105,7 @@ static bool plan_to_gather(transport_plan *plan, transport_plan *out,
         out->radius[c] = out->radius_in_media[c] = 0.0;
     }
     set_photons(plan, out);
-    bool ok = photonmap_choose_radii(out, cancel, error);
-    plan->planning = out->planning;
-    return ok;
+    return photonmap_choose_radii(out, cancel, error);
 }
 
 static double n_photons(const transport_plan *plan)
@@ -124,7 +122,7 @@ static void widen(photonmap_pass *pass, double by)
         pass->estimates[c].radius *= (float)by;
 }
 
-/* A pass of few photons, whose radii hold as many as those of the plan. */
+/* A pass of few photons. */
 static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError **error)
 {
     transport_plan *few = &t->few[i];
@@ -139,10 +137,10 @@ static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError *
     t->maps[i] = transport_photonmap.begin_pass(few, 0, cancel, &counts, error);
     if (!t->maps[i])
         return false;
-    widen(t->maps[i], sqrt(t->fewer));
     double rays = plan_rays_of_photons(&counts);
     t->photon_rays += 0.5 * rays * t->fewer;
-    t->plan.planning += rays;
+    plan_note_photons(&t->plan, rays - (double)counts.photon_rays,
+                      (double)counts.photon_rays);
     return true;
 }
 
@@ -161,7 +159,6 @@ static double sample(radiance_function *radiance, const void *pass,
     spectrum sum = {0};
     vec2 u_lens = sampler_2d(&random);
     ray r = camera_ray(&plan->view->camera, raster, u_lens, sampler_1d(&random));
-    looked_around_forget(&scratch->estimate.looked);
     radiance(pass, &r, &random, scratch, &out);
     for (int i = 0; i < N_LAYERS; i++)
         if (i != LAYER_CAUSTIC || plan->n_photons[PHOTON_CAUSTIC] == 0)
@@ -178,22 +175,48 @@ static vec2 raster_of(const transport_plan *plan, sampler *random)
     return (vec2){u.x * (float)film->width, u.y * (float)film->height};
 }
 
-/* A second sample of the pixel: what it costs where looks for edges are shared. With
-   fewer photons radii are wider, and pixels with them. */
-static double later_rays(const gather_trial *t, const transport_plan *plan, vec2 raster,
-                         sampler random, transport_scratch *scratch)
+/* A second sample of the pixel. */
+static double later_rays(const gather_task *all, vec2 raster, sampler random,
+                         transport_scratch *scratch)
 {
     double before = plan_rays_of(scratch);
-    radiance_sample out = {.groups = NULL};
-    vec2 u = sampler_2d(&random), u_lens = sampler_2d(&random);
-    float wide = sqrtf((float)t->fewer);
-    vec2 beside = {raster.x + wide * (u.x - 0.5f), raster.y + wide * (u.y - 0.5f)};
-    ray r = camera_ray(&plan->view->camera, beside, u_lens, sampler_1d(&random));
-    photonmap_radiance(t->maps[0], &r, &random, scratch, &out);
+    vec2 u = sampler_2d(&random);
+    vec2 beside = {raster.x + u.x - 0.5f, raster.y + u.y - 0.5f};
+    sample(photonmap_radiance, all->trial->maps[0], all->plan, beside, random, scratch);
     return plan_rays_of(scratch) - before;
 }
 
-/* Asks both maps at a place. */
+/* With the radii of the plan, before they are widened: discs that hold few photons now
+   will hold them then, and be looked around. Of few places: these differ less by that
+   than by what they bring. @return rays that it took */
+static double find_price(const gather_task *all)
+{
+    gather_trial *t = all->trial;
+    transport_scratch scratch = {0};
+    const uint32_t n = LEAST_TRIALS / 2;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        t->maps[0]->estimates[c].looks_anyway = true;
+    for (uint32_t i = 0; i < n; i++) {
+        sampler random = sampler_make(all->key, i);
+        vec2 raster = raster_of(all->plan, &random);
+        double before = plan_rays_of(&scratch);
+        looked_around_forget(&scratch.estimate.looked);
+        sample(photonmap_radiance, t->maps[0], all->plan, raster,
+               sampler_split(&random, 0), &scratch);
+        t->first_rays += (plan_rays_of(&scratch) - before) / n;
+        if (all->plan->how.spp > 1)
+            t->later_rays +=
+                later_rays(all, raster, sampler_split(&random, 2), &scratch) / n;
+    }
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        t->maps[0]->estimates[c].looks_anyway = false;
+    double took = plan_rays_of(&scratch);
+    transport_scratch_clear(&scratch);
+    return took;
+}
+
+/* Asks both maps at a place, where what is looked at for the first counts for all, and
+   paths, which look for edges anew. */
 static void ask_maps(const gather_task *all, uint32_t i, transport_scratch *scratch)
 {
     const gather_trial *t = all->trial;
@@ -202,18 +225,25 @@ static void ask_maps(const gather_task *all, uint32_t i, transport_scratch *scra
     sampler random = sampler_make(all->key, i);
     vec2 raster = raster_of(plan, &random);
     double before = plan_rays_of(scratch);
+    looked_around_forget(&scratch->estimate.looked);
     at->map[0] = sample(photonmap_radiance, t->maps[0], plan, raster,
                         sampler_split(&random, 0), scratch);
-    at->first_rays = plan_rays_of(scratch) - before;
-    at->later_rays = later_rays(t, plan, raster, sampler_split(&random, 2), scratch);
     at->map[1] = sample(photonmap_radiance, t->maps[1], plan, raster,
                         sampler_split(&random, 1), scratch);
     at->other = sample(photonmap_radiance, t->maps[1], plan, raster,
                        sampler_split(&random, 0), scratch);
-    at->all_rays += plan_rays_of(scratch) - before;
+    double between = plan_rays_of(scratch);
+    for (unsigned k = 0; k < 2; k++) {
+        looked_around_forget(&scratch->estimate.looked);
+        at->path[k] = sample(path_radiance, all->paths, plan, raster,
+                             sampler_split(&random, k), scratch);
+    }
+    double after = plan_rays_of(scratch);
+    at->path_rays = 0.5 * (after - between);
+    at->all_rays += after - before;
 }
 
-/* Both maps again, whose radii are wider now, and paths. */
+/* Both maps again, whose radii are wider now. */
 static void ask_wider(const gather_task *all, uint32_t i, transport_scratch *scratch)
 {
     const gather_trial *t = all->trial;
@@ -221,12 +251,10 @@ static void ask_wider(const gather_task *all, uint32_t i, transport_scratch *scr
     sampler random = sampler_make(all->key, i);
     vec2 raster = raster_of(all->plan, &random);
     double before = plan_rays_of(scratch);
-    for (unsigned k = 0; k < 2; k++) {
-        sampler own = sampler_split(&random, k);
-        at->wider[k] =
-            sample(photonmap_radiance, t->maps[k], all->plan, raster, own, scratch);
-        at->path[k] = sample(path_radiance, all->paths, all->plan, raster, own, scratch);
-    }
+    looked_around_forget(&scratch->estimate.looked);
+    for (unsigned k = 0; k < 2; k++)
+        at->wider[k] = sample(photonmap_radiance, t->maps[k], all->plan, raster,
+                              sampler_split(&random, k), scratch);
     at->all_rays += plan_rays_of(scratch) - before;
 }
 
@@ -252,20 +280,20 @@ static void ask_wider_of_some(size_t begin, size_t end, unsigned thread, void *d
     ask_some(data, ask_wider, begin, end);
 }
 
-/* As many places as the grant allows, by what the first of them cost. */
+/* As many places as the grant allows, by what the first of them cost: asking some of them
+   again with a wider radius is no dearer. */
 static uint32_t count_places(const gather_trial *t, const transport_plan *plan)
 {
-    double each = N_BY_PATHS * plan->sample_rays * LEAST_TRIALS;
+    double each = 0.0;
     for (int i = 0; i < LEAST_TRIALS; i++)
-        each += t->places[i].first_rays * (N_BY_MAPS - 1.0) + t->places[i].later_rays;
+        each += t->places[i].all_rays * (1.0 + 1.0 / t->fewer);
     return plan_trials_for(plan, 1.0, each / LEAST_TRIALS, MOST_PLACES);
 }
 
 static void sum_rays(gather_trial *t, transport_plan *plan)
 {
     for (uint32_t i = 0; i < t->n; i++) {
-        t->first_rays += t->places[i].first_rays / t->n;
-        t->later_rays += t->places[i].later_rays / t->n;
+        t->path_rays += t->places[i].path_rays / t->n;
         plan->planning += t->places[i].all_rays;
     }
 }
@@ -277,6 +305,9 @@ static bool run_places(gather_trial *t, transport_plan *plan, const path_pass *p
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x706c61636573u);
     gather_task task = {t, plan, paths, key, 0};
     t->places = g_new0(gather_place, MOST_PLACES);
+    plan->planning += find_price(&task);
+    for (int i = 0; i < 2; i++)
+        widen(t->maps[i], sqrt(t->fewer));
     ask_some(&task, ask_maps, 0, LEAST_TRIALS);
     t->n = count_places(t, plan);
     task.first = LEAST_TRIALS;
@@ -286,7 +317,8 @@ static bool run_places(gather_trial *t, transport_plan *plan, const path_pass *p
     for (int i = 0; i < 2; i++)
         widen(t->maps[i], WIDER);
     task.first = 0;
-    if (!parallel_work(t->n, LEAST_TRIALS, by, ask_wider_of_some, &task, error))
+    t->n_wider = (uint32_t)(t->n / t->fewer);
+    if (!parallel_work(t->n_wider, LEAST_TRIALS, by, ask_wider_of_some, &task, error))
         return false;
     sum_rays(t, plan);
     return true;
@@ -337,6 +369,8 @@ static double square_total(const square_sum *of)
     return of->sum - of->loudest + of->second;
 }
 
+/* The bias of the plan's radii is smaller by the square of how much fewer photons the
+   maps have, and fewer places tell as much of it. */
 static gather_errors errors_of(const gather_trial *t)
 {
     square_sum path = {0}, both = {0}, photons = {0};
@@ -349,13 +383,14 @@ static gather_errors errors_of(const gather_trial *t)
         square_add(&path, half * paths * paths);
         square_add(&both, half * maps * maps);
         square_add(&photons, half * same_way * same_way);
-        bias2 += w * (at->wider[0] - at->map[0]) * (at->wider[1] - at->map[1]);
+        if (i < t->n_wider)
+            bias2 += w * (at->wider[0] - at->map[0]) * (at->wider[1] - at->map[1]);
     }
     return (gather_errors){
         .path = square_total(&path),
         .samples = fmax(square_total(&both) - square_total(&photons), 0.0),
         .photons = square_total(&photons),
-        .bias2 = fmax(bias2, 0.0) / (t->fewer * t->fewer),
+        .bias2 = fmax(bias2, 0.0) * t->n / fmax(t->n_wider, 1.0) / (t->fewer * t->fewer),
     };
 }
 
@@ -393,7 +428,7 @@ static bool gathering_pays(transport_plan *plan, const gather_trial *t)
 {
     double per_sample = settings_planned_passes(&plan->how) / plan_samples(plan);
     const gather_errors e = errors_of(t);
-    plan_cost without = {e.path, plan->sample_rays + plan->photon_rays};
+    plan_cost without = {e.path, t->path_rays + plan->photon_rays};
     plan_cost with = {error_of(plan, &e),
                       rays_of_sample(plan, t) + t->photon_rays * per_sample};
     bool pays = with.variance * with.rays < without.variance * without.rays;
@@ -448,7 +483,8 @@ bool gather_decide(transport_plan *plan, const path_pass *paths,
     gather_trial *t = g_aligned_alloc0(1, sizeof *t, 64);
     bool ok = plan_to_gather(plan, &t->plan, cancel, error);
     double n = n_photons(&t->plan);
-    double most = plan_trials_for(plan, 0.5, 2.0 * PHOTON_RAYS, UINT32_MAX);
+    double most =
+        plan_trials_for(plan, 0.5, 2.0 * plan_photon_rays(&t->plan), UINT32_MAX);
     t->fewer = fmax(n / most, 1.0);
     for (int i = 0; i < 2 && ok; i++)
         ok = send_few(t, i, cancel, error);

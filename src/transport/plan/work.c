@@ -12,7 +12,19 @@ double plan_rays_of(const transport_scratch *scratch)
 {
     const estimate_scratch *maps = &scratch->estimate;
     return (double)(scratch->camera_rays + scratch->shadow_rays) +
-           PHOTON_RAYS * (double)maps->n_queries + 0.5 * (double)maps->n_looks;
+           PHOTON_RAYS * (double)maps->n_queries + LOOK_RAYS * (double)maps->n_looks;
+}
+
+void plan_note_photons(transport_plan *plan, double n, double rays)
+{
+    plan->planning += rays;
+    plan->n_tried += n;
+    plan->tried_rays += rays + n;
+}
+
+double plan_photon_rays(const transport_plan *plan)
+{
+    return plan->n_tried > 0.0 ? plan->tried_rays / plan->n_tried : PHOTON_RAYS;
 }
 
 double plan_samples(const transport_plan *plan)

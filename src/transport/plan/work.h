@@ -16,23 +16,27 @@
 
 #include "transport/transport.h"
 
-/** A share of the work asked for. All seven took 1 to 5.4 % of the processor's time
- * (seven scenes, 32 x 32 to 256 x 256, 2 to 16 passes; most where paths then do without
- * photons), and 6.6 of a picture that is there in 40 ms; with four fifths of it /spots
- * loses its gain in a small picture with one of four seeds, and
- * /verify/caustic/guided-to-the-eye half of its. */
-#define TRIAL_SHARE 0.0105
+/** A share of the work asked for. All seven took 0.6 to 5.0 % of the processor's time
+ * (the scenes of bench/equal_time, 32 x 32 and 128 x 128, 1 to 16 passes; most where
+ * paths then do without photons) but for 5.9 of a picture that is there in 40 ms; with
+ * 0.008 /spots loses its gain in a small picture with one seed. */
+#define TRIAL_SHARE 0.0085
 
-/** What a camera sample costs, in rays, before any is traced: counted were 3.3 in
- * scenes/cornell-box, 3.7 in scenes/ring, 4.0 in scenes/glass-ball, and 7 in a closed
- * room. */
-#define SAMPLE_RAYS 4.0
+/** What a camera sample costs, in rays, before any is traced: as many as a path goes on
+ * for certain. Counted were 3.3 in scenes/cornell-box, 3.7 in scenes/ring, 4.0 in
+ * scenes/glass-ball, and 7 in a closed room. */
+#define SAMPLE_RAYS ((double)ROULETTE_BOUNCES)
 
 /** What a photon costs, in rays, and what a query of a map does. Counted were 0.9 to 1.1
  * where photons start uniformly in scenes/ring and scenes/glass-ball, 1.4 and 2.9 where
  * they start guided; by the clock gathers took 1.7 rays for each surface met in the first
  * and 1.0 in the other, where half of them gather. */
 #define PHOTON_RAYS 2.0
+
+/** What a short ray costs that looks for edges, in rays: by the clock 0.20 to 0.52, and
+ * in the middle 0.33, with what is gathered again where one is found (the scenes of
+ * bench/equal_time, sppm with and without edges). */
+#define LOOK_RAYS 0.33
 
 /** What is tried must be better than what is there by so much: variances are known within
  * a factor of two, and noise that is even disturbs least. With 1 in its place time x
@@ -64,9 +68,14 @@ static inline uint32_t plan_trial_pass(uint32_t trial)
  * long as one more. */
 double plan_rays_of_photons(const transport_counts *counts);
 
-/** @brief Rays that are worth what has been done with scratch: a short one that looks for
- * edges is half a ray. */
+/** @brief Rays that are worth what has been done with scratch. */
 double plan_rays_of(const transport_scratch *scratch);
+
+/** @brief Notes photons of a trial, and the rays that were traced for them. */
+void plan_note_photons(transport_plan *plan, double n, double rays);
+
+/** @brief What one costs in a trial, in rays: as those before did. */
+double plan_photon_rays(const transport_plan *plan);
 
 /** @brief Camera samples of all passes that are planned. */
 double plan_samples(const transport_plan *plan);

@@ -64,7 +64,7 @@ bool vcm_keep_density(transport_plan *plan, const cancel_flag *cancel, GError **
                        plan_trials_for(plan, 0.5, PHOTON_RAYS, MOST_PILOTS)),
     };
     bool traced = vcm_trace_light(&pilot, cancel, &counts, error);
-    plan->planning += (double)counts.photon_rays;
+    plan_note_photons(plan, (double)pilot.light.n, (double)counts.photon_rays);
     bool kept = traced && keep_radii(plan, &pilot.light, error);
     light_paths_clear(&pilot.light);
     return kept;
