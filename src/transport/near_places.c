@@ -2,15 +2,10 @@
 
 #include "base/parallel.h"
 
-typedef float floats4 __attribute__((vector_size(16)));
-
-/* Places that may be nearest, in fours of floats; behind the last they are nowhere. */
+/* Places that may be nearest. */
 typedef struct cell {
-    size_t n_fours; /* 0: the tree is asked */
-    struct four {
-        floats4 x, y, z;
-        uint32_t which[4];
-    } fours[];
+    size_t n; /* 0: the tree is asked */
+    uint32_t which[];
 } cell;
 
 struct near_places {
@@ -70,7 +65,7 @@ void near_places_free(near_places *near)
         return;
     size_t n_all = near->n_cells[0] * near->n_cells[1] * near->n_cells[2];
     for (size_t i = 0; i < n_all; i++)
-        g_aligned_free(near->cells[i]);
+        g_free(near->cells[i]);
     g_free(near->cells);
     point_set_free(near->tree);
     g_aligned_free(near->places);
@@ -91,29 +86,14 @@ static bool find_cell(const near_places *near, vec3 p, size_t at[3])
     return true;
 }
 
-static void put_place(cell *c, size_t i, vec3 p, uint32_t which)
-{
-    struct four *four = &c->fours[i / 4];
-    four->x[i % 4] = p[0];
-    four->y[i % 4] = p[1];
-    four->z[i % 4] = p[2];
-    four->which[i % 4] = which;
-}
-
 /* Of the places in hits. */
 static cell *list_places(const near_places *near, const point_hits *hits)
 {
-    size_t n_fours = hits->n * hits->n <= near->n ? (hits->n + 3) / 4 : 0;
-    cell *c = g_aligned_alloc0(1, sizeof *c + n_fours * sizeof *c->fours, 16);
-    c->n_fours = n_fours;
-    for (size_t i = 0; i < 4 * n_fours; i++) {
-        bool is_there = i < hits->n;
-        uint32_t which = is_there ? hits->index[i] : UINT32_MAX;
-        put_place(c, i,
-                  is_there ? near->places[which]
-                           : vec3_make(INFINITY, INFINITY, INFINITY),
-                  which);
-    }
+    size_t n = hits->n * hits->n <= near->n ? hits->n : 0;
+    cell *c = g_malloc(sizeof *c + n * sizeof *c->which);
+    c->n = n;
+    for (size_t i = 0; i < n; i++)
+        c->which[i] = hits->index[i];
     return c;
 }
 
@@ -141,21 +121,16 @@ static const cell *cell_at(const near_places *near, const size_t at[3], point_hi
     c = make_cell(near, at, hits);
     if (!c || atomic_compare_exchange_strong(&near->cells[i], &none, c))
         return c;
-    g_aligned_free(c);
+    g_free(c);
     return none;
 }
 
-static near_place nearest_of(const cell *c, vec3 p)
+static near_place nearest_of(const near_places *near, const cell *c, vec3 p)
 {
     near_place best = {SIZE_MAX, INFINITY};
-    for (size_t i = 0; i < c->n_fours; i++) {
-        const struct four *four = &c->fours[i];
-        floats4 x = four->x - p[0], y = four->y - p[1], z = four->z - p[2];
-        floats4 d2 = x * x + y * y + z * z;
-        for (int k = 0; k < 4; k++)
-            if (d2[k] < best.distance2 ||
-                (d2[k] == best.distance2 && four->which[k] < best.which))
-                best = (near_place){four->which[k], d2[k]};
+    for (size_t i = 0; i < c->n; i++) {
+        float d2 = length3_2(near->places[c->which[i]] - p);
+        best = d2 < best.distance2 ? (near_place){c->which[i], d2} : best;
     }
     return best;
 }
@@ -165,8 +140,8 @@ bool near_places_find(const near_places *near, vec3 p, near_place *found,
 {
     size_t at[3];
     const cell *c = find_cell(near, p, at) ? cell_at(near, at, hits) : NULL;
-    if (c && c->n_fours > 0) {
-        *found = nearest_of(c, p);
+    if (c && c->n > 0) {
+        *found = nearest_of(near, c, p);
         return true;
     }
     if (!point_set_nearest(near->tree, p, 1, INFINITY, hits) || hits->n == 0)
