@@ -176,7 +176,8 @@ static void print_radii(bench *b)
 {
     double begin = now();
     for (size_t i = 0; i < b->asked.n; i++)
-        b->sink += (double)radius_cache_at(b->asked.radii, b->asked.at[i].p, 0, &b->hits);
+        b->sink +=
+            (double)radius_cache_at(b->asked.radii, b->asked.at[i].p, 0, NULL, &b->hits);
     printf("%-24s %9.3f us\n", "radius of the place",
            1e6 * (now() - begin) / (double)b->asked.n);
 }

@@ -136,7 +136,7 @@ static void make_queries(places *of)
         /* of the area of the box */
         radii[i] = sqrtf(6.0f * PLACE_WANTED / (PI_F * (float)of->n_photons));
         if (of->radii)
-            radii[i] = radius_cache_at(of->radii, of->at[i].p, radii[i], &hits);
+            radii[i] = radius_cache_at(of->radii, of->at[i].p, radii[i], NULL, &hits);
         of->at[i].radius = radii[i];
     }
     of->typical = median(radii, of->n);
