@@ -220,6 +220,8 @@ size_t neph_photons_path_sized(const NephPhotons *photons, size_t i,
                                NephPhotonEvent *events, size_t size, size_t capacity)
 {
     size_t n = neph_photons_path(photons, i, NULL, 0), some = MIN(n, capacity);
+    if (!events)
+        return n;
     g_autofree NephPhotonEvent *ours = g_new0(NephPhotonEvent, MAX(some, 1));
     neph_photons_path(photons, i, ours, some);
     for (size_t k = 0; k < some; k++)
