@@ -108,7 +108,8 @@ typedef struct NephPhotonEvent {
 } NephPhotonEvent;
 
 /** @brief The life of the emitted photon that left photon i: at most capacity events go
- * to events. @return how many there are; 0 until neph_photons_follow, and of no photon */
+ * to events, none where that is NULL. @return how many there are; 0 until
+ * neph_photons_follow, and of no photon */
 NEPH_SIZED size_t neph_photons_path(const NephPhotons *photons, size_t i,
                                     NephPhotonEvent *events, size_t capacity);
 

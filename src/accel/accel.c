@@ -11,6 +11,7 @@
  */
 #include "accel/accel_core.h"
 #include "accel/embree_device.h"
+#include "accel/embree_threads.h"
 #include "base/memory.h"
 #include "base/wanted.h"
 
@@ -74,11 +75,14 @@ static float units_for(box3 bounds)
 /* Embree's threads ask, too: the caller is told of it on its own. */
 static bool goes_on(void *data, double fraction)
 {
+    embree_take_over();
     accel *a = data;
     (void)fraction;
     if (g_thread_self() == a->builder && !still_wanted(NULL))
         atomic_store(&a->unwanted, true);
-    return !atomic_load(&a->unwanted);
+    bool wanted = !atomic_load(&a->unwanted);
+    embree_hand_over();
+    return wanted;
 }
 
 /* In units that suit its bounds. */
@@ -156,7 +160,7 @@ static void build_object(accel *a, accel_group *object)
     find_bounds(a, object);
     group_open(a, object);
     attach_shapes(a, object);
-    rtcCommitScene(object->scene);
+    embree_commit(object->scene);
 }
 
 /* Places the instances, which the world's bounds and units must hold. */
@@ -241,7 +245,7 @@ static void build(accel *a, const accel_input *in)
                    a->world.n + (unsigned)i);
     }
     if (still_wanted(NULL))
-        rtcCommitScene(a->world.scene);
+        embree_commit(a->world.scene);
 }
 
 /* Embree 3.13 mallocs 260 bytes a geometry and 1.2 kB a scene, 4.1 kB with one geometry.

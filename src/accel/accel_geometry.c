@@ -11,6 +11,7 @@
  * the place, so that pictures are the same bits whatever the order of work.
  */
 #include "accel/accel_embree.h"
+#include "accel/embree_threads.h"
 #include "math/sampler.h"
 
 #include <string.h>
@@ -94,12 +95,14 @@ static void give_bounds(const struct RTCBoundsFunctionArguments *args, box3 box,
 
 static void user_bounds(const struct RTCBoundsFunctionArguments *args)
 {
+    embree_take_over();
     const given_shape *given = args->geometryUserPtr;
     const shape *s = given->shape;
     give_bounds(args,
                 s->kind->n_primitives ? s->kind->primitive_bounds(s->self, args->primID)
                                       : s->kind->bounds(s->self),
                 given->per_metre);
+    embree_hand_over();
 }
 
 /* The nearest hit that stops the ray, in metres. */
@@ -218,12 +221,14 @@ transform placed_at(const placed *p, float time)
 
 static void moving_bounds(const struct RTCBoundsFunctionArguments *args)
 {
+    embree_take_over();
     const placed *p = args->geometryUserPtr;
     const double *shutter = p->shutter;
     double step = (shutter[1] - shutter[0]) / (MOTION_BOXES - 1);
     double at = shutter[0] + args->timeStep * step;
     give_bounds(args, motion_bounds(&p->is->to_world, p->bounds, at - step, at + step),
                 p->world_per_metre);
+    embree_hand_over();
 }
 
 /* The query in the object's space, with the same distances along it. */

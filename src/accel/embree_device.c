@@ -1,13 +1,18 @@
 #include "accel/embree_device.h"
 
+#include "accel/embree_threads.h"
 #include "base/memory.h"
+
+char embree_threads;
 
 static void note_error(void *data, enum RTCError code, const char *message)
 {
     embree_device *d = data;
     enum RTCError none = RTC_ERROR_NONE;
+    embree_take_over();
     if (atomic_compare_exchange_strong(&d->code, &none, code))
         g_strlcpy(d->message, message ? message : "no reason given", sizeof d->message);
+    embree_hand_over();
 }
 
 /* The first refusal is kept: what is asked for after it fails for the same reason. */
@@ -21,10 +26,9 @@ static bool reserve(embree_device *d, size_t bytes)
     return false;
 }
 
-/* Called before memory is allocated, when it can still be refused, and after. */
-static bool count_memory(void *data, ssize_t bytes, bool after)
+/* Before memory is allocated, when it can still be refused, and after. */
+static bool count(embree_device *d, ssize_t bytes, bool after)
 {
-    embree_device *d = data;
     if (bytes <= 0)
         memory_release((size_t)-bytes);
     else if (after)
@@ -32,6 +36,14 @@ static bool count_memory(void *data, ssize_t bytes, bool after)
     else
         return reserve(d, (size_t)bytes);
     return true;
+}
+
+static bool count_memory(void *data, ssize_t bytes, bool after)
+{
+    embree_take_over();
+    bool may = count(data, bytes, after);
+    embree_hand_over();
+    return may;
 }
 
 bool embree_device_open(embree_device *d, const char *what, unsigned threads,
@@ -48,6 +60,13 @@ bool embree_device_open(embree_device *d, const char *what, unsigned threads,
     rtcSetDeviceErrorFunction(d->device, note_error, d);
     rtcSetDeviceMemoryMonitorFunction(d->device, count_memory, d);
     return true;
+}
+
+void embree_commit(RTCScene scene)
+{
+    embree_hand_over();
+    rtcCommitScene(scene);
+    embree_take_over();
 }
 
 bool embree_device_check(embree_device *d, GError **error)

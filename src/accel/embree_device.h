@@ -23,6 +23,8 @@ typedef struct embree_device {
  * @return false with ERROR_FAILED */
 bool embree_device_open(embree_device *d, const char *what, unsigned threads,
                         GError **error);
+/** @brief Builds it, also on Embree's own threads. */
+void embree_commit(RTCScene scene);
 /** @brief Asked when all is built. @return false with ERROR_FAILED if it complained */
 bool embree_device_check(embree_device *d, GError **error);
 /** @brief After its scenes; also of a device that did not open. */

@@ -3,13 +3,19 @@
 #include "base/json.h"
 #include "settings/presets.h"
 
+#include <pthread.h>
+
 _Static_assert(NEPH_SETTING_BOOL == (int)SETTING_BOOL, "types are one list");
 _Static_assert(NEPH_SETTING_COUNT == (int)SETTING_COUNT, "types are one list");
 _Static_assert(NEPH_SETTING_REAL == (int)SETTING_REAL, "types are one list");
 _Static_assert(NEPH_SETTING_CHOICE == (int)SETTING_CHOICE, "types are one list");
 
-static NephSettingInfo *export_table(size_t n, const setting_row *rows)
+static NephSettingInfo *the_table;
+
+static void export_table(void)
 {
+    size_t n;
+    const setting_row *rows = settings_table(&n);
     NephSettingInfo *table = g_new(NephSettingInfo, n);
     for (size_t i = 0; i < n; i++)
         table[i] = (NephSettingInfo){.name = rows[i].name,
@@ -22,16 +28,15 @@ static NephSettingInfo *export_table(size_t n, const setting_row *rows)
                                      .aliases = rows[i].aliases,
                                      .users = rows[i].users,
                                      .doc = rows[i].doc};
-    return table;
+    the_table = table;
 }
 
 const NephSettingInfo *neph_settings_table(size_t *n)
 {
-    static NephSettingInfo *table;
-    const setting_row *rows = settings_table(n);
-    if (g_once_init_enter(&table))
-        g_once_init_leave(&table, export_table(*n, rows));
-    return table;
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    settings_table(n);
+    pthread_once(&once, export_table);
+    return the_table;
 }
 
 NephSettings *neph_settings_new(void)

@@ -7,6 +7,7 @@
  */
 #include "nephroid/nephroid.h"
 
+#include <pthread.h>
 #include <string.h>
 
 static void copy(void *to, size_t to_size, const void *from, size_t from_size)
@@ -26,9 +27,9 @@ static void copy(void *to, size_t to_size, const void *from, size_t from_size)
 /* One table for each size that was asked for, to the end of the program. */
 static const NephSettingInfo *table_of(const NephSettingInfo *rows, size_t n, size_t size)
 {
-    static GMutex lock;
+    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     static GHashTable *tables;
-    g_mutex_lock(&lock);
+    pthread_mutex_lock(&lock);
     if (!tables)
         tables = g_hash_table_new(NULL, NULL);
     char *table = g_hash_table_lookup(tables, GSIZE_TO_POINTER(size));
@@ -38,7 +39,7 @@ static const NephSettingInfo *table_of(const NephSettingInfo *rows, size_t n, si
             copy(table + i * size, size, &rows[i], sizeof rows[i]);
         g_hash_table_insert(tables, GSIZE_TO_POINTER(size), table);
     }
-    g_mutex_unlock(&lock);
+    pthread_mutex_unlock(&lock);
     return (const NephSettingInfo *)(void *)table;
 }
 
@@ -220,6 +221,8 @@ size_t neph_photons_path_sized(const NephPhotons *photons, size_t i,
                                NephPhotonEvent *events, size_t size, size_t capacity)
 {
     size_t n = neph_photons_path(photons, i, NULL, 0), some = MIN(n, capacity);
+    if (!events)
+        return n;
     g_autofree NephPhotonEvent *ours = g_new0(NephPhotonEvent, MAX(some, 1));
     neph_photons_path(photons, i, ours, some);
     for (size_t k = 0; k < some; k++)

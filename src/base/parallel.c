@@ -5,11 +5,13 @@
  *   helper ──────── enters, if it is open ─► chunks ─► leaves ─┘
  *
  * Nobody is waited for that has not come yet: where others have the processors, the
- * caller does the work by itself. Who waits sleeps.
+ * caller does the work by itself. Who waits sleeps. The locks are POSIX's: the thread
+ * sanitizer does not see GLib's.
  */
 #include "base/parallel.h"
 
 #include <glib.h>
+#include <pthread.h>
 
 /* math: a bit of parallel_loop.inside */
 #define CLOSED (1u << 31)
@@ -24,8 +26,8 @@ typedef struct parallel_loop {
     atomic_uint n_entered;  /* helpers so far */
     atomic_uint inside;     /* helpers now, and whether more may come */
     atomic_uint references; /* the caller's, and of each helper that was asked */
-    GMutex lock;
-    GCond left; /* the last one */
+    pthread_mutex_t lock;
+    pthread_cond_t left; /* the last one */
 } parallel_loop;
 
 /* Loops in loops have one thread: all others are at work. */
@@ -40,8 +42,8 @@ static void loop_unref(parallel_loop *l)
 {
     if (atomic_fetch_sub(&l->references, 1) > 1)
         return;
-    g_mutex_clear(&l->lock);
-    g_cond_clear(&l->left);
+    pthread_mutex_destroy(&l->lock);
+    pthread_cond_destroy(&l->left);
     g_free(l);
 }
 
@@ -72,9 +74,9 @@ static void leave(parallel_loop *l)
 {
     if (atomic_fetch_sub(&l->inside, 1) != (CLOSED | 1))
         return;
-    g_mutex_lock(&l->lock);
-    g_cond_signal(&l->left);
-    g_mutex_unlock(&l->lock);
+    pthread_mutex_lock(&l->lock);
+    pthread_cond_signal(&l->left);
+    pthread_mutex_unlock(&l->lock);
 }
 
 static void help(void *data, void *unused)
@@ -91,14 +93,14 @@ static void help(void *data, void *unused)
 
 /* As many threads as all loops under way have asked for. */
 static struct {
-    GMutex lock;
+    pthread_mutex_t lock;
     GThreadPool *pool;
     unsigned n_asked, n_most;
-} helpers;
+} helpers = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
 static void ask_helpers(parallel_loop *l, unsigned n)
 {
-    g_mutex_lock(&helpers.lock);
+    pthread_mutex_lock(&helpers.lock);
     helpers.n_asked += n;
     if (!helpers.pool)
         helpers.pool = g_thread_pool_new(help, NULL, (int)n, TRUE, NULL);
@@ -107,14 +109,14 @@ static void ask_helpers(parallel_loop *l, unsigned n)
     helpers.n_most = MAX(helpers.n_most, helpers.n_asked);
     for (unsigned i = 0; i < n; i++)
         g_thread_pool_push(helpers.pool, l, NULL);
-    g_mutex_unlock(&helpers.lock);
+    pthread_mutex_unlock(&helpers.lock);
 }
 
 static void release_helpers(unsigned n)
 {
-    g_mutex_lock(&helpers.lock);
+    pthread_mutex_lock(&helpers.lock);
     helpers.n_asked -= n;
-    g_mutex_unlock(&helpers.lock);
+    pthread_mutex_unlock(&helpers.lock);
 }
 
 /* ---- The caller ---- */
@@ -123,18 +125,18 @@ static void wait_for_helpers(parallel_loop *l)
 {
     if (atomic_fetch_or(&l->inside, CLOSED) == 0)
         return;
-    g_mutex_lock(&l->lock);
+    pthread_mutex_lock(&l->lock);
     while (atomic_load(&l->inside) != CLOSED)
-        g_cond_wait(&l->left, &l->lock);
-    g_mutex_unlock(&l->lock);
+        pthread_cond_wait(&l->left, &l->lock);
+    pthread_mutex_unlock(&l->lock);
 }
 
 static void share(const parallel_loop *loop, unsigned n_helpers)
 {
     parallel_loop *l = g_new(parallel_loop, 1);
     *l = *loop;
-    g_mutex_init(&l->lock);
-    g_cond_init(&l->left);
+    pthread_mutex_init(&l->lock, NULL);
+    pthread_cond_init(&l->left, NULL);
     atomic_init(&l->references, n_helpers + 1);
     atomic_store(&l->inside, 0); /* what was written before, helpers see */
     ask_helpers(l, n_helpers);

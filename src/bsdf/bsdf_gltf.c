@@ -24,6 +24,7 @@
 #include "math/warp.h"
 
 #include <glib.h>
+#include <pthread.h>
 
 enum { N_MU = 32, N_ALPHA = 16, N_SIDE = 24, SMOOTH_ROW = -1 };
 enum { LAYER_COAT, LAYER_FACETS, LAYER_PANE, LAYER_BASE, LAYER_LEAF, N_LAYERS };
@@ -118,7 +119,9 @@ static float mu_of_column(int j)
     return ((float)j + 0.5f) / N_MU;
 }
 
-static facet_tables *make_tables(void)
+static facet_tables *the_tables;
+
+static void make_tables(void)
 {
     facet_tables *t = g_new0(facet_tables, 1);
     for (int i = 0; i < N_ALPHA; i++)
@@ -129,16 +132,15 @@ static facet_tables *make_tables(void)
             t->mean[i].a += 2.0f * mu / N_MU * s.a;
             t->mean[i].b += 2.0f * mu / N_MU * s.b;
         }
-    return t;
+    the_tables = t;
 }
 
 /* Made on first use, kept for good. */
 static const facet_tables *tables(void)
 {
-    static facet_tables *made;
-    if (g_once_init_enter(&made))
-        g_once_init_leave(&made, make_tables());
-    return made;
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, make_tables);
+    return the_tables;
 }
 
 static facet_shares blend(facet_shares x, facet_shares y, float share)

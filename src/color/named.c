@@ -8,6 +8,7 @@
 #include "color/data/tables.h"
 #include "color/observer.h"
 
+#include <pthread.h>
 #include <string.h>
 
 typedef struct named_row named_row;
@@ -233,14 +234,17 @@ curve *curve_named(const char *name)
     return NULL;
 }
 
+static const char *names[N_ROWS + 1];
+
+static void list_names(void)
+{
+    for (int i = 0; i < N_ROWS; i++)
+        names[i] = rows[i].name;
+}
+
 const char *const *curve_names(void)
 {
-    static const char *names[N_ROWS + 1];
-    static gsize once;
-    if (g_once_init_enter(&once)) {
-        for (int i = 0; i < N_ROWS; i++)
-            names[i] = rows[i].name;
-        g_once_init_leave(&once, 1);
-    }
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, list_names);
     return names;
 }

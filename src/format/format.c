@@ -8,6 +8,7 @@
 #include "base/wanted.h"
 #include "format/reader.h"
 
+#include <pthread.h>
 #include <string.h>
 
 static const format_reader *const readers[] = {
@@ -42,20 +43,23 @@ static const format_reader *find_reader(const char *path)
     return NULL;
 }
 
+static const char *all_extensions[32];
+
+static void list_extensions(void)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < G_N_ELEMENTS(readers); i++)
+        for (const char *const *e = readers[i]->extensions; *e; e++) {
+            g_assert(n + 1 < G_N_ELEMENTS(all_extensions));
+            all_extensions[n++] = *e;
+        }
+}
+
 const char *const *format_extensions(void)
 {
-    static gsize made;
-    static const char *all[32];
-    if (g_once_init_enter(&made)) {
-        size_t n = 0;
-        for (size_t i = 0; i < G_N_ELEMENTS(readers); i++)
-            for (const char *const *e = readers[i]->extensions; *e; e++) {
-                g_assert(n + 1 < G_N_ELEMENTS(all));
-                all[n++] = *e;
-            }
-        g_once_init_leave(&made, 1);
-    }
-    return all;
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, list_extensions);
+    return all_extensions;
 }
 
 static void refuse(const char *path, GError **error)

@@ -15,6 +15,7 @@
 #include <limits.h>
 #include <locale.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -105,15 +106,18 @@ static bool float_is_doubtful(double x)
     return middle || (fabs(x) < (double)FLT_MIN && fabs(x) > 0.0);
 }
 
+static locale_t the_c_locale;
+
+static void make_c_locale(void)
+{
+    the_c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+}
+
 static locale_t c_locale(void)
 {
-    static gsize made;
-    static locale_t locale;
-    if (g_once_init_enter(&made)) {
-        locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-        g_once_init_leave(&made, 1);
-    }
-    return locale;
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, make_c_locale);
+    return the_c_locale;
 }
 
 bool number_double(const char *text, size_t n, double *out)

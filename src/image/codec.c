@@ -8,6 +8,7 @@
 #include <glib/gstdio.h>
 #include <limits.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -184,38 +185,33 @@ image *image_read_bytes(const char *name, GBytes *bytes,
 
 enum { MOST_EXTENSIONS = 32 };
 
-/* Of all codecs, or of those that write. */
-static void list_extensions(bool written, const char *all[MOST_EXTENSIONS])
+/* Of all codecs, and of those that write. */
+static const char *all_extensions[MOST_EXTENSIONS], *written_extensions[MOST_EXTENSIONS];
+
+static void list_extensions(void)
 {
-    size_t n = 0;
+    size_t n = 0, n_written = 0;
     for (size_t i = 0; i < G_N_ELEMENTS(codecs); i++)
         for (const char *const *e = codecs[i]->extensions; *e; e++) {
             g_assert(n + 1 < MOST_EXTENSIONS);
-            if (!written || codecs[i]->write)
-                all[n++] = *e;
+            all_extensions[n++] = *e;
+            if (codecs[i]->write)
+                written_extensions[n_written++] = *e;
         }
 }
 
+static pthread_once_t extensions_listed = PTHREAD_ONCE_INIT;
+
 const char *const *image_extensions(void)
 {
-    static gsize made;
-    static const char *all[MOST_EXTENSIONS];
-    if (g_once_init_enter(&made)) {
-        list_extensions(false, all);
-        g_once_init_leave(&made, 1);
-    }
-    return all;
+    pthread_once(&extensions_listed, list_extensions);
+    return all_extensions;
 }
 
 const char *const *image_written_extensions(void)
 {
-    static gsize made;
-    static const char *all[MOST_EXTENSIONS];
-    if (g_once_init_enter(&made)) {
-        list_extensions(true, all);
-        g_once_init_leave(&made, 1);
-    }
-    return all;
+    pthread_once(&extensions_listed, list_extensions);
+    return written_extensions;
 }
 
 /* ---- writing ---- */

@@ -5,6 +5,7 @@
 #include "photon/disc_set.h"
 
 #include "accel/embree_device.h"
+#include "accel/embree_threads.h"
 
 struct disc_set {
     embree_device embree;
@@ -22,6 +23,7 @@ typedef struct disc_query {
 
 static void disc_bounds(const struct RTCBoundsFunctionArguments *args)
 {
+    embree_take_over();
     const disc_set *set = args->geometryUserPtr;
     const disc *d = &set->discs[args->primID];
     struct RTCBounds *out = args->bounds_o;
@@ -31,6 +33,7 @@ static void disc_bounds(const struct RTCBoundsFunctionArguments *args)
     out->upper_x = d->x + d->radius;
     out->upper_y = d->y + d->radius;
     out->upper_z = d->z + d->radius;
+    embree_hand_over();
 }
 
 static bool grow(disc_crossings *c)
@@ -75,7 +78,7 @@ static void build(disc_set *set, size_t n)
     rtcSetSceneFlags(set->scene, RTC_SCENE_FLAG_ROBUST);
     rtcAttachGeometry(set->scene, g);
     rtcReleaseGeometry(g);
-    rtcCommitScene(set->scene);
+    embree_commit(set->scene);
 }
 
 disc_set *disc_set_build(const disc *discs, size_t n, unsigned threads, GError **error)

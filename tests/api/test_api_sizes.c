@@ -189,6 +189,7 @@ static void test_events(void)
         for (size_t k = 0; k < MIN(n, N); k++)
             g_assert_cmpmem(other + k * SMALL, SMALL, &whole[k], SMALL);
         g_assert_cmpint(other[MIN(n, N) * SMALL], ==, GUARD);
+        g_assert_cmpuint(neph_photons_path(photons, i, NULL, N), ==, n);
     }
 }
 

@@ -71,6 +71,57 @@ static void test_at_once(void)
     }
 }
 
+/* Of a thread that is the first to ask, as all others are. */
+typedef struct answers {
+    const char *path; /* of a scene */
+    size_t n;
+    const NephSettingInfo *rows;
+    const char *small; /* rows that end before their documents */
+    const char *const *scenes, *const *images, *const *written;
+    NephScene *scene;
+} answers;
+
+enum { SMALL_ROW = offsetof(NephSettingInfo, doc) };
+
+static gpointer ask_first(gpointer data)
+{
+    answers *a = data;
+    size_t n;
+    a->scenes = neph_scene_extensions();
+    a->images = neph_image_extensions();
+    a->written = neph_image_written_extensions();
+    a->rows = neph_settings_table(&a->n);
+    a->small = (const char *)neph_settings_table_sized(&n, SMALL_ROW);
+    a->scene = load(a->path);
+    g_assert_cmpuint(n, ==, a->n);
+    return NULL;
+}
+
+/* What is made when it is first asked for is whole for everybody, and made once. */
+static void test_first(void)
+{
+    enum { N = 4 };
+    answers all[N];
+    GThread *threads[N];
+    g_autofree char *path = write_scene("scene.pbrt", "Camera \"perspective\"\n");
+    for (int i = 0; i < N; i++) {
+        all[i] = (answers){.path = path};
+        threads[i] = g_thread_new("first", ask_first, &all[i]);
+    }
+    for (int i = 0; i < N; i++)
+        g_thread_join(threads[i]);
+    for (int i = 0; i < N; i++) {
+        const answers *a = &all[i];
+        g_assert_true(a->rows == all[0].rows && a->small == all[0].small);
+        for (size_t k = 0; k < a->n; k++)
+            g_assert_cmpmem(a->small + k * SMALL_ROW, SMALL_ROW, &a->rows[k], SMALL_ROW);
+        g_assert_true(g_strv_contains(a->scenes, ".pbrt"));
+        g_assert_true(g_strv_contains(a->images, ".exr"));
+        g_assert_true(g_strv_contains(a->written, ".exr"));
+        neph_scene_free(a->scene);
+    }
+}
+
 /* ---- Cancelling ---- */
 
 /* Within this it ends: s; where each access to memory is watched, ten times that: sorting
@@ -278,6 +329,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     open_folder();
+    g_test_add_func("/api-threads/first", test_first); /* before anybody else asks */
     g_test_add_func("/api-threads/at-once", test_at_once);
     g_test_add_data_func("/api-threads/cancel/photonmap",
                          "integrator=photonmap passes=1 photons=400000 spp=16",

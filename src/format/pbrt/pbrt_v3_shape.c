@@ -255,7 +255,7 @@ static void fill_surface(grid *g, const nurbs *s)
 {
     for (int y = 0; y < DICE; y++)
         for (int x = 0; x < DICE; x++) {
-            size_t i = (size_t)(y * DICE + x);
+            size_t i = (size_t)y * DICE + (size_t)x;
             double u = s->u.from + (s->u.to - s->u.from) * x / (DICE - 1);
             double v = s->v.from + (s->v.to - s->v.from) * y / (DICE - 1);
             vec3 n = normal_at(s, u, v, g->points + 3 * i);
