@@ -3,6 +3,7 @@
 #include "base/machine.h"
 
 #include <malloc.h>
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -239,10 +240,10 @@ typedef struct mapped_array {
 } mapped_array;
 
 static struct {
-    GMutex lock;
+    pthread_mutex_t lock;
     GHashTable *arrays; /* under the lock, as all of it: mapped_array by place, owned */
     region *last;       /* where the next array will be; NULL: there is none */
-} mapped;
+} mapped = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
 static size_t whole_pages(size_t bytes, size_t page)
 {
@@ -303,7 +304,7 @@ static void *map_array(const array_head *head)
 {
     void *array = NULL;
     const size_t size = whole_pages(head->bytes, page_size());
-    g_mutex_lock(&mapped.lock);
+    pthread_mutex_lock(&mapped.lock);
     if (!mapped.arrays)
         mapped.arrays = g_hash_table_new_full(NULL, NULL, NULL, g_free);
     region *in = region_for(size);
@@ -315,13 +316,13 @@ static void *map_array(const array_head *head)
         in->n_arrays++;
         g_hash_table_insert(mapped.arrays, array, noted);
     }
-    g_mutex_unlock(&mapped.lock);
+    pthread_mutex_unlock(&mapped.lock);
     return array;
 }
 
 static array_head unmap_array(void *array)
 {
-    g_mutex_lock(&mapped.lock);
+    pthread_mutex_lock(&mapped.lock);
     mapped_array *noted = g_hash_table_lookup(mapped.arrays, array);
     const array_head head = noted->head;
     region *in = noted->in;
@@ -330,7 +331,7 @@ static array_head unmap_array(void *array)
     if (in != mapped.last)
         close_region(in);
     g_hash_table_remove(mapped.arrays, array);
-    g_mutex_unlock(&mapped.lock);
+    pthread_mutex_unlock(&mapped.lock);
     return head;
 }
 

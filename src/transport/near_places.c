@@ -2,6 +2,8 @@
 
 #include "base/parallel.h"
 
+#include <float.h>
+
 /* Places that may be nearest. */
 typedef struct cell {
     size_t n; /* 0: the tree is asked */
@@ -100,7 +102,7 @@ static cell *list_places(const near_places *near, const point_hits *hits)
 /* @return NULL: memory was refused */
 static cell *make_cell(const near_places *near, const size_t at[3], point_hits *hits)
 {
-    const float rounding = 1.0001f;
+    const float rounding = 1.0f + sqrtf(FLT_EPSILON); /* and more than enough */
     vec3 centre;
     for (int axis = 0; axis < 3; axis++)
         centre[axis] = near->low[axis] + ((float)at[axis] + 0.5f) * near->size[axis];
