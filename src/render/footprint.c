@@ -27,7 +27,7 @@ static uint64_t n_photons(const transport_plan *plan)
 
 size_t footprint_begun(const settings *how)
 {
-    return (parallel_threads((unsigned)how->threads) + 1) * SLAB_BYTES;
+    return (2 * (size_t)parallel_threads((unsigned)how->threads) + 1) * SLAB_BYTES;
 }
 
 /* The most that arrays had at once while a pass of this plan was begun. */
@@ -60,9 +60,9 @@ static size_t plan_bytes(const view *v, const settings *how)
     transport_plan plan = transport_plan_of(v, how);
     size_t bytes = 0;
     if (transport_plan_prepare(&plan, NULL, NULL) && n_photons(&plan) > 0)
-        bytes = photon_bytes(&plan, PROBE, NULL) + footprint_begun(how);
+        bytes = photon_bytes(&plan, PROBE, NULL);
     transport_plan_clear(&plan);
-    return bytes;
+    return bytes + MIN(bytes, footprint_begun(how)); /* little is put into one page */
 }
 
 size_t footprint_of(const view *v, const settings *how)

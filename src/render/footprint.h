@@ -16,8 +16,8 @@
  * for nothing: nor will it render. Not for two threads at once. */
 size_t footprint_of(const view *v, const settings *how);
 
-/** @brief Bytes that are taken and not in use yet: each thread's slab that it fills, and the
- * huge page where the next arrays will be. */
+/** @brief Bytes that are taken and not in use: each thread's slab that it fills lies on
+ * two huge pages, and the next arrays will lie on one more. */
 size_t footprint_begun(const settings *how);
 
 /** @brief Whether a process that has so many bytes leaves room for anything more.

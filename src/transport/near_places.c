@@ -29,23 +29,31 @@ static void box_around(const vec3 *places, size_t n, vec3 *low, vec3 *extent)
     *extent = high - *low;
 }
 
-/* As wide as two cells for each place would be along each axis; a box that is flat has
-   one layer of them. */
+/* @return cells in all, if they were so wide */
+static size_t count_cells(near_places *near, vec3 extent, float wide)
+{
+    size_t n_all = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        near->n_cells[axis] = 1 + (size_t)(extent[axis] / wide);
+        n_all *= near->n_cells[axis];
+    }
+    return n_all;
+}
+
+/* Twice as many as places or some more; a box that is flat has one layer of them, and one
+   that is no more than a point one cell. */
 static void make_cells(near_places *near)
 {
     vec3 extent;
     box_around(near->places, near->n, &near->low, &extent);
-    float widest = maxf(maxf(extent[0], extent[1]), extent[2]), volume = 1.0f;
-    for (int axis = 0; axis < 3; axis++)
-        volume *= maxf(extent[axis], widest / (float)MAX(near->n, 1));
-    float wide = 0.5f * cbrtf(volume / (float)MAX(near->n, 1));
-    size_t n_all = 1;
-    for (int axis = 0; axis < 3; axis++) {
-        size_t n = wide > 0.0f ? (size_t)ceilf(extent[axis] / wide) : 1;
-        near->n_cells[axis] = MAX(n, 1);
-        near->size[axis] = extent[axis] / (float)near->n_cells[axis];
-        n_all *= near->n_cells[axis];
+    float wide = maxf(maxf(extent[0], extent[1]), extent[2]);
+    size_t n_all = count_cells(near, extent, wide > 0.0f ? wide : 1.0f);
+    while (wide > FLT_MIN && n_all < 2 * near->n) {
+        wide *= (float)M_SQRT1_2;
+        n_all = count_cells(near, extent, wide);
     }
+    for (int axis = 0; axis < 3; axis++)
+        near->size[axis] = extent[axis] / (float)near->n_cells[axis];
     near->cells = g_new0(_Atomic(cell *), n_all);
 }
 

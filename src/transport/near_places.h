@@ -1,7 +1,7 @@
 /*
  * The nearest of some thousand places, for who asks millions of times.
  *
- * A grid of cells, some eight a place. Any point of a cell has its nearest place among
+ * A grid of cells, some two a place. Any point of a cell has its nearest place among
  * those that lie no further from the cell's centre than the nearest of all does and the
  * cell's diagonal besides, q for the point p and n for the centre c:
  *

@@ -44,18 +44,12 @@ static vec3 asked_of(spread how, uint64_t i)
     return i % 3 == 0 ? 3.0f * anywhere(i) - 1.0f : place_of(how, i + 77) + beside;
 }
 
-static size_t nearest_of_all(const vec3 *places, size_t n, vec3 p, float *distance2)
+static float least_distance2(const vec3 *places, size_t n, vec3 p)
 {
-    size_t best = 0;
-    *distance2 = INFINITY;
-    for (size_t i = 0; i < n; i++) {
-        float d2 = length3_2(places[i] - p);
-        if (d2 < *distance2) {
-            *distance2 = d2;
-            best = i;
-        }
-    }
-    return best;
+    float least = INFINITY;
+    for (size_t i = 0; i < n; i++)
+        least = minf(least, length3_2(places[i] - p));
+    return least;
 }
 
 typedef struct asking {
@@ -73,8 +67,7 @@ static void ask(size_t begin, size_t end, unsigned thread, void *data)
     for (size_t i = begin; i < end; i++) {
         const vec3 p = asked_of(a->how, i);
         near_place found;
-        float expected;
-        size_t best = nearest_of_all(a->places, a->n, p, &expected);
+        float expected = least_distance2(a->places, a->n, p);
         g_assert_true(near_places_find(a->near, p, &found, &hits));
         float d2 = length3_2(a->places[found.which] - p);
         g_assert_cmpfloat(fabsf(d2 - expected), <=, 1e-5f * expected);
