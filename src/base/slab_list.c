@@ -119,3 +119,15 @@ void slab_list_clear(slab_list *list)
 {
     slab_list_move(list, pass_by, NULL);
 }
+
+bool slab_work(size_t n, size_t chunk_size, workers by, parallel_body body, void *data,
+               slab ***slabs, GError **error)
+{
+    unsigned n_threads = parallel_threads(by.threads);
+    g_autofree slab **all = *slabs = g_new0(slab *, n_threads);
+    bool done = parallel_work(n, chunk_size, by, body, data, error);
+    for (unsigned i = 0; i < n_threads; i++)
+        slab_close(all[i]);
+    *slabs = NULL;
+    return done;
+}

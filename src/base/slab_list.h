@@ -13,7 +13,7 @@
  */
 #pragma once
 
-#include "base/error.h"
+#include "base/parallel.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -54,3 +54,8 @@ void slab_list_clear(slab_list *list);
 
 /** @brief No piece will be cut from it any more. NULL is allowed. */
 void slab_close(slab *s);
+
+/** @brief parallel_work whose body cuts pieces from slabs[thread], which are there while
+ * it runs. @param slabs where the body finds them */
+bool slab_work(size_t n, size_t chunk_size, workers by, parallel_body body, void *data,
+               slab ***slabs, GError **error);

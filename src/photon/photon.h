@@ -95,7 +95,7 @@ void photon_store_put(photon_store *store, const photon *p);
 void photon_store_set(photon_store *store, size_t i, const photon *p);
 /** @brief What this store keeps of a photon, its number apart. */
 packed_photon photon_store_packed(const photon_store *store, const photon *p);
-/** @brief As photon_store_set, of a store that is not numbered. */
+/** @brief As photon_store_set, but for the number. */
 void photon_store_set_packed(photon_store *store, size_t i, const packed_photon *p);
 photon photon_store_get(const photon_store *store, size_t i);
 void photon_store_clear(photon_store *store);

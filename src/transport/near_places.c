@@ -1,6 +1,6 @@
 #include "transport/near_places.h"
 
-#include "base/parallel.h"
+#include "math/box.h"
 
 #include <float.h>
 
@@ -12,22 +12,12 @@ typedef struct cell {
 
 struct near_places {
     size_t n;
-    vec3 *places;
+    const vec3 *places; /* borrowed */
     point_set *tree;
     vec3 low, size;         /* of the box around all; of a cell */
     size_t n_cells[3];      /* along each axis */
     _Atomic(cell *) *cells; /* NULL: not asked for yet; owned */
 };
-
-static void box_around(const vec3 *places, size_t n, vec3 *low, vec3 *extent)
-{
-    vec3 high = *low = n > 0 ? places[0] : (vec3){0};
-    for (size_t i = 1; i < n; i++) {
-        *low = min3(*low, places[i]);
-        high = max3(high, places[i]);
-    }
-    *extent = high - *low;
-}
 
 /* @return cells in all, if they were so wide */
 static size_t count_cells(near_places *near, vec3 extent, float wide)
@@ -44,8 +34,11 @@ static size_t count_cells(near_places *near, vec3 extent, float wide)
    that is no more than a point one cell. */
 static void make_cells(near_places *near)
 {
-    vec3 extent;
-    box_around(near->places, near->n, &near->low, &extent);
+    box3 box = near->n > 0 ? box3_empty() : (box3){0};
+    for (size_t i = 0; i < near->n; i++)
+        box = box3_with_point(box, near->places[i]);
+    const vec3 extent = box.high - box.low;
+    near->low = box.low;
     float wide = maxf(maxf(extent[0], extent[1]), extent[2]);
     size_t n_all = count_cells(near, extent, wide > 0.0f ? wide : 1.0f);
     while (wide > FLT_MIN && n_all < 2 * near->n) {
@@ -61,9 +54,7 @@ near_places *near_places_build(const vec3 *places, size_t n, GError **error)
 {
     g_autoptr(near_places) near = g_aligned_alloc0(1, sizeof *near, 16);
     near->n = n;
-    near->places = g_aligned_alloc0(MAX(n, 1), sizeof *near->places, 16);
-    for (size_t i = 0; i < n; i++)
-        near->places[i] = places[i];
+    near->places = places;
     make_cells(near);
     near->tree = point_set_build(places, n, 1, error);
     return near->tree ? g_steal_pointer(&near) : NULL;
@@ -78,7 +69,6 @@ void near_places_free(near_places *near)
         g_free(near->cells[i]);
     g_free(near->cells);
     point_set_free(near->tree);
-    g_aligned_free(near->places);
     g_aligned_free(near);
 }
 

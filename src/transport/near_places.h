@@ -16,7 +16,8 @@
 
 typedef struct near_places near_places;
 
-/** @brief Over n places, 0 allowed, which are copied. NULL: out of memory. */
+/** @brief Over n places, 0 allowed, which stay the caller's and as they are. NULL: out of
+ * memory. */
 near_places *near_places_build(const vec3 *places, size_t n, GError **error);
 void near_places_free(near_places *near);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(near_places, near_places_free)

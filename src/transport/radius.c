@@ -104,8 +104,9 @@ static bool typical_radius(const radius_rule *rule, const radius_cache *cache,
     float *radii = g_new0(float, n + 1);
     point_hits hits = {0};
     for (size_t i = 0; i < n; i++)
-        radii[i] = at_photons ? radius_cache_nth(cache, i)
-                              : radius_cache_at(cache, plan->sight[i].p, narrow, NULL, &hits);
+        radii[i] = at_photons
+                       ? radius_cache_nth(cache, i)
+                       : radius_cache_at(cache, plan->sight[i].p, narrow, NULL, &hits);
     *typical = store->n > 1 && n > 0 ? (double)median(radii, n) : (double)narrow;
     bool refused = hits.refused;
     point_hits_clear(&hits);

@@ -7,7 +7,7 @@
 
 struct radius_cache {
     size_t n;
-    near_places *near;
+    near_places *near; /* of places */
     vec3 *places;
     float *radii; /* at each place */
 };
@@ -52,7 +52,7 @@ static radius_cache *cache_at(const vec3 *places, size_t n, GError **error)
     cache->radii = g_new0(float, MAX(n, 1));
     cache->places = g_aligned_alloc0(MAX(n, 1), sizeof *cache->places, 16);
     memcpy(cache->places, places, n * sizeof *places);
-    cache->near = near_places_build(places, n, error);
+    cache->near = near_places_build(cache->places, n, error);
     return cache->near ? g_steal_pointer(&cache) : NULL;
 }
 

@@ -4,7 +4,6 @@
  * back.
  */
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/slab_list.h"
 #include "sanitizers.h"
 
@@ -32,7 +31,7 @@ typedef struct line {
 
 typedef struct filling {
     slab_list odds[N_LISTS], lines[N_LISTS];
-    slab *slabs[N_THREADS];
+    slab **slabs;
 } filling;
 
 static void fill(size_t i, size_t end, unsigned thread, void *data)
@@ -52,9 +51,8 @@ static void fill(size_t i, size_t end, unsigned thread, void *data)
 
 static void fill_all(filling *f)
 {
-    g_assert_true(parallel_for(N_LISTS, 1, N_THREADS, NULL, fill, f));
-    for (size_t i = 0; i < N_THREADS; i++)
-        slab_close(f->slabs[i]);
+    const workers by = {.threads = N_THREADS};
+    g_assert_true(slab_work(N_LISTS, 1, by, fill, f, &f->slabs, NULL));
 }
 
 typedef struct reading {

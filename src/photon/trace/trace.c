@@ -98,22 +98,6 @@ static trace_result empty_result(const scene *s, bool oriented)
     };
 }
 
-/* In chunks of the task's photons. */
-static bool trace_chunks(trace_loop *loop, size_t n, trace_chunk *chunks, workers by,
-                         trace_result *result, GError **error)
-{
-    unsigned n_threads = parallel_threads(by.threads);
-    g_autofree slab **slabs = g_new0(slab *, n_threads);
-    loop->slabs = slabs;
-    bool traced = parallel_work(n, RAYS_AT_ONCE, by, trace_some, loop, error);
-    for (unsigned i = 0; i < n_threads; i++)
-        slab_close(slabs[i]);
-    size_t n_chunks = (n + RAYS_AT_ONCE - 1) / RAYS_AT_ONCE;
-    bool joined = traced && trace_chunks_join(chunks, n_chunks, by, result, error);
-    trace_chunks_clear(chunks, n_chunks);
-    return joined;
-}
-
 bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
                   GError **error)
 {
@@ -125,9 +109,11 @@ bool photon_trace(const trace_task *task, bool oriented, trace_result *result,
     if (!chunks)
         return false;
     trace_loop loop = {task, task->first + task->begin, *result, chunks, NULL};
-    bool traced = trace_chunks(&loop, n, chunks, by, result, error);
+    bool joined = slab_work(n, RAYS_AT_ONCE, by, trace_some, &loop, &loop.slabs, error) &&
+                  trace_chunks_join(chunks, n_chunks, by, result, error);
+    trace_chunks_clear(chunks, n_chunks);
     big_free(chunks);
-    if (!traced)
+    if (!joined)
         trace_result_clear(result);
-    return traced;
+    return joined;
 }

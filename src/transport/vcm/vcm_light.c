@@ -410,18 +410,6 @@ void vcm_tell_light(const vcm_pass *pass, uint64_t i, photon_listener listener,
     chunk_clear(&unused);
 }
 
-static bool trace_chunks(light_loop *loop, workers by, GError **error)
-{
-    unsigned n_threads = parallel_threads(by.threads);
-    g_autofree slab **slabs = g_new0(slab *, n_threads);
-    loop->slabs = slabs;
-    bool traced =
-        parallel_work(loop->pass->light.n, RAYS_AT_ONCE, by, trace_chunk, loop, error);
-    for (unsigned i = 0; i < n_threads; i++)
-        slab_close(slabs[i]);
-    return traced;
-}
-
 bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts *counts,
                      GError **error)
 {
@@ -436,7 +424,9 @@ bool vcm_trace_light(vcm_pass *pass, const cancel_flag *cancel, transport_counts
     }
     light_loop loop = {.pass = pass, .chunks = chunks};
     const workers by = {(unsigned)pass->plan->how.threads, cancel};
-    bool joined = trace_chunks(&loop, by, error) && join(&loop, n_chunks, counts, error);
+    bool joined =
+        slab_work(paths->n, RAYS_AT_ONCE, by, trace_chunk, &loop, &loop.slabs, error) &&
+        join(&loop, n_chunks, counts, error);
     for (size_t c = 0; c < n_chunks; c++)
         chunk_clear(&chunks[c]);
     big_free(chunks);
