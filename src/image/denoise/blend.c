@@ -6,9 +6,12 @@
 #include <math.h>
 #include <string.h>
 
-/* Single pixels of what the filter lost come back as far as it is surely more than noise:
-   so many of its standard errors are taken off its mean over a patch. */
-#define SURE 1.0f
+/* What the filter lost comes back as far as it is surely more than noise: so many of its
+   standard errors are taken off its mean over a patch, of single pixels and of means over
+   squares. With none off means, what few bright paths leave came back as specks (Sponza,
+   32 samples a pixel); with more, highlights of few passes are lost. */
+#define SURE_PIXELS 1.0f
+#define SURE_MEANS 0.3f
 
 /* Of what the filter lost, means over squares of 2 r + 1 pixels come back first: they
    have the least noise, and the eye, which sees little of single pixels, sees them. */
@@ -175,12 +178,15 @@ static void product_row(int y, void *data)
 }
 
 /* Share of the picture as it was in the best mean of it and the filtered one. Noise is
-   more than given where pixels share it, as those do that see the same photons. */
+   more than given where pixels share it, as those do that see the same photons. Means
+   over squares share their pixels with as many others, so that a sum of their products
+   scatters more than one of as many that share none. */
 static float share_of_raw(const blend_loop *loop, size_t at)
 {
     float noise = maxf(loop->sum[APART][at], loop->sum[GIVEN][at]);
-    float error = loop->radius == 0 ? sqrtf(loop->sum[ERROR2][at]) : 0.0f;
-    float lost2 = loop->sum[LOST2][at] - SURE * error;
+    float sure = loop->radius > 0 ? SURE_MEANS : SURE_PIXELS;
+    float error = sqrtf(loop->sum[ERROR2][at] * square_pixels(loop->radius));
+    float lost2 = loop->sum[LOST2][at] - sure * error;
     float whole = noise - loop->sum[FOLLOWS][at];
     return lost2 > 0.0f ? lost2 / (lost2 + maxf(whole, 0.0f)) : 0.0f;
 }
