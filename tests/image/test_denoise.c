@@ -287,6 +287,28 @@ static void test_outlier(void)
         g_assert_cmpfloat(fabsf(p->out[i] - p->truth[i]), <, 0.15);
 }
 
+/* A wall in the dark that one path of eight finds a bright place from: the halves agree
+   by chance on what each has of them, which is no reason to show it. */
+static void test_few_bright_paths(void)
+{
+    enum { PATHS = 4, BRIGHT = 8 };
+    g_autofree picture *p = noisy(flat, 0.0, 0);
+    g_autoptr(GRand) random = g_rand_new_with_seed(15);
+    for (int i = 0; i < N; i++) {
+        p->variance[i] = 0.49f * (BRIGHT - 1) / (2 * PATHS);
+        for (int h = 0; h < 2; h++) {
+            int n = 0;
+            for (int k = 0; k < PATHS; k++)
+                n += g_rand_int_range(random, 0, BRIGHT) == 0;
+            for (int c = 0; c < 3; c++)
+                p->half[h][3 * i + c] *= (float)n * BRIGHT / PATHS;
+        }
+    }
+    double left = gain(p, NULL, false);
+    g_test_message("%.4f of the squared error", left);
+    g_assert_cmpfloat(left, <, 0.012); /* .0163 where means come back without doubt */
+}
+
 static void test_black(void)
 {
     g_autofree picture *p = noisy(flat, 0.1, 15);
@@ -554,6 +576,7 @@ int main(int argc, char **argv)
     g_test_add_func("/denoise/noisy-feature-of-nothing", test_noisy_feature_of_nothing);
     g_test_add_func("/denoise/not-finite", test_not_finite);
     g_test_add_func("/denoise/outlier", test_outlier);
+    g_test_add_func("/denoise/few-bright-paths", test_few_bright_paths);
     g_test_add_func("/denoise/black", test_black);
     g_test_add_func("/denoise/threads", test_threads);
     g_test_add_func("/denoise/small-pictures", test_small_pictures);
