@@ -9,7 +9,8 @@
 /* What the filter lost comes back as far as it is surely more than noise: so many of its
    standard errors are taken off its mean over a patch, of single pixels and of means over
    squares. With none off means, what few bright paths leave came back as specks (Sponza,
-   32 samples a pixel); with more, highlights of few passes are lost. */
+   32 samples a pixel); with a whole one veach-mis after 4 passes has 1.67 times the
+   squared error, with .3 1.50. */
 #define SURE_PIXELS 1.0f
 #define SURE_MEANS 0.3f
 
