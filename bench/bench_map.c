@@ -63,6 +63,11 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+static bool has_peer(const bench *b)
+{
+    return b->build[PEER] > 0.0;
+}
+
 /* ---- Answers: how many were found ---- */
 
 static size_t answer_peer(bench *b, const task *t, const place *at)
@@ -165,7 +170,7 @@ static void print_task(bench *b, const task *t)
         for (int who = 0; who < N_WHO; who++)
             turns[who][turn] = (float)time_task(b, who, t);
     for (int who = 0; who < N_WHO; who++)
-        middle[who] = (double)median(turns[who], TURNS);
+        middle[who] = who == PEER && !has_peer(b) ? 0.0 : (double)median(turns[who], TURNS);
     print_row(t->name, "us", 1e6, middle);
     size_t n = t->nearest ? b->asked.n / 8 : b->asked.n;
     printf("   (%.1f found)\n", (double)b->found[1] / (double)n);
