@@ -255,14 +255,6 @@ static size_t page_size(void)
     return (size_t)sysconf(_SC_PAGESIZE);
 }
 
-/* The next array will be where its first one was, so that each pass of a render touches
- * the same huge pages. */
-static void rewind_region(region *r)
-{
-    if (r->n_arrays == 0)
-        r->next = r->begin;
-}
-
 static void close_region(region *r)
 {
     if (!r || r->n_arrays > 0)
@@ -336,9 +328,7 @@ static array_head unmap_array(void *array)
     region *in = noted->in;
     madvise(array, whole_pages(head.bytes, page_size()), MADV_DONTNEED);
     in->n_arrays--;
-    if (in == mapped.last)
-        rewind_region(in);
-    else
+    if (in != mapped.last)
         close_region(in);
     g_hash_table_remove(mapped.arrays, array);
     pthread_mutex_unlock(&mapped.lock);
