@@ -170,7 +170,9 @@ static void print_task(bench *b, const task *t)
         for (int who = 0; who < N_WHO; who++)
             turns[who][turn] = (float)time_task(b, who, t);
     for (int who = 0; who < N_WHO; who++)
-        middle[who] = who == PEER && !has_peer(b) ? 0.0 : (double)median(turns[who], TURNS);
+        middle[who] = (double)median(turns[who], TURNS);
+    if (!has_peer(b))
+        middle[PEER] = 0.0;
     print_row(t->name, "us", 1e6, middle);
     size_t n = t->nearest ? b->asked.n / 8 : b->asked.n;
     printf("   (%.1f found)\n", (double)b->found[1] / (double)n);
