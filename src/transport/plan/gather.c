@@ -13,10 +13,10 @@
    of grain where noise is taken out. Of paths' grain that took 4.7 (glass and mirror
    balls), 5.5 (papered), 8.4, 8.6 (24 lamps), 13 (glossy) and 14 (Cornell box) times as
    much as of photon maps' error, 128 x 128, 4 passes, two seeds. Made with one of the two
-   throughout, pictures of 2 to 32 passes had 1.3 to 1.9 times as much time x relMSE by
-   maps in all of these but the first, by a ball and in water, .9 to 1.0 in that, .3 to .5
-   by a lamp in a bulb of glass. Of 108 trials in the six 22 chose maps with 8, 14 with
-   12. */
+   throughout, pictures of 2 to 32 passes had 1.2 to 2.4 times as much time x relMSE by
+   maps in six rooms (Cornell box, glossy, papered, 24 lamps, a glass ball, water), .4 to
+   1.0 with glass and mirror balls, .3 to .5 by a lamp in a bulb of glass. Of 108 trials in
+   the six 22 chose maps with 8, 14 with 12. */
 #define BLOTCHES 12.0
 
 /* What two maps, each with two radii, and two paths say of a place of the film. */
@@ -73,14 +73,16 @@ static bool may_gather(const transport_plan *plan)
            plan_grant(plan, 1.0) >= LEAST_TRIALS * N_SAMPLES * SAMPLE_RAYS;
 }
 
-/* Photons as of photon mapping, but all of them together take no longer than the camera;
-   of caustics as many as there would be anyway. */
+/* Photons as of photon mapping, but all of them together take no longer than the camera,
+   unless the caustics alone have more without gathering: of those there are no fewer. */
 static void set_photons(const transport_plan *plan, transport_plan *to)
 {
     double passes = settings_planned_passes(&plan->how);
     double rays = plan->sample_rays * plan_samples(plan) / passes;
     to->how.photons = MIN(settings_photons(&plan->how), (int64_t)(rays / PHOTON_RAYS));
     photonmap_share_photons(to);
+    uint64_t *caustic = &to->n_photons[PHOTON_CAUSTIC];
+    *caustic = MAX(*caustic, plan->n_photons[PHOTON_CAUSTIC]);
 }
 
 /* What auto does not read is as usual. */
@@ -109,8 +111,6 @@ static bool plan_to_gather(transport_plan *plan, transport_plan *out,
         out->radius[c] = out->radius_in_media[c] = 0.0;
     }
     set_photons(plan, out);
-    uint64_t *caustic = &out->n_photons[PHOTON_CAUSTIC];
-    *caustic = MAX(*caustic, plan->n_photons[PHOTON_CAUSTIC]);
     return photonmap_choose_radii(out, cancel, error);
 }
 
