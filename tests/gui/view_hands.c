@@ -38,8 +38,7 @@ void hands_pause(int ms)
     }
 }
 
-/* The pointer at a place of a widget, 0..1 each. */
-void hands_point(const hands *h, GtkWidget *widget, double x, double y)
+static void move_pointer(const hands *h, GtkWidget *widget, double x, double y)
 {
     GtkNative *native = gtk_widget_get_native(widget);
     double wx, wy, sx, sy;
@@ -51,6 +50,17 @@ void hands_point(const hands *h, GtkWidget *widget, double x, double y)
     h->move(h->display, -1, (int)(scale * (wx + sx)), (int)(scale * (wy + sy)), 0);
     h->sync(h->display, 0);
     hands_pause(20);
+}
+
+/* The pointer at a place of a widget, 0..1 each. A window that was just opened may not be
+   on the screen yet, or still move: GTK tells when the pointer is over the widget. */
+void hands_point(const hands *h, GtkWidget *widget, double x, double y)
+{
+    const gint64 limit = g_get_monotonic_time() + 10 * G_USEC_PER_SEC;
+    do {
+        g_assert_cmpint(g_get_monotonic_time(), <, limit);
+        move_pointer(h, widget, x, y);
+    } while (!(gtk_widget_get_state_flags(widget) & GTK_STATE_FLAG_PRELIGHT));
 }
 
 void hands_press(const hands *h, unsigned button, bool down)

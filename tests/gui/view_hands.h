@@ -22,7 +22,7 @@ bool hands_find(hands *h);
 /** @brief Lets events arrive and frames pass: so long at least, and until nothing has
  * happened for longer than a frame lasts, on a busy machine too. */
 void hands_pause(int ms);
-/** @brief The pointer at a place of a widget, 0..1 each. */
+/** @brief The pointer at a place of a widget, 0..1 each, once GTK sees it there. */
 void hands_point(const hands *h, GtkWidget *widget, double x, double y);
 /** @brief A button goes down or up; 4 and 5 are the wheel, up and down. */
 void hands_press(const hands *h, unsigned button, bool down);
