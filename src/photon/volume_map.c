@@ -27,6 +27,15 @@ volume_map *volume_map_build(photon_store *store, const float *radii, unsigned t
     return NULL;
 }
 
+bool volume_map_widen(volume_map *map, float by, unsigned threads, GError **error)
+{
+    disc_set_free(map->set);
+    for (size_t i = 0; i < map->store.n; i++)
+        map->discs[i].radius *= by;
+    map->set = disc_set_build(map->discs, map->store.n, threads, error);
+    return map->set != NULL;
+}
+
 void volume_map_free(volume_map *map)
 {
     if (!map)

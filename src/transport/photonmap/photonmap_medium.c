@@ -198,6 +198,7 @@ spectrum photonmap_gather_medium(const photonmap_pass *pass, photon_class c, con
         .groups = own->groups,
         .n_groups = own->n_groups,
     };
+    own->n_queries++;
     if (map)
         return volume_map_radiance(map, &query, &own->failed);
     for (size_t i = 0; i < own->n_groups; i++)

@@ -31,10 +31,10 @@ uint64_t caustics_most(const transport_plan *plan)
 }
 
 /* Rays that a camera sample costs more where photons are gathered, however few: at the
-   first surface, whose edges are probed, twice as many. */
-static double gather_rays(const path_effort *paths)
+   first surface, whose edges are probed, twice as many, and later seldom. */
+static double gather_rays(const transport_plan *plan, const path_effort *paths)
 {
-    double later = fmax(paths->surfaces - 1.0, 0.0);
+    double later = fmax(paths->surfaces - 1.0, 0.0) * (double)plan->p_blurred;
     return PHOTON_RAYS * (2.0 * fmin(paths->surfaces, 1.0) + later);
 }
 
@@ -55,7 +55,7 @@ static plan_cost cost_with(const transport_plan *plan, const aim_result *found,
 {
     double photons = plan_share(i) * (double)plan->n_photons[PHOTON_CAUSTIC];
     return (plan_cost){paths->noise + found->left[i],
-                       paths->rays + gather_rays(paths) +
+                       paths->rays + gather_rays(plan, paths) +
                            photon_rays(found, photons) / samples_a_pass(plan)};
 }
 
@@ -120,7 +120,7 @@ void caustics_decide(transport_plan *plan, const aim_result *found,
     decide_blurred(plan, found, paths);
     set_share(plan, share_to_send(plan, found, paths));
     if (plan->n_photons[PHOTON_CAUSTIC] > 0)
-        plan->sample_rays += gather_rays(paths);
+        plan->sample_rays += gather_rays(plan, paths);
     plan->photon_rays = photon_rays(found, (double)plan->n_photons[PHOTON_CAUSTIC]) /
                         samples_a_pass(plan);
 }

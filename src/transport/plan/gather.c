@@ -6,25 +6,22 @@
 
 #include <math.h>
 
-/* How much wider the second radius is: its square is twice the first one's. */
-#define WIDER M_SQRT2
-
 /* Squared error that is alike in neighbouring pixels weighs as much as so many times that
    of grain where noise is taken out. Of paths' grain that took 4.7 (glass and mirror
    balls), 5.5 (papered), 8.4, 8.6 (24 lamps), 13 (glossy) and 14 (Cornell box) times as
    much as of photon maps' error, 128 x 128, 4 passes, two seeds. Made with one of the two
    throughout, pictures of 2 to 32 passes had 1.2 to 2.4 times as much time x relMSE by
    maps in six rooms (Cornell box, glossy, papered, 24 lamps, a glass ball, water), .4 to
-   1.0 with glass and mirror balls, .3 to .5 by a lamp in a bulb of glass. Of 108 trials in
-   the six 22 chose maps with 8, 14 with 12. */
+   1.0 with glass and mirror balls, .3 to .5 by a lamp in a bulb of glass. Of 108 trials
+   in the six 22 chose maps with 8, 14 with 12. */
 #define BLOTCHES 12.0
 
-/* What two maps, each with two radii, and two paths say of a place of the film. */
+/* What two maps and two paths say of a place of the film. */
 typedef struct gather_place {
     double path[2];
     double map[2];    /* each with a sampler of its own */
+    double carried;   /* by photons, of map[0], at most */
     double other;     /* of the second map, with the sampler of the first one */
-    double wider[2];  /* map[] again, with the wider radius */
     double path_rays; /* of a path */
     double all_rays;
 } gather_place;
@@ -34,12 +31,13 @@ typedef struct gather_trial {
     transport_plan plan; /* of photons, as it would be */
     transport_plan few[2];
     photonmap_pass *maps[2];
-    double fewer;        /* photons than the plan's, over them */
-    double photon_rays;  /* of a whole pass */
-    double first_rays;   /* of a pixel's first sample */
-    double later_rays;   /* of another one, which shares the first one's looks */
-    double path_rays;    /* of a path */
-    uint32_t n, n_wider; /* places, and how many of them a wider radius is tried at */
+    double fewer;       /* photons than the plan's, over them */
+    double stored;      /* photons of a map */
+    double photon_rays; /* of a whole pass */
+    double first_rays;  /* of a pixel's first sample */
+    double later_rays;  /* of another one, which shares the first one's looks */
+    double path_rays;   /* of a path */
+    uint32_t n;         /* places */
     gather_place *places;
 } gather_trial;
 
@@ -57,19 +55,18 @@ typedef struct gather_errors {
     double path, samples, photons, bias2;
 } gather_errors;
 
-/* Samples of a place: by maps map[], other and wider[], and two by paths. */
-enum { N_SAMPLES = 2 + 1 + 2 + 2 }; /* math: as many */
+/* Samples of a place: by maps map[] and other, and two by paths. */
+enum { N_SAMPLES = 2 + 1 + 2 }; /* math: as many */
 
 /* ---- Trial passes ---- */
 
-/* In a medium the bias is not known: its discs have one radius for good. Bounds on
-   bounces bound different paths where photons meet the eye's. */
+/* Bounds on bounces bound different paths where photons meet the eye's. */
 static bool may_gather(const transport_plan *plan)
 {
     const settings *how = &plan->how;
     return how->gather_indirect && how->direct_illumination &&
-           !scene_has_media(plan->scene) && how->max_backward_bounces < 0 &&
-           how->max_forward_bounces < 0 && scene_is_lit(plan->scene) &&
+           how->max_backward_bounces < 0 && how->max_forward_bounces < 0 &&
+           scene_is_lit(plan->scene) &&
            plan_grant(plan, 1.0) >= LEAST_TRIALS * N_SAMPLES * SAMPLE_RAYS;
 }
 
@@ -122,10 +119,27 @@ static double n_photons(const transport_plan *plan)
     return n;
 }
 
-static void widen(photonmap_pass *pass, double by)
+static bool widen_in_media(photonmap_pass *pass, double by, GError **error)
 {
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        pass->estimates[c].radius *= (float)by;
+    unsigned threads = (unsigned)pass->how->threads;
+    bool ok = true;
+    for (int i = 0; i < pass->n_slices; i++)
+        for (int c = 0; c < N_PHOTON_CLASSES && ok; c++)
+            if (pass->in_media[i][c])
+                ok = volume_map_widen(pass->in_media[i][c], (float)by, threads, error);
+    return ok;
+}
+
+/* All radii of both maps. */
+static bool widen(gather_trial *t, double by, GError **error)
+{
+    for (int i = 0; i < 2; i++) {
+        for (int c = 0; c < N_PHOTON_CLASSES; c++)
+            t->maps[i]->estimates[c].radius *= (float)by;
+        if (!widen_in_media(t->maps[i], by, error))
+            return false;
+    }
+    return true;
 }
 
 /* A pass of few photons. */
@@ -145,6 +159,8 @@ static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError *
         return false;
     double rays = plan_rays_of_photons(&counts);
     t->photon_rays += 0.5 * rays * t->fewer;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        t->stored += 0.5 * (double)counts.stored[c];
     plan_note_photons(&t->plan, rays - (double)counts.photon_rays,
                       (double)counts.photon_rays);
     return true;
@@ -155,22 +171,39 @@ static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError *
 typedef void radiance_function(const void *pass, const ray *r, sampler *random,
                                transport_scratch *scratch, radiance_sample *out);
 
-/* What is compared: mean over wavelengths, without the caustics that either way are
-   photons'. */
-static double sample(radiance_function *radiance, const void *pass,
-                     const transport_plan *plan, vec2 raster, sampler random,
-                     transport_scratch *scratch)
+/* The mean over wavelengths of layers among these bits. */
+static double mean_of_layers(const radiance_sample *sample, unsigned layers)
 {
-    radiance_sample out = {.groups = NULL};
     spectrum sum = {0};
-    vec2 u_lens = sampler_2d(&random);
-    ray r = camera_ray(&plan->view->camera, raster, u_lens, sampler_1d(&random));
-    radiance(pass, &r, &random, scratch, &out);
-    for (int i = 0; i < N_LAYERS; i++)
-        if (i != LAYER_CAUSTIC || plan->n_photons[PHOTON_CAUSTIC] == 0)
-            sum += out.layers[i];
+    for (unsigned i = 0; i < N_LAYERS; i++)
+        if (layers >> i & 1)
+            sum += sample->layers[i];
     double mean = (double)spectrum_mean(sum);
     return isfinite(mean) ? mean : 0.0;
+}
+
+/* Of what is compared: not the caustics that either way are photons'. */
+static unsigned compared_layers(const transport_plan *plan)
+{
+    const unsigned all = (1u << N_LAYERS) - 1;
+    return plan->n_photons[PHOTON_CAUSTIC] > 0 ? all & ~(1u << LAYER_CAUSTIC) : all;
+}
+
+/* What is compared.
+   @param carried NULL, or gets what of it is neither a lamp nor its direct light */
+static double sample(radiance_function *radiance, const void *pass,
+                     const transport_plan *plan, vec2 raster, sampler random,
+                     transport_scratch *scratch, double *carried)
+{
+    radiance_sample out = {.groups = NULL};
+    vec2 u_lens = sampler_2d(&random);
+    ray r = camera_ray(&plan->view->camera, raster, u_lens, sampler_1d(&random));
+    unsigned layers = compared_layers(plan);
+    radiance(pass, &r, &random, scratch, &out);
+    if (carried)
+        *carried =
+            mean_of_layers(&out, layers & ~(1u << LAYER_EMISSION | 1u << LAYER_DIRECT));
+    return mean_of_layers(&out, layers);
 }
 
 /* A place of the film. */
@@ -188,7 +221,8 @@ static double later_rays(const gather_task *all, vec2 raster, sampler random,
     double before = plan_rays_of(scratch);
     vec2 u = sampler_2d(&random);
     vec2 beside = {raster.x + u.x - 0.5f, raster.y + u.y - 0.5f};
-    sample(photonmap_radiance, all->trial->maps[0], all->plan, beside, random, scratch);
+    sample(photonmap_radiance, all->trial->maps[0], all->plan, beside, random, scratch,
+           NULL);
     return plan_rays_of(scratch) - before;
 }
 
@@ -208,7 +242,7 @@ static double find_price(const gather_task *all)
         double before = plan_rays_of(&scratch);
         looked_around_forget(&scratch.estimate.looked);
         sample(photonmap_radiance, t->maps[0], all->plan, raster,
-               sampler_split(&random, 0), &scratch);
+               sampler_split(&random, 0), &scratch, NULL);
         t->first_rays += (plan_rays_of(&scratch) - before) / n;
         if (all->plan->how.spp > 1)
             t->later_rays +=
@@ -233,66 +267,38 @@ static void ask_maps(const gather_task *all, uint32_t i, transport_scratch *scra
     double before = plan_rays_of(scratch);
     looked_around_forget(&scratch->estimate.looked);
     at->map[0] = sample(photonmap_radiance, t->maps[0], plan, raster,
-                        sampler_split(&random, 0), scratch);
+                        sampler_split(&random, 0), scratch, &at->carried);
     at->map[1] = sample(photonmap_radiance, t->maps[1], plan, raster,
-                        sampler_split(&random, 1), scratch);
+                        sampler_split(&random, 1), scratch, NULL);
     at->other = sample(photonmap_radiance, t->maps[1], plan, raster,
-                       sampler_split(&random, 0), scratch);
+                       sampler_split(&random, 0), scratch, NULL);
     double between = plan_rays_of(scratch);
     for (unsigned k = 0; k < 2; k++) {
         looked_around_forget(&scratch->estimate.looked);
         at->path[k] = sample(path_radiance, all->paths, plan, raster,
-                             sampler_split(&random, k), scratch);
+                             sampler_split(&random, k), scratch, NULL);
     }
     double after = plan_rays_of(scratch);
     at->path_rays = 0.5 * (after - between);
     at->all_rays += after - before;
 }
 
-/* Both maps again, whose radii are wider now. */
-static void ask_wider(const gather_task *all, uint32_t i, transport_scratch *scratch)
+static void ask_some(size_t begin, size_t end, unsigned thread, void *data)
 {
-    const gather_trial *t = all->trial;
-    gather_place *at = &t->places[i];
-    sampler random = sampler_make(all->key, i);
-    vec2 raster = raster_of(all->plan, &random);
-    double before = plan_rays_of(scratch);
-    looked_around_forget(&scratch->estimate.looked);
-    for (unsigned k = 0; k < 2; k++)
-        at->wider[k] = sample(photonmap_radiance, t->maps[k], all->plan, raster,
-                              sampler_split(&random, k), scratch);
-    at->all_rays += plan_rays_of(scratch) - before;
-}
-
-typedef void ask_function(const gather_task *all, uint32_t i, transport_scratch *scratch);
-
-static void ask_some(const gather_task *all, ask_function *ask, size_t begin, size_t end)
-{
+    (void)thread;
+    const gather_task *all = data;
     transport_scratch scratch = {0};
     for (size_t i = begin; i < end; i++)
-        ask(all, all->first + (uint32_t)i, &scratch);
+        ask_maps(all, all->first + (uint32_t)i, &scratch);
     transport_scratch_clear(&scratch);
 }
 
-static void ask_maps_of_some(size_t begin, size_t end, unsigned thread, void *data)
-{
-    (void)thread;
-    ask_some(data, ask_maps, begin, end);
-}
-
-static void ask_wider_of_some(size_t begin, size_t end, unsigned thread, void *data)
-{
-    (void)thread;
-    ask_some(data, ask_wider, begin, end);
-}
-
-/* As many places as the grant allows, by what the first of them cost: asking some of them
-   again with a wider radius is no dearer. */
+/* As many places as the grant allows, by what the first of them cost. */
 static uint32_t count_places(const gather_trial *t, const transport_plan *plan)
 {
     double each = 0.0;
     for (int i = 0; i < LEAST_TRIALS; i++)
-        each += t->places[i].all_rays * (1.0 + 1.0 / t->fewer);
+        each += t->places[i].all_rays;
     return plan_trials_for(plan, 1.0, each / LEAST_TRIALS, MOST_PLACES);
 }
 
@@ -312,19 +318,12 @@ static bool run_places(gather_trial *t, transport_plan *plan, const path_pass *p
     gather_task task = {t, plan, paths, key, 0};
     t->places = g_new0(gather_place, MOST_PLACES);
     plan->planning += find_price(&task);
-    for (int i = 0; i < 2; i++)
-        widen(t->maps[i], sqrt(t->fewer));
-    ask_some(&task, ask_maps, 0, LEAST_TRIALS);
+    if (!widen(t, sqrt(t->fewer), error))
+        return false;
+    ask_some(0, LEAST_TRIALS, 0, &task);
     t->n = count_places(t, plan);
     task.first = LEAST_TRIALS;
-    if (!parallel_work(t->n - task.first, LEAST_TRIALS, by, ask_maps_of_some, &task,
-                       error))
-        return false;
-    for (int i = 0; i < 2; i++)
-        widen(t->maps[i], WIDER);
-    task.first = 0;
-    t->n_wider = (uint32_t)(t->n / t->fewer);
-    if (!parallel_work(t->n_wider, LEAST_TRIALS, by, ask_wider_of_some, &task, error))
+    if (!parallel_work(t->n - task.first, LEAST_TRIALS, by, ask_some, &task, error))
         return false;
     sum_rays(t, plan);
     return true;
@@ -382,31 +381,65 @@ static double off_maps(const gather_place *at)
     return (fabs(at->path[0] - seen) + fabs(at->path[1] - seen)) / 2.0;
 }
 
+/* How far maps are off what paths find, as products of two pairs tell that have nothing
+   in common. */
+typedef struct bias_sum {
+    double products, squares;
+} bias_sum;
+
+static void bias_add(bias_sum *to, double product)
+{
+    to->products += product;
+    to->squares += product * product;
+}
+
+/* The square of the plan's bias, as far as it is known from chance. The plan's radii are
+   smaller, and the bias with their square; but near the rim of a medium, where a disc
+   is in it in part, with the radius. */
+static double bias_square(const bias_sum *of, const gather_trial *t)
+{
+    double grows = scene_has_media(t->plan.scene) ? t->fewer : t->fewer * t->fewer;
+    return fmax(of->products - sqrt(of->squares), 0.0) / grows;
+}
+
+/* Sums over the places. */
+typedef struct gather_sums {
+    square_sum path, both, photons;
+    bias_sum bias;
+    double off, carried;
+} gather_sums;
+
+/* One of n places. */
+static void add_place(gather_sums *to, const gather_place *at, double weight, double n)
+{
+    double w = weight / n, half = 0.5 * w;
+    double paths = at->path[0] - at->path[1], maps = at->map[0] - at->map[1];
+    double same_way = at->map[0] - at->other;
+    square_add(&to->path, half * paths * paths);
+    square_add(&to->both, half * maps * maps);
+    square_add(&to->photons, half * same_way * same_way);
+    bias_add(&to->bias, w * (at->path[0] - at->map[0]) * (at->path[1] - at->map[1]));
+    to->off += off_maps(at) * sqrt(weight) / n;
+    to->carried += w * at->carried * at->carried;
+}
+
 /* Where neither path found the light that photons came from their difference tells
    nothing, but how far they are off the maps does: its mean, since its square is as much
-   at the mercy of one place as theirs. The bias of the plan's radii is smaller by the
-   square of how much fewer photons the maps have, and fewer places tell as much of it. */
+   at the mercy of one place as theirs. What all places see of a map may differ little by
+   chance, but what n photons carry is known no better than within an n-th of its square.
+ */
 static gather_errors errors_of(const gather_trial *t)
 {
-    square_sum path = {0}, both = {0}, photons = {0};
-    double mean = mean_of(t), bias2 = 0.0, off = 0.0;
-    for (uint32_t i = 0; i < t->n && mean > 0.0; i++) {
-        const gather_place *at = &t->places[i];
-        double weight = weight_of(at, mean), w = weight / t->n, half = 0.5 * w;
-        double paths = at->path[0] - at->path[1], maps = at->map[0] - at->map[1];
-        double same_way = at->map[0] - at->other;
-        off += off_maps(at) * sqrt(weight) / t->n;
-        square_add(&path, half * paths * paths);
-        square_add(&both, half * maps * maps);
-        square_add(&photons, half * same_way * same_way);
-        if (i < t->n_wider)
-            bias2 += w * (at->wider[0] - at->map[0]) * (at->wider[1] - at->map[1]);
-    }
+    gather_sums sums = {0};
+    double mean = mean_of(t);
+    for (uint32_t i = 0; i < t->n && mean > 0.0; i++)
+        add_place(&sums, &t->places[i], weight_of(&t->places[i], mean), t->n);
+    double photons = square_total(&sums.photons);
     return (gather_errors){
-        .path = fmax(square_total(&path), off * off),
-        .samples = fmax(square_total(&both) - square_total(&photons), 0.0),
-        .photons = square_total(&photons),
-        .bias2 = fmax(bias2, 0.0) * t->n / fmax(t->n_wider, 1.0) / (t->fewer * t->fewer),
+        .path = fmax(square_total(&sums.path), sums.off * sums.off),
+        .samples = fmax(square_total(&sums.both) - photons, 0.0),
+        .photons = fmax(photons, sums.carried / fmax(t->stored, 1.0)),
+        .bias2 = bias_square(&sums.bias, t),
     };
 }
 

@@ -2,7 +2,9 @@
 
 #include "transport/plan/work.h"
 
-/* A sample of plain path tracing through a place of the film: mean over wavelengths. */
+/* A sample of plain path tracing through a place of the film: mean over wavelengths.
+   Without what is seen of lamps: at their edges and through fog its noise is as bright as
+   they are, and nothing that is decided takes it away. */
 static double path_sample(const path_pass *pass, vec2 raster, sampler random,
                           transport_scratch *scratch)
 {
@@ -13,7 +15,8 @@ static double path_sample(const path_pass *pass, vec2 raster, sampler random,
     looked_around_forget(&scratch->estimate.looked);
     path_radiance(pass, &r, &random, scratch, &out);
     for (int i = 0; i < N_LAYERS; i++)
-        sum += out.layers[i];
+        if (i != LAYER_EMISSION)
+            sum += out.layers[i];
     return (double)spectrum_mean(sum);
 }
 
