@@ -62,18 +62,10 @@ static double seen(const photon_store *store, const float *radii, const ray *r,
     return sum;
 }
 
-static void test_against_the_sum(void)
+/* Rays through the map, of groups and as a whole. */
+static void compare_with_sum(const volume_map *map, const photon_store *store,
+                             const float *radii, medium m)
 {
-    static float radii[N_PHOTONS];
-    const float nm[] = {300, 900}, sigma_s[] = {0.4f, 3.0f};
-    photon_store store = {0}, taken = {0};
-    fill(&store, radii);
-    fill(&taken, radii);
-    medium m = {
-        .scale = 1, .g = 0.4f, .scattering = curve_tabulated(nm, sigma_s, 2, NULL)};
-    g_autoptr(GError) error = NULL;
-    volume_map *map = volume_map_build(&taken, radii, 2, &error);
-    g_assert_no_error(error);
     const wavelengths w = wavelengths_at(0.5f);
     const spectrum sigma_t = medium_extinction(&m, &w);
     disc_crossings scratch = {0};
@@ -99,7 +91,7 @@ static void test_against_the_sum(void)
         for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength += 3) {
             double whole = 0;
             for (uint32_t tag = 0; tag < 3; tag++) {
-                double is = seen(&store, radii, &r, &m, (double)query.length, wavelength,
+                double is = seen(store, radii, &r, &m, (double)query.length, wavelength,
                                  (double)sigma_t[wavelength], tag);
                 whole += is;
                 g_assert_cmpfloat(fabs((double)groups[tag][wavelength] - is), <,
@@ -115,6 +107,25 @@ static void test_against_the_sum(void)
     g_assert_cmpfloat(expected, >, 100);
     g_assert_cmpfloat(fabs(found / expected - 1), <, 1e-4);
     disc_crossings_clear(&scratch);
+}
+
+static void test_against_the_sum(void)
+{
+    static float radii[N_PHOTONS];
+    const float nm[] = {300, 900}, sigma_s[] = {0.4f, 3.0f};
+    photon_store store = {0}, taken = {0};
+    fill(&store, radii);
+    fill(&taken, radii);
+    medium m = {
+        .scale = 1, .g = 0.4f, .scattering = curve_tabulated(nm, sigma_s, 2, NULL)};
+    g_autoptr(GError) error = NULL;
+    volume_map *map = volume_map_build(&taken, radii, 2, &error);
+    g_assert_no_error(error);
+    compare_with_sum(map, &store, radii, m);
+    for (size_t i = 0; i < N_PHOTONS; i++)
+        radii[i] *= 1.5f;
+    g_assert_true(volume_map_widen(map, 1.5f, 2, &error));
+    compare_with_sum(map, &store, radii, m);
     volume_map_free(map);
     photon_store_clear(&store);
     curve_unref(m.scattering);
