@@ -1,9 +1,11 @@
 #!/bin/bash
 # Long renders: whether memory stays as it is after the first minute, and the picture goes on
-# getting better. Each of auto, sppm and vcm on each scene renders at a small size for so many
-# minutes; the picture of every eighth of it is compared in the end with a reference, rendered
-# by vcm with another seed for as long.
-# usage: soak.sh [--threads N] [--together] [--integrator NAME]... [--keep FOLDER] NEPHROID MINUTES [SCENE...]
+# getting better. Each of auto, sppm and vcm on each scene renders for so many minutes; the
+# picture of every eighth of it, or of 50 s, is compared in the end with a reference, rendered by vcm with
+# another seed for as long.
+# usage: soak.sh [--size WxH] [--threads N] [--together] [--integrator NAME]... [--keep FOLDER] NEPHROID MINUTES [SCENE...]
+#   --size WxH      of each picture (128x128; a huge page of 2 MiB is 5 % of what that takes, and
+#                   1 % at 512x512)
 #   --threads N     threads of each render (all processors')
 #   --together      all renders, and the references, at the same time
 #   --integrator    these in place of auto, sppm and vcm
@@ -13,9 +15,10 @@
 # it back), where the most it ever took grew by more than 1 % after the first minute, where a picture
 # was much worse than the one before, or the last not better than the first.
 set -u
-threads=0 together='' keep='' integrators=()
+size=128x128 threads=0 together='' keep='' integrators=()
 while [ $# -gt 0 ]; do
     case $1 in
+    --size) size=$2 && shift ;;
     --threads) threads=$2 && shift ;;
     --together) together=yes ;;
     --integrator) integrators+=("$2") && shift ;;
@@ -40,7 +43,7 @@ else
 fi
 
 render() { # SCENE FILE OPTION...; becomes the program, so that who begins it has its process
-    exec "$program" render "$1" -q --size 128x128 --threads "$threads" --time "$seconds" -o "$2" \
+    exec "$program" render "$1" -q --size "$size" --threads "$threads" --time "$seconds" -o "$2" \
         --set denoise=off "${@:3}"
 }
 
@@ -63,7 +66,7 @@ watch() {
 
 soak() { # SCENE INTEGRATOR FOLDER
     local every
-    every=$(awk -v s="$seconds" 'BEGIN { print s / 8 }')
+    every=$(awk -v s="$seconds" 'BEGIN { print s / 8 < 50 ? s / 8 : 50 }')
     render "$1" "$3/a.exr" --integrator "$2" --every "${every}s" &
     local job=$!
     watch "$job" "$3"
