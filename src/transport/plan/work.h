@@ -16,10 +16,10 @@
 
 #include "transport/transport.h"
 
-/** A share of the work asked for. All seven took 0.6 to 5.0 % of the processor's time
- * (the scenes of bench/equal_time, 32 x 32 and 128 x 128, 1 to 16 passes; most where
- * paths then do without photons) but for 5.9 of a picture that is there in 40 ms; with
- * 0.008 /spots loses its gain in a small picture with one seed. */
+/** A share of the work asked for. All seven took 0.2 to 4.8 % of the processor's time
+ * (thirteen scenes, those of bench/equal_time among them, 32 x 32 and 128 x 128, 1 to 16
+ * passes; most in pictures that are there in 10 ms); with 0.008 /spots loses its gain in
+ * a small picture with one seed. */
 #define TRIAL_SHARE 0.0085
 
 /** What a camera sample costs, in rays, before any is traced: as many as a path goes on
