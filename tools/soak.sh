@@ -1,8 +1,8 @@
 #!/bin/bash
 # Long renders: whether memory stays as it is after the first minute, and the picture goes on
 # getting better. Each of auto, sppm and vcm on each scene renders for so many minutes; the
-# picture of every eighth of it, or of 50 s, is compared in the end with a reference, rendered by vcm with
-# another seed for as long.
+# picture of every eighth of it, or of 50 s, is compared in the end with a reference,
+# rendered by vcm with another seed for as long.
 # usage: soak.sh [--size WxH] [--threads N] [--together] [--integrator NAME]... [--keep FOLDER] NEPHROID MINUTES [SCENE...]
 #   --size WxH      of each picture (128x128; a huge page of 2 MiB is 5 % of what that takes, and
 #                   1 % at 512x512)

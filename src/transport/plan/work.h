@@ -16,9 +16,9 @@
 
 #include "transport/transport.h"
 
-/** A share of the work asked for. All seven took 0.2 to 4.8 % of the processor's time
+/** A share of the work asked for. All seven took 0.3 to 4.3 % of the processor's time
  * (thirteen scenes, those of bench/equal_time among them, 32 x 32 and 128 x 128, 1 to 16
- * passes; most in pictures that are there in 10 ms); with 0.008 /spots loses its gain in
+ * passes); with 0.008 /spots loses its gain in
  * a small picture with one seed. */
 #define TRIAL_SHARE 0.0085
 
