@@ -3,37 +3,60 @@
 #include "base/memory.h"
 
 struct volume_map {
-    photon_store store;
+    photon_store owned; /* empty: they are another map's */
+    const photon_store *store;
     disc *discs;
     disc_set *set;
 };
 
-volume_map *volume_map_build(photon_store *store, const float *radii, unsigned threads,
-                             GError **error)
+/* Without what the discs are. NULL when memory is refused; what is owned is taken. */
+static volume_map *make(photon_store *owned, const photon_store *lent, GError **error)
 {
     volume_map *map = g_new0(volume_map, 1);
-    map->store = *store;
-    *store = (photon_store){0};
-    map->discs = big_alloc(map->store.n, sizeof *map->discs, "photons in media", error);
-    for (size_t i = 0; i < map->store.n && map->discs; i++) {
-        map->discs[i] =
-            (disc){map->store.x[i], map->store.y[i], map->store.z[i], radii[i]};
+    if (owned) {
+        map->owned = *owned;
+        *owned = (photon_store){0};
     }
+    map->store = lent ? lent : &map->owned;
+    map->discs = big_alloc(map->store->n, sizeof *map->discs, "photons in media", error);
     if (map->discs)
-        map->set = disc_set_build(map->discs, map->store.n, threads, error);
+        return map;
+    volume_map_free(map);
+    return NULL;
+}
+
+static volume_map *with_set(volume_map *map, unsigned threads, GError **error)
+{
+    map->set = disc_set_build(map->discs, map->store->n, threads, error);
     if (map->set)
         return map;
     volume_map_free(map);
     return NULL;
 }
 
-bool volume_map_widen(volume_map *map, float by, unsigned threads, GError **error)
+volume_map *volume_map_build(photon_store *store, const float *radii, unsigned threads,
+                             GError **error)
 {
-    disc_set_free(map->set);
-    for (size_t i = 0; i < map->store.n; i++)
-        map->discs[i].radius *= by;
-    map->set = disc_set_build(map->discs, map->store.n, threads, error);
-    return map->set != NULL;
+    volume_map *map = make(store, NULL, error);
+    if (!map)
+        return NULL;
+    const photon_store *s = map->store;
+    for (size_t i = 0; i < s->n; i++)
+        map->discs[i] = (disc){s->x[i], s->y[i], s->z[i], radii[i]};
+    return with_set(map, threads, error);
+}
+
+volume_map *volume_map_widened(const volume_map *map, float by, unsigned threads,
+                               GError **error)
+{
+    volume_map *wide = make(NULL, map->store, error);
+    if (!wide)
+        return NULL;
+    for (size_t i = 0; i < map->store->n; i++) {
+        wide->discs[i] = map->discs[i];
+        wide->discs[i].radius *= by;
+    }
+    return with_set(wide, threads, error);
 }
 
 void volume_map_free(volume_map *map)
@@ -42,18 +65,18 @@ void volume_map_free(volume_map *map)
         return;
     disc_set_free(map->set);
     big_free(map->discs);
-    photon_store_clear(&map->store);
+    photon_store_clear(&map->owned);
     g_free(map);
 }
 
 const photon_store *volume_map_store(const volume_map *map)
 {
-    return &map->store;
+    return map->store;
 }
 
 size_t volume_map_bytes(const volume_map *map)
 {
-    return photon_store_bytes(&map->store) + map->store.n * sizeof *map->discs;
+    return photon_store_bytes(&map->owned) + map->store->n * sizeof *map->discs;
 }
 
 /* e^(-σt t), in one go where all wavelengths have the same σt. */
@@ -75,7 +98,7 @@ spectrum volume_map_radiance(const volume_map *map, const volume_query *query,
                              bool *failed)
 {
     const medium *m = query->medium;
-    const photon_store *store = &map->store;
+    const photon_store *store = map->store;
     spectrum sum = {0}, sigma_t = medium_extinction(m, query->w);
     bool is_grey = all_alike(sigma_t);
     ray r = *query->ray;

@@ -26,9 +26,10 @@ typedef struct volume_map volume_map;
  *  @param radii m, one per photon, > 0 */
 volume_map *volume_map_build(photon_store *store, const float *radii, unsigned threads,
                              GError **error);
-/** @brief Makes all discs wider, that many times. ERROR_FAILED when memory is refused: the
- * map can then only be freed. */
-bool volume_map_widen(volume_map *map, float by, unsigned threads, GError **error);
+/** @brief A map of the same photons whose discs are wider, that many times; the photons
+ * stay those of map, which must outlive it. */
+volume_map *volume_map_widened(const volume_map *map, float by, unsigned threads,
+                               GError **error);
 void volume_map_free(volume_map *map);
 size_t volume_map_bytes(const volume_map *map); /**< memory kept, Embree's apart */
 const photon_store *volume_map_store(const volume_map *map);

@@ -1,28 +1,31 @@
 #include "transport/plan/gather.h"
 
 #include "transport/photonmap/photonmap.h"
+#include "transport/plan/trial.h"
 #include "transport/plan/work.h"
 #include "transport/visible.h"
 
 #include <math.h>
 
 /* Squared error that is alike in neighbouring pixels weighs as much as so many times that
-   of grain where noise is taken out. Of paths' grain that took 4.7 (glass and mirror
-   balls), 5.5 (papered), 8.4, 8.6 (24 lamps), 13 (glossy) and 14 (Cornell box) times as
-   much as of photon maps' error, 128 x 128, 4 passes, two seeds. Made with one of the two
-   throughout, pictures of 2 to 32 passes had 1.2 to 2.4 times as much time x relMSE by
-   maps in six rooms (Cornell box, glossy, papered, 24 lamps, a glass ball, water), .4 to
-   1.0 with glass and mirror balls, .3 to .5 by a lamp in a bulb of glass. Of 108 trials
-   in the six 22 chose maps with 8, 14 with 12. */
-#define BLOTCHES 12.0
+   of grain where noise is taken out, which leaves the maps' as it is: of paths' it left a
+   17th, 12th and 8th in a Cornell box, a 5th, 4th and 3rd in one with glass, a 15th, 11th
+   and 8th in a glossy one, a 7th in a papered one, a 7th to 9th by 24 lamps, a 15th to
+   7th by a glass ball, a 17th and 10th behind a prism, a 4th in water, a 3rd to 2nd
+   through a window and in a bulb of glass (128 x 128, 2, 4 and 16 passes). */
+#define BLOTCHES 8.0
+
+/* What maps blur below the size of their discs no map shows, and paths only when their
+   noise is gone. So much at least is its relative square, over that of the radius in
+   radii of the scene: .04 to .26 in five rooms (Cornell boxes without and with glass,
+   glossy, papered, a glass ball; 2 to 16 passes, 128 x 128). */
+#define UNSEEN_BIAS 0.1
 
 /* What two maps and two paths say of a place of the film. */
 typedef struct gather_place {
-    double path[2];
-    double map[2];    /* each with a sampler of its own */
-    double carried;   /* by photons, of map[0], at most */
-    double other;     /* of the second map, with the sampler of the first one */
-    double path_rays; /* of a path */
+    double path[2], smooth[2]; /* each with a sampler of its own */
+    double near[2], twice[2];  /* all with the first one */
+    double path_rays;          /* of a path */
     double all_rays;
 } gather_place;
 
@@ -31,8 +34,12 @@ typedef struct gather_trial {
     transport_plan plan; /* of photons, as it would be */
     transport_plan few[2];
     photonmap_pass *maps[2];
+    /* The same with wider discs: near and twice with area times as much of them and four
+       times that, smooth with fewer times, in which there are as many photons as in the
+       plan's. */
+    photonmap_pass *near[2], *twice[2], *smooth;
+    double area;
     double fewer;       /* photons than the plan's, over them */
-    double stored;      /* photons of a map */
     double photon_rays; /* of a whole pass */
     double first_rays;  /* of a pixel's first sample */
     double later_rays;  /* of another one, which shares the first one's looks */
@@ -55,8 +62,8 @@ typedef struct gather_errors {
     double path, samples, photons, bias2;
 } gather_errors;
 
-/* Samples of a place: by maps map[] and other, and two by paths. */
-enum { N_SAMPLES = 2 + 1 + 2 }; /* math: as many */
+/* Samples of a place: by maps, and by paths. */
+enum { N_SAMPLES = 6 + 2 }; /* math: as many */
 
 /* ---- Trial passes ---- */
 
@@ -119,27 +126,41 @@ static double n_photons(const transport_plan *plan)
     return n;
 }
 
-static bool widen_in_media(photonmap_pass *pass, double by, GError **error)
+static void free_widened(photonmap_pass *pass)
+{
+    for (int i = 0; pass && i < pass->n_slices; i++)
+        for (int c = 0; c < N_PHOTON_CLASSES; c++)
+            volume_map_free(pass->in_media[i][c]);
+    g_aligned_free(pass);
+}
+
+static bool widen_in_media(const photonmap_pass *pass, double by, photonmap_pass *out,
+                           GError **error)
 {
     unsigned threads = (unsigned)pass->how->threads;
     bool ok = true;
     for (int i = 0; i < pass->n_slices; i++)
-        for (int c = 0; c < N_PHOTON_CLASSES && ok; c++)
-            if (pass->in_media[i][c])
-                ok = volume_map_widen(pass->in_media[i][c], (float)by, threads, error);
+        for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+            volume_map **wide = &out->in_media[i][c];
+            if ((*wide = ok ? pass->in_media[i][c] : NULL)) {
+                *wide = volume_map_widened(*wide, (float)by, threads, error);
+                ok = *wide;
+            }
+        }
     return ok;
 }
 
-/* All radii of both maps. */
-static bool widen(gather_trial *t, double by, GError **error)
+/* A pass with wider radii, its photons lent. NULL: out of memory */
+static photonmap_pass *widened(const photonmap_pass *pass, double by, GError **error)
 {
-    for (int i = 0; i < 2; i++) {
-        for (int c = 0; c < N_PHOTON_CLASSES; c++)
-            t->maps[i]->estimates[c].radius *= (float)by;
-        if (!widen_in_media(t->maps[i], by, error))
-            return false;
-    }
-    return true;
+    photonmap_pass *out = g_aligned_alloc0(1, sizeof *out, 64);
+    *out = *pass;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        out->estimates[c].radius *= (float)by;
+    if (widen_in_media(pass, by, out, error))
+        return out;
+    free_widened(out);
+    return NULL;
 }
 
 /* A pass of few photons. */
@@ -159,8 +180,6 @@ static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError *
         return false;
     double rays = plan_rays_of_photons(&counts);
     t->photon_rays += 0.5 * rays * t->fewer;
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        t->stored += 0.5 * (double)counts.stored[c];
     plan_note_photons(&t->plan, rays - (double)counts.photon_rays,
                       (double)counts.photon_rays);
     return true;
@@ -168,50 +187,18 @@ static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError *
 
 /* ---- Trial samples ---- */
 
-typedef void radiance_function(const void *pass, const ray *r, sampler *random,
-                               transport_scratch *scratch, radiance_sample *out);
-
-/* The mean over wavelengths of layers among these bits. */
-static double mean_of_layers(const radiance_sample *sample, unsigned layers)
-{
-    spectrum sum = {0};
-    for (unsigned i = 0; i < N_LAYERS; i++)
-        if (layers >> i & 1)
-            sum += sample->layers[i];
-    double mean = (double)spectrum_mean(sum);
-    return isfinite(mean) ? mean : 0.0;
-}
-
-/* Of what is compared: not the caustics that either way are photons'. */
+/* What is compared: not the caustics that either way are photons'. */
 static unsigned compared_layers(const transport_plan *plan)
 {
-    const unsigned all = (1u << N_LAYERS) - 1;
-    return plan->n_photons[PHOTON_CAUSTIC] > 0 ? all & ~(1u << LAYER_CAUSTIC) : all;
+    return layers_without(plan->n_photons[PHOTON_CAUSTIC] > 0 ? 1u << LAYER_CAUSTIC : 0);
 }
 
-/* What is compared.
-   @param carried NULL, or gets what of it is neither a lamp nor its direct light */
 static double sample(radiance_function *radiance, const void *pass,
                      const transport_plan *plan, vec2 raster, sampler random,
-                     transport_scratch *scratch, double *carried)
+                     transport_scratch *scratch)
 {
-    radiance_sample out = {.groups = NULL};
-    vec2 u_lens = sampler_2d(&random);
-    ray r = camera_ray(&plan->view->camera, raster, u_lens, sampler_1d(&random));
-    unsigned layers = compared_layers(plan);
-    radiance(pass, &r, &random, scratch, &out);
-    if (carried)
-        *carried =
-            mean_of_layers(&out, layers & ~(1u << LAYER_EMISSION | 1u << LAYER_DIRECT));
-    return mean_of_layers(&out, layers);
-}
-
-/* A place of the film. */
-static vec2 raster_of(const transport_plan *plan, sampler *random)
-{
-    const film_settings *film = &plan->view->film;
-    vec2 u = sampler_2d(random);
-    return (vec2){u.x * (float)film->width, u.y * (float)film->height};
+    return trial_sample(radiance, pass, plan, raster, random, compared_layers(plan),
+                        scratch);
 }
 
 /* A second sample of the pixel. */
@@ -221,14 +208,13 @@ static double later_rays(const gather_task *all, vec2 raster, sampler random,
     double before = plan_rays_of(scratch);
     vec2 u = sampler_2d(&random);
     vec2 beside = {raster.x + u.x - 0.5f, raster.y + u.y - 0.5f};
-    sample(photonmap_radiance, all->trial->maps[0], all->plan, beside, random, scratch,
-           NULL);
+    sample(photonmap_radiance, all->trial->maps[0], all->plan, beside, random, scratch);
     return plan_rays_of(scratch) - before;
 }
 
-/* With the radii of the plan, before they are widened: discs that hold few photons now
-   will hold them then, and be looked around. Of few places: these differ less by that
-   than by what they bring. @return rays that it took */
+/* As if there were all photons: discs that hold few now will hold them then, and be
+   looked around. Of few places: these differ less by that than by what they bring.
+   @return rays that it took */
 static double find_price(const gather_task *all)
 {
     gather_trial *t = all->trial;
@@ -238,11 +224,11 @@ static double find_price(const gather_task *all)
         t->maps[0]->estimates[c].looks_anyway = true;
     for (uint32_t i = 0; i < n; i++) {
         sampler random = sampler_make(all->key, i);
-        vec2 raster = raster_of(all->plan, &random);
+        vec2 raster = trial_place(all->plan, &random);
         double before = plan_rays_of(&scratch);
         looked_around_forget(&scratch.estimate.looked);
         sample(photonmap_radiance, t->maps[0], all->plan, raster,
-               sampler_split(&random, 0), &scratch, NULL);
+               sampler_split(&random, 0), &scratch);
         t->first_rays += (plan_rays_of(&scratch) - before) / n;
         if (all->plan->how.spp > 1)
             t->later_rays +=
@@ -255,28 +241,30 @@ static double find_price(const gather_task *all)
     return took;
 }
 
-/* Asks both maps at a place, where what is looked at for the first counts for all, and
-   paths, which look for edges anew. */
-static void ask_maps(const gather_task *all, uint32_t i, transport_scratch *scratch)
+/* Asks at a place. What is looked at for one map counts for all; paths look for edges
+   anew. */
+static void ask(const gather_task *all, uint32_t i, transport_scratch *scratch)
 {
     const gather_trial *t = all->trial;
     const transport_plan *plan = all->plan;
     gather_place *at = &t->places[i];
     sampler random = sampler_make(all->key, i);
-    vec2 raster = raster_of(plan, &random);
+    const vec2 raster = trial_place(plan, &random);
+    const sampler one = sampler_split(&random, 0), two = sampler_split(&random, 1);
     double before = plan_rays_of(scratch);
     looked_around_forget(&scratch->estimate.looked);
-    at->map[0] = sample(photonmap_radiance, t->maps[0], plan, raster,
-                        sampler_split(&random, 0), scratch, &at->carried);
-    at->map[1] = sample(photonmap_radiance, t->maps[1], plan, raster,
-                        sampler_split(&random, 1), scratch, NULL);
-    at->other = sample(photonmap_radiance, t->maps[1], plan, raster,
-                       sampler_split(&random, 0), scratch, NULL);
+    at->smooth[0] = sample(photonmap_radiance, t->smooth, plan, raster, one, scratch);
+    at->smooth[1] = sample(photonmap_radiance, t->smooth, plan, raster, two, scratch);
+    for (int k = 0; k < 2; k++) {
+        const photonmap_pass *near = t->near[k], *twice = t->twice[k];
+        at->near[k] = sample(photonmap_radiance, near, plan, raster, one, scratch);
+        at->twice[k] = sample(photonmap_radiance, twice, plan, raster, one, scratch);
+    }
     double between = plan_rays_of(scratch);
-    for (unsigned k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; k++) {
         looked_around_forget(&scratch->estimate.looked);
-        at->path[k] = sample(path_radiance, all->paths, plan, raster,
-                             sampler_split(&random, k), scratch, NULL);
+        at->path[k] =
+            sample(path_radiance, all->paths, plan, raster, k ? two : one, scratch);
     }
     double after = plan_rays_of(scratch);
     at->path_rays = 0.5 * (after - between);
@@ -289,7 +277,7 @@ static void ask_some(size_t begin, size_t end, unsigned thread, void *data)
     const gather_task *all = data;
     transport_scratch scratch = {0};
     for (size_t i = begin; i < end; i++)
-        ask_maps(all, all->first + (uint32_t)i, &scratch);
+        ask(all, all->first + (uint32_t)i, &scratch);
     transport_scratch_clear(&scratch);
 }
 
@@ -310,6 +298,19 @@ static void sum_rays(gather_trial *t, transport_plan *plan)
     }
 }
 
+static bool widen_all(gather_trial *t, GError **error)
+{
+    t->area = sqrt(t->fewer);
+    t->smooth = widened(t->maps[0], sqrt(t->fewer), error);
+    bool ok = t->smooth;
+    for (int i = 0; i < 2 && ok; i++) {
+        t->near[i] = widened(t->maps[i], sqrt(t->area), error);
+        t->twice[i] = t->near[i] ? widened(t->near[i], 2.0, error) : NULL;
+        ok = t->twice[i];
+    }
+    return ok;
+}
+
 static bool run_places(gather_trial *t, transport_plan *plan, const path_pass *paths,
                        const cancel_flag *cancel, GError **error)
 {
@@ -318,7 +319,7 @@ static bool run_places(gather_trial *t, transport_plan *plan, const path_pass *p
     gather_task task = {t, plan, paths, key, 0};
     t->places = g_new0(gather_place, MOST_PLACES);
     plan->planning += find_price(&task);
-    if (!widen(t, sqrt(t->fewer), error))
+    if (!widen_all(t, error))
         return false;
     ask_some(0, LEAST_TRIALS, 0, &task);
     t->n = count_places(t, plan);
@@ -338,10 +339,15 @@ static double rays_of_sample(const transport_plan *plan, const gather_trial *t)
 
 /* ---- What they say ---- */
 
+static double brightness(const gather_place *at)
+{
+    return (at->smooth[0] + at->smooth[1]) / 2.0;
+}
+
 /* A place counts by how bright it is, and the picture is. */
 static double weight_of(const gather_place *at, double mean)
 {
-    double here = (at->map[0] + at->map[1]) / 2.0;
+    double here = brightness(at);
     return 1.0 / (here * here + mean * mean);
 }
 
@@ -349,7 +355,7 @@ static double mean_of(const gather_trial *t)
 {
     double sum = 0.0;
     for (uint32_t i = 0; i < t->n; i++)
-        sum += (t->places[i].map[0] + t->places[i].map[1]) / 2.0;
+        sum += brightness(&t->places[i]);
     return sum / t->n;
 }
 
@@ -374,15 +380,14 @@ static double square_total(const square_sum *of)
     return of->sum - of->loudest + of->second;
 }
 
-/* How far both paths are from what the maps see. */
+/* How far both paths are from what the map sees. */
 static double off_maps(const gather_place *at)
 {
-    double seen = (at->map[0] + at->map[1]) / 2.0;
+    double seen = brightness(at);
     return (fabs(at->path[0] - seen) + fabs(at->path[1] - seen)) / 2.0;
 }
 
-/* How far maps are off what paths find, as products of two pairs tell that have nothing
-   in common. */
+/* How far maps are off, as products tell of two of them that have nothing in common. */
 typedef struct bias_sum {
     double products, squares;
 } bias_sum;
@@ -393,53 +398,52 @@ static void bias_add(bias_sum *to, double product)
     to->squares += product * product;
 }
 
-/* The square of the plan's bias, as far as it is known from chance. The plan's radii are
-   smaller, and the bias with their square; but near the rim of a medium, where a disc
-   is in it in part, with the radius. */
-static double bias_square(const bias_sum *of, const gather_trial *t)
+/* As far as it is known from chance. */
+static double seen_bias(const bias_sum *of)
 {
-    double grows = scene_has_media(t->plan.scene) ? t->fewer : t->fewer * t->fewer;
-    return fmax(of->products - sqrt(of->squares), 0.0) / grows;
+    return fmax(of->products - sqrt(of->squares), 0.0);
+}
+
+static double unseen_bias(const transport_plan *plan)
+{
+    double share = plan->radius[PHOTON_INDIRECT] / (double)plan->scene->radius;
+    return UNSEEN_BIAS * share * share;
 }
 
 /* Sums over the places. */
 typedef struct gather_sums {
-    square_sum path, both, photons;
+    square_sum path, sample, photons;
     bias_sum bias;
-    double off, carried;
+    double off;
 } gather_sums;
 
 /* One of n places. */
 static void add_place(gather_sums *to, const gather_place *at, double weight, double n)
 {
     double w = weight / n, half = 0.5 * w;
-    double paths = at->path[0] - at->path[1], maps = at->map[0] - at->map[1];
-    double same_way = at->map[0] - at->other;
+    double paths = at->path[0] - at->path[1], photons = at->near[0] - at->near[1];
+    double samples = at->smooth[0] - at->smooth[1];
     square_add(&to->path, half * paths * paths);
-    square_add(&to->both, half * maps * maps);
-    square_add(&to->photons, half * same_way * same_way);
-    bias_add(&to->bias, w * (at->path[0] - at->map[0]) * (at->path[1] - at->map[1]));
+    square_add(&to->sample, half * samples * samples);
+    square_add(&to->photons, half * photons * photons);
+    bias_add(&to->bias, w * (at->twice[0] - at->near[0]) * (at->twice[1] - at->near[1]));
     to->off += off_maps(at) * sqrt(weight) / n;
-    to->carried += w * at->carried * at->carried;
 }
 
 /* Where neither path found the light that photons came from their difference tells
    nothing, but how far they are off the maps does: its mean, since its square is as much
-   at the mercy of one place as theirs. What all places see of a map may differ little by
-   chance, but what n photons carry is known no better than within an n-th of its square.
- */
+   at the mercy of one place as theirs. Fewer photons have as many times the variance. */
 static gather_errors errors_of(const gather_trial *t)
 {
     gather_sums sums = {0};
     double mean = mean_of(t);
     for (uint32_t i = 0; i < t->n && mean > 0.0; i++)
         add_place(&sums, &t->places[i], weight_of(&t->places[i], mean), t->n);
-    double photons = square_total(&sums.photons);
     return (gather_errors){
         .path = fmax(square_total(&sums.path), sums.off * sums.off),
-        .samples = fmax(square_total(&sums.both) - photons, 0.0),
-        .photons = fmax(photons, sums.carried / fmax(t->stored, 1.0)),
-        .bias2 = bias_square(&sums.bias, t),
+        .samples = square_total(&sums.sample),
+        .photons = square_total(&sums.photons) * t->area / t->fewer,
+        .bias2 = seen_bias(&sums.bias) / t->area + unseen_bias(&t->plan),
     };
 }
 
@@ -517,9 +521,13 @@ static void take(transport_plan *plan, gather_trial *t)
 
 static void gather_trial_clear(gather_trial *t)
 {
-    for (int i = 0; i < 2; i++)
+    free_widened(t->smooth);
+    for (int i = 0; i < 2; i++) {
+        free_widened(t->near[i]);
+        free_widened(t->twice[i]);
         if (t->maps[i])
             transport_photonmap.end_pass(t->maps[i]);
+    }
     free_radii(&t->plan);
     g_free(t->places);
 }

@@ -3,14 +3,19 @@
  * surface that scatters it, in place of following the path on.
  *
  * Photons are smooth and blurred, paths sharp and noisy. Both are tried on the same
- * places of the film: pairs of paths tell the variance of one; pairs of maps with photons
- * of their own tell how much of a gather is noise; and what a wider radius changes, in
- * both maps alike, tells the bias that is left (of second order in the radius, so that
- * what r -> sqrt(2) r adds is about what r itself has). From these follows the squared
- * error of a picture of all the passes that are planned: the paths' falls as 1 / passes,
- * the photons' more slowly, since radii shrink (Knaus & Zwicker 2011). So a quick picture
- * is the photons' and one that is given its time the paths', and either goes to the
- * truth.
+ * places of the film. Pairs of paths tell the variance of one. Pairs of maps, of few
+ * photons each, tell how much of a gather is noise and, by what discs of twice the radius
+ * change in both alike, how much is blur. Discs that hold as many of the few photons as
+ * the plan's hold of all would reach from wall to wall, those of the plan would be empty:
+ * so these have the mean of both, in powers of the radius, and what they find is brought
+ * to the plan's by area. By that noise falls; and blur's square rises, for it goes with
+ * the radius at an edge, with its square at the rim of a medium, with its fourth power
+ * where light is smooth.
+ *
+ * From these follows the squared error of a picture of all the passes that are planned:
+ * the paths' falls as 1 / passes, the photons' more slowly, since radii shrink (Knaus &
+ * Zwicker 2011). So a quick picture is the photons' and one that is given its time the
+ * paths', and either goes to the truth.
  */
 #pragma once
 

@@ -1,26 +1,20 @@
 #include "transport/plan/path_trial.h"
 
+#include "transport/plan/trial.h"
 #include "transport/plan/work.h"
 
-/* A sample of plain path tracing through a place of the film: mean over wavelengths.
-   Without what is seen of lamps: at their edges and through fog its noise is as bright as
-   they are, and nothing that is decided takes it away. */
+/* A sample of plain path tracing. */
 static double path_sample(const path_pass *pass, vec2 raster, sampler random,
                           transport_scratch *scratch)
 {
-    radiance_sample out = {.groups = NULL};
-    spectrum sum = {0};
-    vec2 u_lens = sampler_2d(&random);
-    ray r = camera_ray(&pass->plan->view->camera, raster, u_lens, sampler_1d(&random));
     looked_around_forget(&scratch->estimate.looked);
-    path_radiance(pass, &r, &random, scratch, &out);
-    for (int i = 0; i < N_LAYERS; i++)
-        if (i != LAYER_EMISSION)
-            sum += out.layers[i];
-    return (double)spectrum_mean(sum);
+    return trial_sample(path_radiance, pass, pass->plan, raster, random,
+                        layers_without(0), scratch);
 }
 
-/* Pairs of samples at random places, and what is noted meanwhile: all by pieces of
+/* Pairs of samples at random places, without the lights that are seen: at their edges and
+   through fog noise is as bright as they are, and nothing that is decided takes it away.
+   And what is noted meanwhile: all by pieces of
    LEAST_TRIALS of them, so that any number of threads finds the same. */
 typedef struct pair_trial {
     const path_pass *pass;
@@ -44,13 +38,11 @@ typedef struct pair_result {
 static double variance_of_pair(const path_pass *pass, uint64_t key, size_t i,
                                transport_scratch *scratch)
 {
-    const film_settings *film = &pass->plan->view->film;
     sampler random = sampler_make(key, i);
-    vec2 u = sampler_2d(&random);
-    vec2 raster = {u.x * (float)film->width, u.y * (float)film->height};
+    vec2 raster = trial_place(pass->plan, &random);
     double a = path_sample(pass, raster, sampler_split(&random, 0), scratch);
     double b = path_sample(pass, raster, sampler_split(&random, 1), scratch);
-    return isfinite(a + b) ? 0.5 * (a - b) * (a - b) : 0.0;
+    return 0.5 * (a - b) * (a - b);
 }
 
 static void try_pairs(size_t begin, size_t end, unsigned thread, void *data)
@@ -60,6 +52,7 @@ static void try_pairs(size_t begin, size_t end, unsigned thread, void *data)
     pair_piece *piece = &all->pieces[begin / LEAST_TRIALS];
     path_pass pass = *all->pass;
     transport_scratch scratch = {0};
+    pass.without_lights = true;
     if (pass.lit)
         pass.lit = piece->lit = g_array_new(FALSE, FALSE, sizeof(lit_place));
     if (pass.trial)

@@ -1,0 +1,26 @@
+#include "transport/plan/trial.h"
+
+#include <math.h>
+
+vec2 trial_place(const transport_plan *plan, sampler *random)
+{
+    const film_settings *film = &plan->view->film;
+    vec2 u = sampler_2d(random);
+    return (vec2){u.x * (float)film->width, u.y * (float)film->height};
+}
+
+double trial_sample(radiance_function *radiance, const void *pass,
+                    const transport_plan *plan, vec2 raster, sampler random,
+                    unsigned layers, transport_scratch *scratch)
+{
+    radiance_sample out = {.groups = NULL};
+    spectrum sum = {0};
+    vec2 u_lens = sampler_2d(&random);
+    ray r = camera_ray(&plan->view->camera, raster, u_lens, sampler_1d(&random));
+    radiance(pass, &r, &random, scratch, &out);
+    for (unsigned i = 0; i < N_LAYERS; i++)
+        if (layers >> i & 1)
+            sum += out.layers[i];
+    double mean = (double)spectrum_mean(sum);
+    return isfinite(mean) ? mean : 0.0;
+}
