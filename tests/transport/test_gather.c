@@ -13,6 +13,16 @@
 #define ROOM_OF(size) ROOM_CAMERA SIZE(size) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS
 #define OPEN_OF(size) ROOM_CAMERA SIZE(size) "WorldBegin\n" FLOOR
 
+/* A lamp in a bulb of glass, in sight, is all that lights the room. */
+#define BULB                                                                             \
+    ROOM_CAMERA SIZE(                                                                    \
+        128) "WorldBegin\n" ROOM_WALLS "AttributeBegin Translate 0 1 1.5\n"              \
+             "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [60 60 60]\n"         \
+             "Shape \"sphere\" \"float radius\" 0.08 AttributeEnd\n"                     \
+             "Material \"dielectric\" \"float eta\" 1.5 Shape \"sphere\" \"float "       \
+             "radius\" 0.2\n"                                                            \
+             "ReverseOrientation Shape \"sphere\" \"float radius\" 0.18 AttributeEnd\n"
+
 typedef struct choice {
     const char *name, *text, *words;
     bool gathers;
@@ -41,6 +51,40 @@ static void test_chosen(gconstpointer data)
     g_assert_true((plan.photons[PHOTON_INDIRECT] > 0) == of->gathers);
 }
 
+/* ---- Whatever the seed ---- */
+
+enum { N_SEEDS = 6 };
+
+static void plan_of(const view *v, const char *words, int seed, render_plan *out)
+{
+    g_autofree char *all = g_strdup_printf("%s seed=%d", words, seed);
+    g_autoptr(render) r = render_of(v, all);
+    g_assert_true(render_get_plan(r, out, NULL));
+}
+
+/* Squared error of gathering, as its trial tells. */
+static double told_error(const render_plan *plan)
+{
+    for (int i = 0; i < plan->n_trials; i++)
+        if (strcmp(plan->trials[i].what, "gathered indirect light") == 0)
+            return plan->trials[i].with.variance;
+    g_assert_not_reached();
+}
+
+/* A lamp that its bulb mirrors is seen by one path of a pair: that says nothing of what
+   caustic photons are worth, of which all light here is. */
+static void test_bulb(void)
+{
+    g_autoptr(view) v = view_of(BULB);
+    for (int seed = 0; seed < N_SEEDS; seed++) {
+        render_plan plan;
+        plan_of(v, "integrator=auto spp=4 passes=2 denoise=on", seed, &plan);
+        g_assert_true(plan.photons[PHOTON_CAUSTIC] > 0);
+    }
+}
+
+/* ---- What it is worth ---- */
+
 enum { SIDE = 128, BLOCK = 8 };
 
 static double pixel(const image *img, int x, int y, int c)
@@ -61,6 +105,26 @@ static double noise_of(const image *a, const image *b)
         }
     }
     return sum / (SIDE * SIDE);
+}
+
+/* What few photons tell is what pictures have, noise, and blur at least as much as not.
+ */
+static void test_told(void)
+{
+    const char *words = "integrator=auto spp=4 passes=4 denoise=off";
+    g_autoptr(view) v = view_of(ROOM_OF(128));
+    g_autoptr(image) a = render_with(v, words), b = NULL;
+    g_autofree char *again = g_strconcat(words, " seed=7", NULL);
+    b = render_with(v, again);
+    double noise = 16.0 * noise_of(a, b);
+    for (int seed = 0; seed < N_SEEDS; seed++) {
+        render_plan plan;
+        plan_of(v, words, seed, &plan);
+        double told = told_error(&plan);
+        g_test_message("seed %d: told %g, noise %g", seed, told, noise);
+        g_assert_cmpfloat(told, >, noise);
+        g_assert_cmpfloat(told, <, 2.5 * noise);
+    }
 }
 
 /* Noise times rays, planning included. */
@@ -126,6 +190,8 @@ int main(int argc, char **argv)
         g_autofree char *path = g_strdup_printf("/gather/chosen/%s", choices[i].name);
         g_test_add_data_func(path, &choices[i], test_chosen);
     }
+    g_test_add_func("/gather/told", test_told);
+    g_test_add_func("/gather/bulb", test_bulb);
     g_test_add_data_func("/gather/pays/room", ROOM_OF(128), test_pays);
     g_test_add_data_func("/gather/pays/glass", ROOM_OF(128) GLASS_BALL, test_pays);
     g_test_add_func("/gather/converges", test_converges);
