@@ -111,18 +111,23 @@ static bool phong_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned 
     return out->pdf > 0.0f;
 }
 
-/* ∫ of the highlight, by the midpoints of its own sampling. */
+/* ∫ of the highlight, by the midpoints of its own sampling: normals of some elevations,
+   each turned around by odd eighths of a half circle. */
 static float highlight_albedo(const phong *p, vec3 o)
 {
     enum { N = 8 };
+    const float c = 0.92387953f, s = 0.38268343f; /* of π/8 */
+    const float x[N] = {c, s, -s, -c, -c, -s, s, c}, y[N] = {s, c, c, s, -s, -c, -c, -s};
     float sum = 0.0f, n = p->exponent;
-    for (int k = 0; k < N * N; k++) {
-        vec2 u = {((float)(k / N) + 0.5f) / N, ((float)(k % N) + 0.5f) / N};
-        vec3 h = sample_half(n, u), i = reflect3(o, h);
-        if (i[2] > 0.0f && dot3(o, h) > 0.0f)
-            sum += p->factor * i[2] * 8.0f * PI_F * dot3(o, h) / (n + 1.0f);
+    for (int i = 0; i < N; i++) {
+        vec3 at = sample_half(n, (vec2){((float)i + 0.5f) / N, 0.0f});
+        for (int k = 0; k < N; k++) {
+            vec3 h = vec3_make(at[0] * x[k], at[0] * y[k], at[2]);
+            float out = reflect3(o, h)[2], up = dot3(o, h);
+            sum += out > 0.0f && up > 0.0f ? out * up : 0.0f;
+        }
     }
-    return sum / (N * N);
+    return sum * p->factor * 8.0f * PI_F / ((n + 1.0f) * N * N);
 }
 
 static spectrum phong_albedo(const bsdf *b, vec3 wo, unsigned lobes)
