@@ -22,10 +22,18 @@ static float left_by_photons(const path_walk *walk, const camera_path *path,
     return 1.0f - caustic_mis_weight(&walk->pass->caustics->mis, &end);
 }
 
+/* Straight, or by specular bounces alone since the last glossy one. */
+static bool sees_light(const camera_path *path)
+{
+    return path->n_diffuse == 0 && !(path->pdf > 0.0f);
+}
+
 static void meet_light(void *data, const met_light *met)
 {
     path_walk *walk = data;
     const camera_path *path = &walk->path;
+    if (walk->pass->without_lights && sees_light(path))
+        return;
     const scattered_from from = {path->from, path->pdf, path->every_light};
     float weight =
         direct_met_weight(walk->scene, walk->how, &from, path->at.ray.direction, met) *

@@ -26,7 +26,7 @@ typedef struct path_pass {
     bool without_caustics; /**< to measure with: light by way of a specular or glossy
                               bounce to a diffuse surface is left out */
     bool without_lights;   /**< to measure with: lights that are seen, also in mirrors and
-                              through glass, are left out */
+                              through clear glass, are left out */
 } path_pass;
 
 /** @brief Traces one camera path through a path_pass (transport_kind.radiance). */

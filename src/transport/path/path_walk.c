@@ -41,16 +41,10 @@ bool path_photons_share(const path_walk *walk, const camera_path *path)
     return walk->pass->caustics && path_is_caustic(path);
 }
 
-static bool is_left_out(const path_pass *pass, const camera_path *path)
-{
-    return (pass->without_caustics && path_is_caustic(path)) ||
-           (pass->without_lights && path->n_diffuse == 0);
-}
-
 static bool add(path_walk *walk, const camera_path *path, spectrum radiance)
 {
     spectrum value = path->at.throughput * radiance;
-    if (is_left_out(walk->pass, path))
+    if (walk->pass->without_caustics && path_is_caustic(path))
         return false;
     if (!spectrum_is_finite(value)) {
         walk->scratch->n_not_finite++;
