@@ -13,7 +13,7 @@
    and 8th in a glossy one, a 7th in a papered one, a 7th to 9th by 24 lamps, a 15th to
    7th by a glass ball, a 17th and 10th behind a prism, a 4th in water, a 3rd to 2nd
    through a window and in a bulb of glass (128 x 128, 2, 4 and 16 passes). With 8, maps
-   were chosen in 13 of 30 trials in the papered one and by the lamps, and took 1.2 to 1.5
+   were chosen in 10 of 30 trials in the papered one and by the lamps, and took 1.2 to 1.5
    times as long as paths; with 16 in 7 of 15 in fog, in place of 11. */
 #define BLOTCHES 12.0
 
