@@ -12,10 +12,11 @@
    17th, 12th and 8th in a Cornell box, a 5th, 4th and 3rd in one with glass, a 15th, 11th
    and 8th in a glossy one, a 7th in a papered one, a 7th to 9th by 24 lamps, a 15th to
    7th by a glass ball, a 17th and 10th behind a prism, a 4th in water, a 3rd to 2nd
-   through a window and in a bulb of glass (128 x 128, 2, 4 and 16 passes). With 8, maps
-   were chosen in 10 of 30 trials in the papered one and by the lamps, and took 1.2 to 1.5
-   times as long as paths; with 16 in 7 of 15 in fog, in place of 11. */
-#define BLOTCHES 12.0
+   through a window and in a bulb of glass (128 x 128, 2, 4 and 16 passes). With 8
+   and 12, maps were chosen in 10 and 6 of 30 trials in the papered one and by the lamps,
+   and took 1.2 to 1.5 times as long as paths, with 16 in 2; in fog, where they are worth
+   as much as paths or more, in 14, 11 and 7 of 15. */
+#define BLOTCHES 16.0
 
 /* What maps blur below the size of their discs no map shows, and paths only when their
    noise is gone. So much at least is its relative square, over that of the radius in
