@@ -190,18 +190,13 @@ static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError *
 
 /* ---- Trial samples ---- */
 
-/* What is compared: not the caustics that either way are photons'. */
-static unsigned compared_layers(const transport_plan *plan)
-{
-    return layers_without(plan->n_photons[PHOTON_CAUSTIC] > 0 ? 1u << LAYER_CAUSTIC : 0);
-}
-
+/* Not of the caustics that either way are photons'. */
 static double sample(radiance_function *radiance, const void *pass,
                      const transport_plan *plan, vec2 raster, sampler random,
                      transport_scratch *scratch)
 {
-    return trial_sample(radiance, pass, plan, raster, random, compared_layers(plan),
-                        scratch);
+    unsigned without = plan->n_photons[PHOTON_CAUSTIC] > 0 ? 1u << LAYER_CAUSTIC : 0;
+    return trial_sample(radiance, pass, plan, raster, random, without, scratch);
 }
 
 /* A second sample of the pixel. */
@@ -384,7 +379,7 @@ static double square_total(const square_sum *of)
 }
 
 /* How far both paths are from what the map sees. */
-static double off_maps(const gather_place *at)
+static double off_map(const gather_place *at)
 {
     double seen = brightness(at);
     return (fabs(at->path[0] - seen) + fabs(at->path[1] - seen)) / 2.0;
@@ -430,11 +425,11 @@ static void add_place(gather_sums *to, const gather_place *at, double weight, do
     square_add(&to->sample, half * samples * samples);
     square_add(&to->photons, half * photons * photons);
     bias_add(&to->bias, w * (at->twice[0] - at->near[0]) * (at->twice[1] - at->near[1]));
-    to->off += off_maps(at) * sqrt(weight) / n;
+    to->off += off_map(at) * sqrt(weight) / n;
 }
 
 /* Where neither path found the light that photons came from their difference tells
-   nothing, but how far they are off the maps does: its mean, since its square is as much
+   nothing, but how far they are off the map does: its mean, since its square is as much
    at the mercy of one place as theirs. Fewer photons have as many times the variance. */
 static gather_errors errors_of(const gather_trial *t)
 {

@@ -8,14 +8,13 @@ static double path_sample(const path_pass *pass, vec2 raster, sampler random,
                           transport_scratch *scratch)
 {
     looked_around_forget(&scratch->estimate.looked);
-    return trial_sample(path_radiance, pass, pass->plan, raster, random,
-                        layers_without(0), scratch);
+    return trial_sample(path_radiance, pass, pass->plan, raster, random, 0, scratch);
 }
 
 /* Pairs of samples at random places, without the lights that are seen: at their edges and
    through fog noise is as bright as they are, and nothing that is decided takes it away.
-   And what is noted meanwhile: all by pieces of
-   LEAST_TRIALS of them, so that any number of threads finds the same. */
+   And what is noted meanwhile: all by pieces of LEAST_TRIALS of them, so that any number
+   of threads finds the same. */
 typedef struct pair_trial {
     const path_pass *pass;
     uint64_t key;

@@ -11,7 +11,7 @@ vec2 trial_place(const transport_plan *plan, sampler *random)
 
 double trial_sample(radiance_function *radiance, const void *pass,
                     const transport_plan *plan, vec2 raster, sampler random,
-                    unsigned layers, transport_scratch *scratch)
+                    unsigned without, transport_scratch *scratch)
 {
     radiance_sample out = {.groups = NULL};
     spectrum sum = {0};
@@ -19,7 +19,7 @@ double trial_sample(radiance_function *radiance, const void *pass,
     ray r = camera_ray(&plan->view->camera, raster, u_lens, sampler_1d(&random));
     radiance(pass, &r, &random, scratch, &out);
     for (unsigned i = 0; i < N_LAYERS; i++)
-        if (layers >> i & 1)
+        if (!(without >> i & 1))
             sum += out.layers[i];
     double mean = (double)spectrum_mean(sum);
     return isfinite(mean) ? mean : 0.0;

@@ -10,18 +10,12 @@
 typedef void radiance_function(const void *pass, const ray *r, sampler *random,
                                transport_scratch *scratch, radiance_sample *out);
 
-/** @brief All layers but those given, as bits 1 << layer. */
-static inline unsigned layers_without(unsigned bits)
-{
-    return ((1u << N_LAYERS) - 1) & ~bits;
-}
-
 /** @brief A place of the film, anywhere. @return pixels from its corner */
 vec2 trial_place(const transport_plan *plan, sampler *random);
 
-/** @brief Light through that place: the mean over wavelengths of some layers together,
+/** @brief Light through that place: the mean over wavelengths of its layers together,
  * W m⁻² sr⁻¹ nm⁻¹; 0 where it is not finite.
- *  @param layers bits 1 << layer */
+ *  @param without layers that are left out, bits 1 << layer */
 double trial_sample(radiance_function *radiance, const void *pass,
                     const transport_plan *plan, vec2 raster, sampler random,
-                    unsigned layers, transport_scratch *scratch);
+                    unsigned without, transport_scratch *scratch);

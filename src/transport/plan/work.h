@@ -18,8 +18,7 @@
 
 /** A share of the work asked for. All seven took 0.3 to 4.3 % of the processor's time
  * (thirteen scenes, those of bench/equal_time among them, 32 x 32 and 128 x 128, 1 to 16
- * passes); with 0.008 /spots loses its gain in
- * a small picture with one seed. */
+ * passes); with 0.008 /spots loses its gain in a small picture with one seed. */
 #define TRIAL_SHARE 0.0085
 
 /** What a camera sample costs, in rays, before any is traced: as many as a path goes on
