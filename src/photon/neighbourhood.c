@@ -2,6 +2,7 @@
 
 #include "math/sampler.h"
 #include "photon/photon_query.h"
+#include "scene/advance.h"
 
 #include <string.h>
 
@@ -66,7 +67,7 @@ static vec3 lifted(const neighbourhood *hood, vec3 p)
 static bool look(neighbourhood *hood, const ray *r, surface_hit *hit)
 {
     hood->n_looks++;
-    return scene_intersect(hood->scene, r, hit);
+    return scene_meet_surface(hood->scene, *r, hit);
 }
 
 /* True if what a ray met is not turned away from the disc, as photons are told apart. */

@@ -65,6 +65,20 @@ bool scene_scatterer(const scene *s, const surface_hit *hit, const wavelengths *
     return true;
 }
 
+bool scene_meet_surface(const scene *s, ray r, surface_hit *hit)
+{
+    float way = 0.0f;
+    for (int i = 0; i < MOST_CROSSINGS && scene_intersect(s, &r, hit); i++) {
+        if (hit->material != NO_INDEX) {
+            hit->t += way;
+            return true;
+        }
+        way += hit->t;
+        go_behind(&r, hit);
+    }
+    return false;
+}
+
 bool scene_cross(const scene *s, ray *r, surface_hit *hit)
 {
     if (!scene_intersect_solid(s, r, hit))

@@ -101,8 +101,10 @@ static void test_one_depth(void)
     "Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n"
 
 /* What scatters is the same and in the same places, so the random numbers are too; but
-   behind a pane a ray is rounded, and a few of them come out elsewhere. */
+   behind a pane a ray is rounded, and a few of them come out elsewhere. Looks for edges
+   are turned by the last digits of where they are: they are others there. */
 #define ROUNDED 1e-4
+#define LOOKED 1e-3
 
 static double mean_with(const view *v, const char *words, int limit)
 {
@@ -116,28 +118,39 @@ static double mean_with(const view *v, const char *words, int limit)
 
 static void test_interfaces_are_none(void)
 {
-    static const char *const each[] = {
-        "integrator=path passes=1 spp=16",
-        "integrator=auto passes=1 spp=8 caustic_photons=2000 radius=.4",
-        "integrator=photonmap passes=1 spp=4 photons=4000 radius=.4 edges=false",
-        "integrator=photonmap passes=1 spp=4 photons=4000 radius=.4 edges=false "
-        "final_gather=on gather_rays=8 precompute_radiance=off",
-        "integrator=photonmap passes=1 spp=4 photons=4000 radius=.4 edges=false "
-        "final_gather=on gather_rays=8",
-        "integrator=photonmap passes=1 spp=4 photons=4000 radius=.4 edges=false "
-        "direct_illumination=off",
-        "integrator=vcm passes=1 spp=8 photons=2000 radius=.4 edges=false",
-        "integrator=vcm vcm_strategies=bpt passes=1 spp=8 photons=2000",
+    static const struct {
+        const char *words;
+        double error;
+    } each[] = {
+        {"integrator=path passes=1 spp=16", ROUNDED},
+        {"integrator=auto passes=1 spp=8 caustic_photons=2000 radius=.4", ROUNDED},
+        {"integrator=photonmap passes=1 spp=4 photons=4000 radius=.4 edges=false",
+         ROUNDED},
+        {"integrator=photonmap passes=1 spp=4 photons=4000 radius=.4 edges=false "
+         "final_gather=on gather_rays=8 precompute_radiance=off",
+         ROUNDED},
+        {"integrator=photonmap passes=1 spp=4 photons=4000 radius=.4 edges=false "
+         "final_gather=on gather_rays=8",
+         ROUNDED},
+        {"integrator=photonmap passes=1 spp=4 photons=4000 radius=.4 edges=false "
+         "direct_illumination=off",
+         ROUNDED},
+        {"integrator=photonmap passes=1 spp=4 photons=4000 radius=.4 "
+         "direct_illumination=off",
+         LOOKED},
+        {"integrator=vcm passes=1 spp=8 photons=2000 radius=.4 edges=false", ROUNDED},
+        {"integrator=vcm passes=1 spp=8 photons=2000 radius=.4", LOOKED},
+        {"integrator=vcm vcm_strategies=bpt passes=1 spp=8 photons=2000", ROUNDED},
     };
     g_autoptr(view) open = view_of(ROOM SILVER_BALL);
     g_autoptr(view) paned = view_of(ROOM PANES LYING SILVER_BALL);
     for (size_t i = 0; i < G_N_ELEMENTS(each); i++)
         for (int limit = 0; limit < 4; limit++) {
-            double expected = mean_with(open, each[i], limit);
-            double found = mean_with(paned, each[i], limit);
-            g_test_message("%s, limit %d: %.6f, without panes %.6f", each[i], limit,
+            double expected = mean_with(open, each[i].words, limit);
+            double found = mean_with(paned, each[i].words, limit);
+            g_test_message("%s, limit %d: %.6f, without panes %.6f", each[i].words, limit,
                            found, expected);
-            g_assert_cmpfloat(fabs(found - expected), <=, ROUNDED * expected);
+            g_assert_cmpfloat(fabs(found - expected), <=, each[i].error * expected);
         }
 }
 
