@@ -25,8 +25,8 @@ typedef struct NephPhotons NephPhotons;
  * plans and sends them, without rendering. Classes that such a render does not send have
  * none, and `emitted` 0 in the statistics: of integrator path all, of auto all but
  * caustics; the light vertices of vcm are counted as indirect. Where something moves,
- * each slice of the shutter's time has the flux of the lamps. The scene must outlive
- * them. */
+ * each slice of the shutter's time has the flux of the lamps. What a render leaves out
+ * for want of time (the setting) or memory is sent here. The scene must outlive them. */
 NEPH_API NephPhotons *neph_photons_trace(const NephScene *scene,
                                          const NephSettings *settings, GError **error);
 /** @brief The same, as long as go_on says so; else NULL with NEPH_ERROR_CANCELLED. */

@@ -391,12 +391,13 @@ static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scr
     g->hood = NULL;
     bool done = gather_once(g, map, scratch);
     float area = kernel_area(&options->kernel, g->r2);
+    float share = options->looked_share > 0.0f ? options->looked_share : 1.0f;
     const neighbourhood hood = {.scene = options->scene,
                                 .p = g->query.at.p,
                                 .n = g->query.at.n,
-                                .radius = root_within(g->r2),
+                                .radius = root_within(g->r2) * share,
                                 .time = options->time};
-    bool bounded = (g->n > 0 || options->looks_anyway) && isfinite(hood.radius);
+    bool bounded = g->n > 0 && isfinite(hood.radius);
     if (options->curve && bounded)
         area =
             flat_curve_area(options->curve, g->query.at.p, hood.radius, &options->kernel);

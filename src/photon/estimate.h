@@ -35,7 +35,8 @@ typedef struct estimate_options {
                                 neighbourhood.h); NULL: the disc is taken as whole */
     float time;              /**< of the shutter, at which they are looked for */
     bool shares_looks;       /**< with queries nearby: scratch->looked is of the pixel */
-    bool looks_anyway;       /**< for edges where no photons are, too */
+    float looked_share;      /**< of the radius, within which they are looked for: what
+                                narrower discs would take, not what they say; 0: of all */
     const flat_curve *curve; /**< that the point is on; NULL: on none */
     unsigned lobes;          /**< used for all photons, e.g. LOBE_GATHERED */
     unsigned

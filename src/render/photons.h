@@ -1,6 +1,8 @@
 /*
  * Photons alone: traced and shown without a picture, or told event by event. They are
- * those that pass 0 of a render with the same settings stores, by its own plan.
+ * those that pass 0 of a render with the same settings stores, by its own plan, had it
+ * time and memory enough: what these take away is found by the clock, and by what others
+ * leave.
  */
 #pragma once
 

@@ -62,12 +62,12 @@ static const setting_row table[] = {
      "so that there is a picture soon; 0: spp, or where time is given 1."},
     {"max_backward_bounces", SETTING_COUNT, AT(max_backward_bounces), "", 0, 1e6, -1,
      unlimited, "maxBackwardBounces maxdepth", "all",
-     "Scattering events of a path from the eye, to the light it finds or to where "
-     "photons "
-     "are gathered, which is one; interfaces are none. Unlimited (-1): chance alone ends "
-     "paths. The alias "
-     "maxBackwardBounces n leaves out that one: n + 1. maxdepth d bounds photons too, by "
-     "d - 1."},
+     "Scattering events of a path from the eye, interfaces not counted: of path, auto "
+     "and vcm to the light, of photonmap and sppm to where photons are gathered, which "
+     "is one. What caustic photons of auto scattered is one of them, and for the rest "
+     "max_forward_bounces bounds it. Unlimited (-1): chance alone ends paths. The alias "
+     "maxBackwardBounces n leaves out the gathering: n + 1. maxdepth d bounds photons "
+     "too, by d - 1."},
     {"max_forward_bounces", SETTING_COUNT, AT(max_forward_bounces), "", 0, 1e6, -1,
      unlimited, "maxForwardBounces MAX_PHOTON_BOUNCES", "photonmap auto",
      "Scattering events of a photon; 0 stores it at its first hit only. Unlimited (-1): "

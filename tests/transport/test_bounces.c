@@ -83,6 +83,37 @@ static void test_one_depth(void)
         }
 }
 
+#define MIRROR_BALL                                                                      \
+    "AttributeBegin Material \"conductor\" Translate 0 0 0.6 Shape \"sphere\" "          \
+    "\"float radius\" 0.5 AttributeEnd\n"
+
+/* What photons scatter counts in auto and vcm as it does in path: a caustic is of two
+   events, its photons' last one and where it is seen. */
+static void test_caustics_are_of_two(void)
+{
+    static const char *const each[] = {
+        "integrator=path passes=1 spp=1024",
+        "integrator=auto passes=4 spp=16 caustic_photons=9000 radius=.2",
+        "integrator=vcm passes=8 spp=32 photons=4000",
+    };
+    g_autoptr(view) v = view_of(ROOM MIRROR_BALL);
+    double expected = 0.0;
+    for (size_t i = 0; i < G_N_ELEMENTS(each); i++)
+        for (int limit = 1; limit <= 2; limit++) {
+            g_autofree char *words = g_strdup_printf(
+                "%s max_backward_bounces=%d max_forward_bounces=1", each[i], limit);
+            g_autoptr(image) img = render_with(v, words);
+            double found = mean_of(img, "caustic");
+            g_test_message("%s: caustics %.5f", words, found);
+            if (limit == 1)
+                g_assert_cmpfloat(found, ==, 0.0);
+            else if (i == 0)
+                expected = found;
+            else
+                g_assert_cmpfloat(fabs(found / expected - 1.0), <, 0.05);
+        }
+}
+
 /* ---- Interfaces ---- */
 
 /* Panes that part nothing, across a ball of silver: before it, in it and behind it. */
@@ -270,6 +301,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/bounces/white-box", test_white_box);
     g_test_add_func("/bounces/one-depth", test_one_depth);
+    g_test_add_func("/bounces/two", test_caustics_are_of_two);
     g_test_add_func("/bounces/interfaces", test_interfaces_are_none);
     g_test_add_func("/bounces/interfaces-in-fog", test_interfaces_in_fog);
     g_test_add_func("/bounces/visible", test_visible_past_interfaces);

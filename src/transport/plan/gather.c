@@ -28,6 +28,8 @@
 typedef struct gather_place {
     double path[2], smooth[2]; /* each with a sampler of its own */
     double near[2], twice[2];  /* all with the first one */
+    double first_rays;         /* of a pixel's first sample */
+    double later_rays;         /* of another one, which shares the first one's looks */
     double path_rays;          /* of a path */
     double all_rays;
 } gather_place;
@@ -39,15 +41,13 @@ typedef struct gather_trial {
     photonmap_pass *maps[2];
     /* The same with wider discs: near and twice with area times as much of them and four
        times that, smooth with fewer times, in which there are as many photons as in the
-       plan's. */
-    photonmap_pass *near[2], *twice[2], *smooth;
+       plan's; and priced as smooth, but looked around as the plan's. */
+    photonmap_pass *near[2], *twice[2], *smooth, *priced;
     double area;
-    double fewer;       /* photons than the plan's, over them */
-    double photon_rays; /* of a whole pass */
-    double first_rays;  /* of a pixel's first sample */
-    double later_rays;  /* of another one, which shares the first one's looks */
-    double path_rays;   /* of a path */
-    uint32_t n;         /* places */
+    double fewer;                             /* photons than the plan's, over them */
+    double photon_rays;                       /* of a whole pass */
+    double first_rays, later_rays, path_rays; /* means of the places' */
+    uint32_t n;                               /* places */
     gather_place *places;
 } gather_trial;
 
@@ -66,7 +66,7 @@ typedef struct gather_errors {
 } gather_errors;
 
 /* Samples of a place: by maps, and by paths. */
-enum { N_SAMPLES = 6 + 2 }; /* math: as many */
+enum { N_SAMPLES = 1 + 6 + 2 }; /* math: as many */
 
 /* ---- Trial passes ---- */
 
@@ -199,44 +199,22 @@ static double sample(radiance_function *radiance, const void *pass,
     return trial_sample(radiance, pass, plan, raster, random, without, scratch);
 }
 
-/* A second sample of the pixel. */
-static double later_rays(const gather_task *all, vec2 raster, sampler random,
-                         transport_scratch *scratch)
+/* What gathering takes at a place, as if there were all photons. */
+static void find_price(const gather_task *all, vec2 raster, sampler random,
+                       transport_scratch *scratch, gather_place *at)
 {
+    const photonmap_pass *pass = all->trial->priced;
     double before = plan_rays_of(scratch);
+    looked_around_forget(&scratch->estimate.looked);
+    sample(photonmap_radiance, pass, all->plan, raster, random, scratch);
+    double between = plan_rays_of(scratch);
+    at->first_rays = between - before;
+    if (all->plan->how.spp == 1)
+        return;
     vec2 u = sampler_2d(&random);
     vec2 beside = {raster.x + u.x - 0.5f, raster.y + u.y - 0.5f};
-    sample(photonmap_radiance, all->trial->maps[0], all->plan, beside, random, scratch);
-    return plan_rays_of(scratch) - before;
-}
-
-/* As if there were all photons: discs that hold few now will hold them then, and be
-   looked around. Of few places: these differ less by that than by what they bring.
-   @return rays that it took */
-static double find_price(const gather_task *all)
-{
-    gather_trial *t = all->trial;
-    transport_scratch scratch = {0};
-    const uint32_t n = LEAST_TRIALS / 2;
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        t->maps[0]->estimates[c].looks_anyway = true;
-    for (uint32_t i = 0; i < n; i++) {
-        sampler random = sampler_make(all->key, i);
-        vec2 raster = trial_place(all->plan, &random);
-        double before = plan_rays_of(&scratch);
-        looked_around_forget(&scratch.estimate.looked);
-        sample(photonmap_radiance, t->maps[0], all->plan, raster,
-               sampler_split(&random, 0), &scratch);
-        t->first_rays += (plan_rays_of(&scratch) - before) / n;
-        if (all->plan->how.spp > 1)
-            t->later_rays +=
-                later_rays(all, raster, sampler_split(&random, 2), &scratch) / n;
-    }
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        t->maps[0]->estimates[c].looks_anyway = false;
-    double took = plan_rays_of(&scratch);
-    transport_scratch_clear(&scratch);
-    return took;
+    sample(photonmap_radiance, pass, all->plan, beside, random, scratch);
+    at->later_rays = plan_rays_of(scratch) - between;
 }
 
 /* Asks at a place. What is looked at for one map counts for all; paths look for edges
@@ -250,6 +228,7 @@ static void ask(const gather_task *all, uint32_t i, transport_scratch *scratch)
     const vec2 raster = trial_place(plan, &random);
     const sampler one = sampler_split(&random, 0), two = sampler_split(&random, 1);
     double before = plan_rays_of(scratch);
+    find_price(all, raster, one, scratch, at);
     looked_around_forget(&scratch->estimate.looked);
     at->smooth[0] = sample(photonmap_radiance, t->smooth, plan, raster, one, scratch);
     at->smooth[1] = sample(photonmap_radiance, t->smooth, plan, raster, two, scratch);
@@ -291,6 +270,8 @@ static uint32_t count_places(const gather_trial *t, const transport_plan *plan)
 static void sum_rays(gather_trial *t, transport_plan *plan)
 {
     for (uint32_t i = 0; i < t->n; i++) {
+        t->first_rays += t->places[i].first_rays / t->n;
+        t->later_rays += t->places[i].later_rays / t->n;
         t->path_rays += t->places[i].path_rays / t->n;
         plan->planning += t->places[i].all_rays;
     }
@@ -300,7 +281,10 @@ static bool widen_all(gather_trial *t, GError **error)
 {
     t->area = sqrt(t->fewer);
     t->smooth = widened(t->maps[0], sqrt(t->fewer), error);
-    bool ok = t->smooth;
+    t->priced = t->smooth ? widened(t->smooth, 1.0, error) : NULL;
+    bool ok = t->priced;
+    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++)
+        t->priced->estimates[c].looked_share = (float)(1.0 / sqrt(t->fewer));
     for (int i = 0; i < 2 && ok; i++) {
         t->near[i] = widened(t->maps[i], sqrt(t->area), error);
         t->twice[i] = t->near[i] ? widened(t->near[i], 2.0, error) : NULL;
@@ -316,7 +300,6 @@ static bool run_places(gather_trial *t, transport_plan *plan, const path_pass *p
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x706c61636573u);
     gather_task task = {t, plan, paths, key, 0};
     t->places = g_new0(gather_place, MOST_PLACES);
-    plan->planning += find_price(&task);
     if (!widen_all(t, error))
         return false;
     ask_some(0, LEAST_TRIALS, 0, &task);
@@ -520,6 +503,7 @@ static void take(transport_plan *plan, gather_trial *t)
 static void gather_trial_clear(gather_trial *t)
 {
     free_widened(t->smooth);
+    free_widened(t->priced);
     for (int i = 0; i < 2; i++) {
         free_widened(t->near[i]);
         free_widened(t->twice[i]);
