@@ -28,6 +28,13 @@ static scene_event cross_medium(const scene_traveller *who, path_segment *path,
     return EVENT_NONE;
 }
 
+static void weaken_in_solid(const scene_traveller *who, path_segment *path, float way)
+{
+    const medium_stack *in = &path->ray.media;
+    if (in->solid[0])
+        path->throughput *= scene_solid_transmittance(who->scene, in, way, who->w);
+}
+
 scene_event scene_advance(const scene_traveller *who, path_segment *path,
                           surface_hit *hit)
 {
@@ -36,16 +43,16 @@ scene_event scene_advance(const scene_traveller *who, path_segment *path,
         if (path->ray.media.participating) {
             surface_hit within;
             scene_event event = cross_medium(who, path, met ? hit : NULL, &within);
-            if (event == EVENT_MEDIUM)
+            if (event == EVENT_MEDIUM) {
                 *hit = within;
+                weaken_in_solid(who, path, within.t);
+            }
             if (event != EVENT_NONE)
                 return event;
         }
         if (!met)
             return EVENT_ESCAPE;
-        if (hit->media.solid[0])
-            path->throughput *=
-                scene_solid_transmittance(who->scene, &hit->media, hit->t, who->w);
+        weaken_in_solid(who, path, hit->t);
         if (hit->light != NO_INDEX && who->meet_light)
             who->meet_light(who->path, hit);
         if (hit->material != NO_INDEX)

@@ -60,7 +60,5 @@ scene_event photon_path_cross_medium(void *data, float length, const surface_hit
     if (!next.scatters)
         return EVENT_NONE;
     path->n_in_media++;
-    path->at.throughput *=
-        scene_solid_transmittance(task->scene, &path->at.ray.media, next.t, &task->w);
     return EVENT_MEDIUM;
 }

@@ -42,8 +42,6 @@ bool path_meets_medium(path_walk *walk, camera_path *path, float length, surface
     path->at.throughput *= next.weight;
     if (!next.scatters)
         return false;
-    path->at.throughput *=
-        scene_solid_transmittance(walk->scene, &path->at.ray.media, next.t, w);
     *hit = hit_in_medium(&path->at.ray, next.t);
     return true;
 }
