@@ -6,7 +6,9 @@
 
 #include <string.h>
 
-/* How often the disc is looked at for what of it is surface. */
+/* How often the disc is looked at for what of it is surface. With 16 the squared error of
+   bench/edges is 1.9 and 1.06 times as much, at the widest radius and at half of it, in
+   .87 and .95 of the time. */
 enum { AREA_LOOKS = 24 };
 
 /* math: even where no look finds any, the centre itself is surface. */

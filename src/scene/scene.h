@@ -191,7 +191,8 @@ void scene_pieces_near(const scene *s, const surface_hit *hit, vec3 p, float rad
 double scene_area_change(const scene *s, const surface_hit *hit, float time);
 
 /** @brief Slices of the shutter's time in which photons are kept apart: where nothing
- * moves, one. */
+ * moves, one. With one for all /motion/board and /knob-pictures/time-slices fail; with
+ * one for each pass a first picture would show no more than that of what moves. */
 static inline int scene_time_slices(const scene *s, const settings *how)
 {
     return s->moves ? (int)how->time_slices : 1;
