@@ -174,8 +174,8 @@ static const setting_row table[] = {
      "Height of the neighbourhood along the normal over its radius; below 1 it leaks "
      "less light through corners."},
     {"edges", SETTING_BOOL, AT(edges), "", 0, 1, 1, NULL, "", "photonmap auto vcm",
-     "Probes the surroundings of an estimate, so that edges and corners are not dark and "
-     "no light leaks through thin walls."},
+     "Looks at the surroundings of an estimate, so that edges and corners are not dark "
+     "and no light leaks through thin walls."},
     {"bright_spots", SETTING_BOOL, AT(bright_spots), "", 0, 1, 1, NULL, "", "auto",
      "Camera paths look aside at brightly lit places, such as what the sun throws "
      "through a window, as they do at lamps, where that pays."},
