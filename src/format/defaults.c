@@ -98,7 +98,8 @@ static bool add_environment(scene_builder *to, const char *path, vec3 up, GError
     build_context_add_file(&to->build, absolute, picture);
     give_text(p, PARAM_STRING, "filename", absolute);
     log_message(&to->build.log, LOG_NOTE, "%s: no %s in it; a soft sky is added", path,
-                to->scene->lights->len > 0 ? "lamp, only what glows a little," : "light");
+                to->scene->lights->len > 0 ? "light, only what glows a little,"
+                                           : "light");
     return builder_add_light(to, "infinite", p, &to_world, error);
 }
 
