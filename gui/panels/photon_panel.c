@@ -179,8 +179,8 @@ static void add_pick(photon_panel *p)
 {
     p->picked = group_make("Picked", &p->picked_list);
     p->hint = text_make("Click a photon, or a place on a surface: its neighbours within "
-                        "the gather radius, their estimate, and the photon's way from "
-                        "the lamp are shown.",
+                        "the gather radius, their estimate, and the photon's path from "
+                        "the light are shown.",
                         "dim-label");
     gtk_widget_set_visible(p->picked_list, FALSE);
     p->radius = spin_make(0.0, 1e6, 0.01, false);

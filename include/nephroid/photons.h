@@ -25,7 +25,7 @@ typedef struct NephPhotons NephPhotons;
  * plans and sends them, without rendering. Classes that such a render does not send have
  * none, and `emitted` 0 in the statistics: of integrator path all, of auto all but
  * caustics; the light vertices of vcm are counted as indirect. Where something moves,
- * each slice of the shutter's time has the flux of the lamps. What a render leaves out
+ * each slice of the shutter's time has the flux of the lights. What a render leaves out
  * for want of time (the setting) or memory is sent here. The scene must outlive them. */
 NEPH_API NephPhotons *neph_photons_trace(const NephScene *scene,
                                          const NephSettings *settings, GError **error);
@@ -122,8 +122,8 @@ typedef struct NephEstimate {
 } NephEstimate;
 
 /** @brief The estimate of irradiance on a surface at a point, with the kernels of the
- * settings, without probing edges. radius: m; 0: as a render would gather, within those
- * of the statistics or nearer than the last of so many nearest. */
+ * settings, without looking at edges. radius: m; 0: as a render would gather, within
+ * those of the statistics or nearer than the last of so many nearest. */
 NEPH_SIZED void neph_photons_estimate(const NephPhotons *photons, const double point[3],
                                       const double normal[3], double radius,
                                       NephEstimate *out);

@@ -11,7 +11,7 @@
 /* Times that what is added is large or lies apart: a world of more has no core worth the
    search. */
 enum { MOST_ODD = 65536 };
-/* So many lie in a core for each small one that lies apart, as a lamp may. */
+/* So many lie in a core for each small one that lies apart, as a light may. */
 enum { INSIDE_FOR_OUTSIDE = 16 };
 
 static float size_of(box3 box)

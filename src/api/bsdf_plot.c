@@ -8,7 +8,7 @@
  *              180°               beyond the surface
  *
  * Spectra are seen under D65 and turned into linear sRGB, so that a white material has
- * the same value three times. A bare sphere of directions is probed: textures are taken
+ * the same value three times. A bare sphere of directions is queried: textures are taken
  * at (0.5, 0.5).
  */
 #include "api/objects.h"
@@ -29,12 +29,12 @@ enum {
 #define MOST_INCIDENCE 89.0
 
 /* What all directions of one set of wavelengths share. */
-typedef struct prober {
+typedef struct plot_query {
     wavelengths w;
     spectrum white;
     bsdf bsdf;
     vec3 light; /* to where the light comes from, unit */
-} prober;
+} plot_query;
 
 static surface_hit flat_hit(void)
 {
@@ -52,32 +52,33 @@ static vec3 direction_at(double degrees)
     return vec3_make((float)sin(a), 0.0f, (float)cos(a));
 }
 
-static void prober_init(prober *p, const material *m, double incidence, int offset)
+static void plot_query_init(plot_query *q, const material *m, double incidence,
+                            int offset)
 {
     const bsdf_options options = {.least_walks = WALKS};
     const surface_hit hit = flat_hit();
     g_autoptr(curve) d65 = curve_named("stdillum-D65");
-    p->w = wavelengths_at(((float)offset + 0.5f) / OFFSETS);
-    p->white = curve_eval(d65, &p->w) / curve_photometric(d65);
-    p->light = direction_at(-incidence);
-    material_bsdf(m, &hit, &p->w, ALL_WAVELENGTHS, &options, &p->bsdf);
+    q->w = wavelengths_at(((float)offset + 0.5f) / OFFSETS);
+    q->white = curve_eval(d65, &q->w) / curve_photometric(d65);
+    q->light = direction_at(-incidence);
+    material_bsdf(m, &hit, &q->w, ALL_WAVELENGTHS, &options, &q->bsdf);
 }
 
-static void add_color(const prober *p, spectrum value, float share, float rgb[3])
+static void add_color(const plot_query *q, spectrum value, float share, float rgb[3])
 {
     float xyz[3], one[3];
-    spectrum_to_xyz(&p->w, value * p->white, xyz);
+    spectrum_to_xyz(&q->w, value * q->white, xyz);
     color_space_from_xyz(color_space_srgb(), xyz, one);
     for (int k = 0; k < 3; k++)
         rgb[k] += share * one[k];
 }
 
-static void add_spread(const prober *p, NephBsdfPlot *plot)
+static void add_spread(const plot_query *q, NephBsdfPlot *plot)
 {
     for (size_t i = 0; i < plot->n; i++) {
         vec3 out = direction_at(360.0 * (double)i / (double)plot->n);
-        spectrum f = bsdf_eval(&p->bsdf, p->light, out, LOBE_ALL, TRANSPORT_IMPORTANCE);
-        add_color(p, f, 1.0f / OFFSETS, plot->rgb + 3 * i);
+        spectrum f = bsdf_eval(&q->bsdf, q->light, out, LOBE_ALL, TRANSPORT_IMPORTANCE);
+        add_color(q, f, 1.0f / OFFSETS, plot->rgb + 3 * i);
     }
 }
 
@@ -87,19 +88,19 @@ typedef struct ray_sum {
     double x, z; /* Σ of directions, by weight */
 } ray_sum;
 
-static void add_rays(const prober *p, ray_sum sums[2])
+static void add_rays(const plot_query *q, ray_sum sums[2])
 {
     for (int i = 0; i < RAY_SAMPLES; i++) {
         bsdf_sample s;
         vec2 u = {fmodf(0.754877f * (float)i, 1.0f), fmodf(0.569840f * (float)i, 1.0f)};
         float choice = ((float)i + 0.5f) / RAY_SAMPLES;
-        if (!bsdf_sample_direction(&p->bsdf, p->light, choice, u, LOBE_ALL,
+        if (!bsdf_sample_direction(&q->bsdf, q->light, choice, u, LOBE_ALL,
                                    TRANSPORT_IMPORTANCE, &s) ||
             !(s.lobe & LOBE_SPECULAR))
             continue;
         ray_sum *sum = &sums[s.lobe & LOBE_TRANSMISSION ? 1 : 0];
         double weight = (double)spectrum_mean(s.weight);
-        add_color(p, s.weight, 1.0f / (OFFSETS * RAY_SAMPLES), sum->rgb);
+        add_color(q, s.weight, 1.0f / (OFFSETS * RAY_SAMPLES), sum->rgb);
         sum->x += weight * (double)s.wi[0];
         sum->z += weight * (double)s.wi[2];
     }
@@ -140,10 +141,10 @@ NephBsdfPlot *neph_bsdf_plot(const NephScene *s, size_t i, double incidence, siz
     *plot = (NephBsdfPlot){.incidence = incidence, .n = n, .rgb = g_new0(float, 3 * n)};
     ray_sum sums[2] = {0};
     for (int offset = 0; offset < OFFSETS; offset++) {
-        prober p;
-        prober_init(&p, s->scene->materials->pdata[i], incidence, offset);
-        add_spread(&p, plot);
-        add_rays(&p, sums);
+        plot_query q;
+        plot_query_init(&q, s->scene->materials->pdata[i], incidence, offset);
+        add_spread(&q, plot);
+        add_rays(&q, sums);
     }
     finish(plot, sums);
     return plot;

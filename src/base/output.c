@@ -172,7 +172,7 @@ static bool sync_pieces(int fd, const cancel_flag *cancel)
 {
     struct stat info;
     off_t size = fstat(fd, &info) == 0 ? info.st_size : 0;
-    for (off_t at = 0; cancel && at < size && !cancel_beat(cancel); at += PIECE)
+    for (off_t at = 0; cancel && at < size && !cancel_tell_progress(cancel); at += PIECE)
         if (sync_file_range(fd, at, PIECE,
                             SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE |
                                 SYNC_FILE_RANGE_WAIT_AFTER) != 0)
@@ -193,7 +193,7 @@ bool output_close(output *out, GError **error)
     FILE *stream = g_steal_pointer(&out->stream);
     if (!stream)
         return true;
-    bool written = !cancel_beat(out->cancel) && is_on_disk(out, stream);
+    bool written = !cancel_tell_progress(out->cancel) && is_on_disk(out, stream);
     int reason = errno;
     bool closed = fclose(stream) == 0;
     if (!written)

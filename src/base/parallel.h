@@ -12,7 +12,7 @@
 #include <stddef.h>
 
 /** @brief A flag that asks long work to stop soon, set from any thread and read by all;
- * and the pulse of that work. Zero to begin. */
+ * and who is told of its progress. Zero to begin. */
 typedef struct cancel_flag {
     atomic_bool set;
     void (*progress)(void *data); /**< called again and again on the thread that called
@@ -27,9 +27,9 @@ static inline bool cancelled(const cancel_flag *flag)
            atomic_load_explicit(&((cancel_flag *)flag)->set, memory_order_relaxed);
 }
 
-/** @brief Beats, for long work that is no parallel loop: on the thread that was called,
- * some twenty times a second. @return cancelled(flag) */
-static inline bool cancel_beat(const cancel_flag *flag)
+/** @brief Tells of progress, for long work that is no parallel loop: on the thread that
+ * was called, some twenty times a second. @return cancelled(flag) */
+static inline bool cancel_tell_progress(const cancel_flag *flag)
 {
     if (flag && flag->progress)
         flag->progress(flag->progress_data);

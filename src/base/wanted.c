@@ -27,7 +27,7 @@ bool still_wanted(GError **error)
         return true;
     if (now - asked_at >= PAUSE) {
         asked_at = now;
-        cancel_beat(current);
+        cancel_tell_progress(current);
     }
     if (!cancelled(current))
         return true;

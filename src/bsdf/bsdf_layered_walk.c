@@ -99,9 +99,9 @@ static void add(walk *k, spectrum light)
         k->sum.clear += light;
 }
 
-static float attenuation(float way, vec3 w)
+static float attenuation(float depth, vec3 w)
 {
-    return expf(-way / maxf(fabsf(w[2]), 1e-6f));
+    return expf(-depth / maxf(fabsf(w[2]), 1e-6f));
 }
 
 /* ---- Joining it to i ---- */
@@ -245,7 +245,7 @@ static bool step(walk *k)
     if (spectrum_is_black(l->albedo)) {
         k->light *= attenuation(l->thickness, k->w);
     } else {
-        float way = -logf(1.0f - draw(k)) * k->w[2], depth = k->depth - way;
+        float segment = -logf(1.0f - draw(k)) * k->w[2], depth = k->depth - segment;
         if (depth > 0.0f && depth < l->thickness) {
             k->depth = depth;
             return meet_particle(k);

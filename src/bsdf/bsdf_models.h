@@ -97,8 +97,8 @@ void bsdf_make_coated(bsdf *b, spectrum rho, spectrum eta, float alpha,
                       const coat_table *table, int bounces);
 
 /** @brief A metal or a diffuse base under a rough or smooth coat, in which light may be
- * scattered by particles. Thickness is optical: the way straight through the coat over
- * the mean way between particles. */
+ * scattered by particles. Thickness is optical: the path straight through the coat over
+ * the mean free path. */
 typedef struct coat_layers {
     bool is_metal;
     bool is_followed; /**< what its faces reflect is GLOSSY however rough they are */

@@ -90,15 +90,16 @@ static vec3 standpoint(vec3 up, float right, float above)
 static bool add_environment(scene_builder *to, const char *path, vec3 up, GError **error)
 {
     transform to_world = upright(up);
-    g_autofree char *name = g_strdup_printf("%s.sky.pfm", path);
+    g_autofree char *name = g_strdup_printf("%s.environment.pfm", path);
     g_autofree char *absolute = g_canonicalize_filename(name, NULL);
     g_autoptr(GBytes) picture =
         environment_picture(&to_world, up, standpoint(up, -0.8f, 1.1f));
     g_autoptr(params) p = list(path);
     build_context_add_file(&to->build, absolute, picture);
     give_text(p, PARAM_STRING, "filename", absolute);
-    log_message(&to->build.log, LOG_NOTE, "%s: no %s in it; a soft sky is added", path,
-                to->scene->lights->len > 0 ? "lamp, only what glows a little," : "light");
+    log_message(
+        &to->build.log, LOG_NOTE, "%s: no %s in it; a soft environment is added", path,
+        to->scene->lights->len > 0 ? "light, only what glows a little," : "light");
     return builder_add_light(to, "infinite", p, &to_world, error);
 }
 

@@ -157,7 +157,7 @@ static const feature_note notes[] = {
      "if `albedo` is 0, `thickness` a number and the coat not brushed",
      NULL, NULL},
     {"Material", "coatedconductor", "rendered",
-     "pbrt's random walk; the lanes share the mean `interface.eta`", NULL, NULL},
+     "pbrt's random walk; the wavelengths share the mean `interface.eta`", NULL, NULL},
     {"MakeNamedMedium", "homogeneous", "rendered",
      "`Le` must be 0; `vcm` and the kinds of it refuse media", "Le Lescale", NULL},
     {"Texture", "imagemap", "approximated", "`EWA` filters as `trilinear` does",

@@ -32,7 +32,7 @@ typedef struct image_sink {
  * what comes of it does not count */
 static inline bool sink_wants(const image_sink *sink)
 {
-    return !cancel_beat(sink->cancel);
+    return !cancel_tell_progress(sink->cancel);
 }
 
 /** @brief One file format. */

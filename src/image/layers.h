@@ -24,8 +24,8 @@ bool image_find_shown(const image *img, image_shown *out);
  * there.
  *
  * A light in sight may be so bright that a thousandth of a pixel is enough to make all of
- * it white: edges of lamps would be jagged. So the part of the pixel where it is in sight
- * is white, and no more than that.
+ * it white: edges of lights would be jagged. So the part of the pixel where it is in
+ * sight is white, and no more than that.
  */
 void image_shown_pixel(const image_shown *shown, const float *pixel, float white,
                        float rgb[3]);

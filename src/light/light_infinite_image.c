@@ -206,8 +206,9 @@ static bool read_picture(image_environment *l, const build_context *context,
     if (!sphere_map_init(&l->map, pic, place, error))
         return false;
     if (context && place.line > 0) /* a reader that made it knows */
-        log_message(&context->log, LOG_NOTE, "%s:%d: the sky's picture is read as %s map",
-                    place.file, place.line, sphere_map_layout(&l->map));
+        log_message(&context->log, LOG_NOTE,
+                    "%s:%d: the environment's picture is read as %s map", place.file,
+                    place.line, sphere_map_layout(&l->map));
     return true;
 }
 

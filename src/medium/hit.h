@@ -124,7 +124,8 @@ static inline ray hit_ray(const surface_hit *hit, vec3 direction)
                  hit_media(hit, direction)};
 }
 
-/** @brief The part of a way to something beyond which rounding may meet it already. */
+/** @brief The part of a segment to something beyond which rounding may meet it already.
+ */
 static inline float distance_short_of(float distance)
 {
     return distance * (1.0f - 1e-4f);

@@ -56,8 +56,8 @@ spectrum medium_scattering(const medium *m, const wavelengths *w);
 /** @brief σt by wavelength. */
 spectrum medium_extinction(const medium *m, const wavelengths *w);
 
-/** @brief e^(-σt t). Over an endless way what is extinguished at all is gone: t is taken
- * as FLT_MAX, of which none is 0. */
+/** @brief e^(-σt t). Over an endless segment what is extinguished at all is gone: t is
+ * taken as FLT_MAX, of which none is 0. */
 static inline spectrum transmittance_after(spectrum sigma_t, float t)
 {
     return spectrum_exp(sigma_t * -minf(t, FLT_MAX));
@@ -72,8 +72,7 @@ static inline float phase_henyey_greenstein(float g, float cosine)
     return (1.0f - g * g) / (4.0f * (float)G_PI * d * sqrtf(d));
 }
 
-/** @brief Share of light left after t metres; INFINITY is allowed. All of it where m is
- * NULL. */
+/** @brief Transmittance of t metres; INFINITY is allowed. One where m is NULL. */
 spectrum medium_transmittance(const medium *m, float t, const wavelengths *w);
 
 /** @brief True if it scatters. */

@@ -4,7 +4,7 @@
  *   y0 ──► y1 ──► ... ──► yk        y0 on the light; y1 .. y(k-1) specular or glossy; yk
  *   light   first           diffuse  the first diffuse surface, where a photon would land
  *
- * A path from the eye that scatters at yk may find the rest of this way by itself: it
+ * A path from the eye that scatters at yk may find the rest of this path by itself: it
  * meets the light (met), or samples it from a glossy y1 (sampled). Photons find it too,
  * N of them a pass, each for a disc of radius r (merged). All three share the light by
  * the balance heuristic (Veach 1997, §9.2), merging being counted as by Georgiev et al.
@@ -12,7 +12,7 @@
  *
  *     photons' weight = merged / (merged + met + sampled)
  *
- * Over the density with which the path from the eye follows the way up to y1,
+ * Over the density with which the path from the eye follows this one up to y1,
  *
  *     met     = p_scatter                 per solid angle, y1 → y0 by scattering
  *     sampled = p_lights                  the same by choosing a point on the lights

@@ -84,8 +84,8 @@ static int compare_photons(const void *data, size_t a, size_t b)
         return order ? order
                      : (s->number[a] > s->number[b]) - (s->number[a] < s->number[b]);
     spectrum x = photon_store_flux(s, a), y = photon_store_flux(s, b);
-    for (int lane = 0; lane < N_WAVELENGTHS && !order; lane++)
-        order = compare_floats(x[lane], y[lane]);
+    for (int i = 0; i < N_WAVELENGTHS && !order; i++)
+        order = compare_floats(x[i], y[i]);
     return order;
 }
 

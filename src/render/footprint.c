@@ -9,9 +9,9 @@
 #include <math.h>
 
 enum {
-    PROBE = 1 << 16,       /* size: so many photons tell what one takes */
-    PHOTON_MOST = 4 << 10, /* bytes: what one takes, in all places where it is stored */
-    TRIES = 8,             /* to choose photons: each time a tenth fewer at least */
+    TRIAL_PHOTONS = 1 << 16, /* size: so many photons tell what one takes */
+    PHOTON_MOST = 4 << 10,   /* bytes: what one takes, in all places where it is stored */
+    TRIES = 8,               /* to choose photons: each time a tenth fewer at least */
 };
 
 /* Passes differ in what their photons take, and are planned for so much more. */
@@ -44,12 +44,12 @@ static size_t begin_and_end(const transport_plan *plan, const cancel_flag *cance
 }
 
 /* What the photons of a pass take, as so many of them tell. */
-static size_t photon_bytes(const transport_plan *plan, double probe,
+static size_t photon_bytes(const transport_plan *plan, double trial,
                            const cancel_flag *cancel)
 {
     transport_plan small = *plan;
     small.how.threads = 1; /* several have more at once, or less, as it happens */
-    double share = fmin(probe / (double)MAX(n_photons(plan), 1), 1.0);
+    double share = fmin(trial / (double)MAX(n_photons(plan), 1), 1.0);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         small.n_photons[c] = (uint64_t)ceil((double)plan->n_photons[c] * share);
     return (size_t)((double)begin_and_end(&small, cancel) / share);
@@ -60,7 +60,7 @@ static size_t plan_bytes(const view *v, const settings *how)
     transport_plan plan = transport_plan_of(v, how);
     size_t bytes = 0;
     if (transport_plan_prepare(&plan, NULL, NULL) && n_photons(&plan) > 0)
-        bytes = photon_bytes(&plan, PROBE, NULL);
+        bytes = photon_bytes(&plan, TRIAL_PHOTONS, NULL);
     transport_plan_clear(&plan);
     return bytes + MIN(bytes, footprint_begun(how)); /* little is put into one page */
 }
@@ -139,11 +139,11 @@ static size_t photons_need(const transport_plan *plan, size_t room,
                            const cancel_flag *cancel)
 {
     double n = (double)n_photons(plan), tried = 0.0, need = 0.0;
-    double probe = CLAMP((double)room / PHOTON_MOST, PHOTON_SHARE_LEAST, PROBE);
-    while (probe >= 2.0 * tried && !cancelled(cancel)) {
-        need = (double)photon_bytes(plan, probe, cancel);
-        tried = probe;
-        probe = fmin(0.5 * (double)room / fmax(need / n, 1.0), fmin(n, PROBE));
+    double trial = CLAMP((double)room / PHOTON_MOST, PHOTON_SHARE_LEAST, TRIAL_PHOTONS);
+    while (trial >= 2.0 * tried && !cancelled(cancel)) {
+        need = (double)photon_bytes(plan, trial, cancel);
+        tried = trial;
+        trial = fmin(0.5 * (double)room / fmax(need / n, 1.0), fmin(n, TRIAL_PHOTONS));
     }
     return (size_t)(MARGIN * need);
 }

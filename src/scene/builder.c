@@ -207,7 +207,7 @@ static bool add_area_light(scene_builder *b, shape *made, const shape_place *at,
 
 /* True if a shape stands so far off that floats do not tell its points apart: its pieces
    would lie in one another, and every ray that comes near meet them all. As small as it
-   looks from anywhere else it is not missed; a lamp may be. */
+   looks from anywhere else it is not missed; a light may be. */
 static bool is_lost(const scene_builder *b, const shape *made, const shape_place *at)
 {
     const box3 box = made->kind->bounds(made->self);

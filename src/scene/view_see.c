@@ -6,8 +6,8 @@
 bool view_see(const view *v, const ray *r, surface_hit *hit)
 {
     const scene *s = v->scene;
-    ray left = *r;
-    while (scene_intersect(s, &left, hit)) {
+    ray rest = *r;
+    while (scene_intersect(s, &rest, hit)) {
         const shape *on = s->shapes->pdata[hit->shape];
         if (!on->camera_hidden) {
             hit->t = length3(hit->p - r->origin);
@@ -16,9 +16,9 @@ bool view_see(const view *v, const ray *r, surface_hit *hit)
                                  : v->pixel_width + hit->t * v->pixel_spread;
             return true;
         }
-        left = hit_ray(hit, r->direction);
-        left.media = r->media; /* what is not seen absorbs nothing */
-        left.t_max = r->t_max - length3(left.origin - r->origin);
+        rest = hit_ray(hit, r->direction);
+        rest.media = r->media; /* what is not seen absorbs nothing */
+        rest.t_max = r->t_max - length3(rest.origin - r->origin);
     }
     return false;
 }

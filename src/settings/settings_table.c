@@ -34,7 +34,8 @@ static const char *const unlimited[] = {"unlimited", NULL};
 static const setting_row table[] = {
     {"integrator", SETTING_CHOICE, AT(integrator), "", 0, N_INTEGRATORS - 1,
      INTEGRATOR_AUTO, integrator_words, "RENDERMODE", "all",
-     "The algorithm that carries light from the lamps to the eye. sppm is photonmap with "
+     "The algorithm that carries light from the lights to the eye. sppm is photonmap "
+     "with "
      "spp = 1, all nearest = 0, final_gather off and alpha = 2/3: set it first. The "
      "alias "
      "is PHOTONMAP or MONTECARLO, which is path."},
@@ -85,7 +86,7 @@ static const setting_row table[] = {
     {"direct_illumination", SETTING_BOOL, AT(direct_illumination), "", 0, 1, 1, NULL, "",
      "photonmap auto path",
      "Samples the lights at each hit; off: direct light comes from the direct map, and "
-     "paths find only lamps that they meet."},
+     "paths find only lights that they meet."},
     {"shadow_rays", SETTING_BOOL, AT(shadow_rays), "", 0, 1, 1, NULL, "",
      "photonmap auto path",
      "Tests whether sampled lights are hidden; off: direct light casts no shadows."},
@@ -174,11 +175,11 @@ static const setting_row table[] = {
      "Height of the neighbourhood along the normal over its radius; below 1 it leaks "
      "less light through corners."},
     {"edges", SETTING_BOOL, AT(edges), "", 0, 1, 1, NULL, "", "photonmap auto vcm",
-     "Probes the surroundings of an estimate, so that edges and corners are not dark and "
-     "no light leaks through thin walls."},
+     "Looks at the surroundings of an estimate, so that edges and corners are not dark "
+     "and no light leaks through thin walls."},
     {"bright_spots", SETTING_BOOL, AT(bright_spots), "", 0, 1, 1, NULL, "", "auto",
      "Camera paths look aside at brightly lit places, such as what the sun throws "
-     "through a window, as they do at lamps, where that pays."},
+     "through a window, as they do at lights, where that pays."},
     {"gather_indirect", SETTING_BOOL, AT(gather_indirect), "", 0, 1, 1, NULL, "", "auto",
      "Photons carry indirect light too where trials say that a picture of the passes "
      "planned has less error so: smooth, and blurred at first. Off: paths carry it."},

@@ -1,6 +1,6 @@
 /*
- * Rectangles, as most lamps are: points drawn on them uniformly by the solid angle in
- * which they are seen (Ureña, Fajardo & King, "An Area-Preserving Parametrization for
+ * Rectangles, as most area lights are: points drawn on them uniformly by the solid angle
+ * in which they are seen (Ureña, Fajardo & King, "An Area-Preserving Parametrization for
  * Spherical Rectangles", 2013). Two triangles are one of them, so that neither must be
  * chosen first and the numbers that draw the point stay stratified over both.
  */

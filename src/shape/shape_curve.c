@@ -239,7 +239,7 @@ static bool init_area(curve_shape *c, const params *p, GError **error)
 static void *create(const params *p, const shape_place *at, GError **error)
 {
     if (at->area_light) {
-        error_at(error, at->area_light->place, "a curve can not be a lamp, in pbrt too");
+        error_at(error, at->area_light->place, "a curve can not be a light, in pbrt too");
         return NULL;
     }
     curve_input in = {0};

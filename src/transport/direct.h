@@ -25,9 +25,9 @@ typedef struct direct_query {
     unsigned looked;   /**< likewise, classes that direct_environments is asked with */
     bool by_side;      /**< the path takes each side apart ... */
     float p_side[2];   /**< ... with this probability: reflection, transmission */
-    /** Of what glossy lobes send, photons carry this share; NULL: none of it. */
+    /** What glossy lobes send photons bring too, by this MIS weight; NULL: never. */
     const caustic_mis *mis;
-    const bsdf *all_wavelengths; /**< for the share: the bsdf, whatever wavelength the
+    const bsdf *all_wavelengths; /**< for that weight: the bsdf, whatever wavelength the
                                     path keeps */
 } direct_query;
 

@@ -131,7 +131,7 @@ typedef struct plan_trial {
     bool taken;
 } plan_trial;
 
-enum { MOST_PLAN_TRIALS = 4 }; /* size: caustic photons, guide, bright spots, one spare */
+enum { MOST_PLAN_TRIALS = 4 }; /* size: caustic photons, guide, bright spots, gather */
 
 /** @brief Photons that were traced before, in place of those that a pass would trace. */
 typedef struct photon_supply {
@@ -173,8 +173,8 @@ typedef struct transport_plan {
     size_t n_vertex_paths; /**< light subpaths that these are of */
     emission_guide *guide; /**< owned; NULL: none was learned */
     bool uses_mis;         /**< photons share caustics with paths from the eye */
-    caustic_mis mis;       /**< what they share before radii are known, for trials */
-    float *boost;          /**< share.boost; owned */
+    caustic_mis mis;       /**< their MIS weights before radii are known, for trials */
+    float *boost;          /**< caustic_mis.boost; owned */
     const photon_supply *supply; /**< borrowed; NULL: photons are traced */
     lit_place *lit; /**< that light sampling found (path_effort_measure); owned */
     size_t n_lit;
@@ -184,7 +184,7 @@ typedef struct transport_plan {
     double photon_rays; /**< and its part of the photons of a pass */
     float p_blurred;    /**< probability of a gather that is seen by way of a diffuse
                            bounce, where photons share */
-    float p_blurred_in_media; /**< the same of one along a way through a medium: about
+    float p_blurred_in_media; /**< the same of one along a segment through a medium: about
                                  one such a path */
 } transport_plan;
 

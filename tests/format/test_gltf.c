@@ -221,7 +221,8 @@ static void test_defaults(void)
 {
     notes kept = {g_string_new(NULL)};
     g_autoptr(view) v = load_shown("\"materials\":[{}]," MESH("0") NODES, &kept);
-    g_assert_nonnull(strstr(kept.text->str, "no light in it; a soft sky is added"));
+    g_assert_nonnull(
+        strstr(kept.text->str, "no light in it; a soft environment is added"));
     g_assert_nonnull(strstr(kept.text->str, "no camera in it; one that frames it"));
     for (int k = 0; k < 4; k++) {
         vec2 raster;

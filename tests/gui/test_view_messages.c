@@ -63,11 +63,12 @@ static void test_notes(void)
     GtkWidget *all = GTK_WIDGET(w->gtk);
     /* No light and no camera: two notes, which hide nothing. */
     g_assert_nonnull(find_text(all, "2 notes"));
-    g_assert_null(find_text(messages_panel_strip(w->messages), "sky"));
-    g_assert_null(find_text(all, "a soft sky is added"));
+    g_assert_null(find_text(messages_panel_strip(w->messages), "environment"));
+    g_assert_null(find_text(all, "a soft environment is added"));
     gtk_widget_activate_action(all, "win.page", "s", "messages");
     view_settle();
-    g_assert_nonnull(find_text(all, "notes.gltf: no light in it; a soft sky is added"));
+    g_assert_nonnull(
+        find_text(all, "notes.gltf: no light in it; a soft environment is added"));
     g_assert_null(find_text(all, path)); /* the folder says nothing */
     view_close(w);
 }

@@ -303,7 +303,7 @@ static const struct {
     {"max_forward_bounces", "/knob-meanings/bounces"},
     {"final_gather", "/transport/furnace/final-gather"},
     {"gather_rays", "/knob-meanings/gather-rays"},
-    {"precompute_radiance", "/transport/kept-irradiance"},
+    {"precompute_radiance", "/transport/irradiance-cache"},
     {"direct_illumination", "/knob-meanings/photons"},
     {"shadow_rays", "/transport/shadow-rays"},
     {"photons", "/knob-meanings/photons"},

@@ -66,7 +66,7 @@ static void test_furnace_gathers_within_glass(void)
         "\"float radius\" 0.4\n"
 
 /* Irradiance that is kept is what the maps say. */
-static void test_kept_irradiance(void)
+static void test_irradiance_cache(void)
 {
     static const struct {
         const char *text, *words;
@@ -439,7 +439,7 @@ int main(int argc, char **argv)
     g_test_add_func("/transport/furnace/map", test_furnace_by_the_map);
     g_test_add_func("/transport/furnace/final-gather", test_furnace_by_final_gather);
     g_test_add_func("/transport/furnace/within-glass", test_furnace_gathers_within_glass);
-    g_test_add_func("/transport/kept-irradiance", test_kept_irradiance);
+    g_test_add_func("/transport/irradiance-cache", test_irradiance_cache);
     g_test_add_func("/transport/kept-with-own-radius", test_kept_with_own_radius);
     g_test_add_func("/transport/furnace/path", test_furnace_by_path);
     for (size_t i = 0; i < G_N_ELEMENTS(furnishings); i++) {

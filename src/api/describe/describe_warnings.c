@@ -80,10 +80,10 @@ static void inspect_glass(inspection *in, guint i)
 /* ---- Surfaces in one place ---- */
 
 /* Points of all shapes of glass that are looked at, and of each. */
-enum { PROBES = 1 << 18, LEAST_PROBES = 8, MOST_PROBES = 256 };
+enum { QUERIES = 1 << 18, LEAST_QUERIES = 8, MOST_QUERIES = 256 };
 
 /* Rays look for a surface from this far, over the width of the shape it is asked of. */
-#define PROBE_WAY 1e-3f
+#define QUERY_DISTANCE 1e-3f
 
 static shape_sample point_of(const shape *on, unsigned k, unsigned n)
 {
@@ -101,24 +101,25 @@ static int met_instead(const inspection *in, guint i, const shape_sample *at, un
     float u = 0.4656f * (float)k, v = 0.3247f * (float)k;
     vec3 slant = f.s * (u - floorf(u) - 0.43f) + f.t * (v - floorf(v) - 0.61f);
     vec3 from = normalize3(f.n + slant);
-    float way = PROBE_WAY * sqrtf(on->area);
+    float distance = QUERY_DISTANCE * sqrtf(on->area);
     float rounding = maxf(8e-6f * max_component3(abs3(at->p)), at->error);
-    ray r = {.origin = at->p + from * way, .direction = -from, .t_max = 2.0f * way};
+    ray r = {
+        .origin = at->p + from * distance, .direction = -from, .t_max = 2.0f * distance};
     surface_hit hit;
     bool met = scene_intersect(in->scene, &r, &hit);
-    return met && fabsf(hit.t - way) < rounding ? hit.shape : (int)i;
+    return met && fabsf(hit.t - distance) < rounding ? hit.shape : (int)i;
 }
 
 /* Where glass stands right on a table, rounding tells which of the two a ray meets, and
    it passes the other. Lights and what lets nothing through may touch one another. */
-static void inspect_touching(inspection *in, guint i, unsigned n_probes)
+static void inspect_touching(inspection *in, guint i, unsigned n_queries)
 {
     const shape *on = in->scene->shapes->pdata[i];
     const material *m = material_of_shape(in->scene, on);
     if (!m || on->object != NO_INDEX || !material_encloses(m))
         return;
-    for (unsigned k = 0; k < 2 * n_probes; k++) {
-        shape_sample at = point_of(on, k / 2, n_probes);
+    for (unsigned k = 0; k < 2 * n_queries; k++) {
+        shape_sample at = point_of(on, k / 2, n_queries);
         int other = met_instead(in, i, &at, k);
         if (other == (int)i)
             continue;
@@ -272,10 +273,10 @@ GPtrArray *describe_warnings(const view *v)
 {
     const scene *s = v->scene;
     inspection in = {s, &v->camera, g_ptr_array_new_with_free_func(g_free)};
-    unsigned probes = PROBES / MAX(s->shapes->len, 1);
+    unsigned queries = QUERIES / MAX(s->shapes->len, 1);
     for (guint i = 0; i < s->shapes->len; i++) {
         inspect_glass(&in, i);
-        inspect_touching(&in, i, CLAMP(probes, LEAST_PROBES, MOST_PROBES));
+        inspect_touching(&in, i, CLAMP(queries, LEAST_QUERIES, MOST_QUERIES));
     }
     for (guint i = 0; i < s->lights->len; i++) {
         const light *l = s->lights->pdata[i];

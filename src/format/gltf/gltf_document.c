@@ -33,11 +33,11 @@ void gltf_take_error(gltf *g, const json_value *at, GError *error)
         g_error_free(error);
         return;
     }
-    g_autofree char *way = json_path(at);
+    g_autofree char *path = json_path(at);
     g_autofree char *before = g_strdup_printf("%s: ", g->path);
     const char *text = error->message;
     text += g_str_has_prefix(text, before) ? strlen(before) : 0;
-    error_set(&g->json.error, (error_code)error->code, "%s%s: %s", before, way, text);
+    error_set(&g->json.error, (error_code)error->code, "%s%s: %s", before, path, text);
     g_error_free(error);
 }
 

@@ -6,7 +6,7 @@
 static const gltf_extension_row rows[] = {
     {"KHR_lights_punctual", GLTF_RENDERED,
      "1 cd/m² is a radiance of 1; Blender's 683 lm for 1 W are taken back, and spot "
-     "lamps of its files fade as in Blender"},
+     "lights of its files fade as in Blender"},
     {"KHR_materials_anisotropy", GLTF_RENDERED, ""},
     {"KHR_materials_clearcoat", GLTF_APPROXIMATED, "with the surface's own normals"},
     {"KHR_materials_diffuse_transmission", GLTF_RENDERED, ""},
@@ -30,7 +30,7 @@ static const gltf_extension_row rows[] = {
     {"ADOBE_materials_clearcoat_specular", GLTF_LEFT_OUT, "a coat has an index of 1.5"},
     {"ADOBE_materials_clearcoat_tint", GLTF_LEFT_OUT, "a coat is clear"},
     {"ADOBE_materials_thin_transparency", GLTF_LEFT_OUT, ""},
-    {"EXT_lights_ies", GLTF_LEFT_OUT, "the lamp shines the same all around"},
+    {"EXT_lights_ies", GLTF_LEFT_OUT, "the light shines the same all around"},
     {"EXT_lights_image_based", GLTF_LEFT_OUT, ""},
     {"EXT_mesh_features", GLTF_LEFT_OUT, "says nothing of how it looks"},
     {"EXT_structural_metadata", GLTF_LEFT_OUT, "says nothing of how it looks"},

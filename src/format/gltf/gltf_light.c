@@ -55,8 +55,8 @@ static double lumens_of_unit(gltf *g)
     if (!is_from_blender(g))
         return 1.0;
     gltf_note(g, LOG_NOTE,
-              strong ? "Blender's lamps: 683 lm are read as 1 W, as it does"
-                     : "Blender's lamps are faint: read as they stand, not "
+              strong ? "Blender's lights: 683 lm are read as 1 W, as it does"
+                     : "Blender's lights are faint: read as they stand, not "
                        "as 683 lm for 1 W");
     return strong ? LUMENS_PER_WATT : 1.0;
 }

@@ -29,7 +29,7 @@ enum { LEAST_MEMORY = 512 << 20, MEMORY_PER_BYTE = 250, LEAST_SECONDS = 20 };
 static const double SECONDS_PER_BYTE = 4e-6, CLOCK_PER_SECOND = 4.0;
 
 enum {
-    BEAT_MS = 50,
+    PROGRESS_MS = 50,
     GRACE_MS = 50,
     FIRST_ROOM = 1 << 20,
     ABOVE_STANDARD = 10,
@@ -239,8 +239,8 @@ static stop listen_to(const child *c, heard *h, GError **error)
 {
     for (;;) {
         struct pollfd ready = {.fd = c->pipe, .events = POLLIN};
-        int n = poll(&ready, 1, BEAT_MS);
-        if (cancel_beat(c->job->cancel))
+        int n = poll(&ready, 1, PROGRESS_MS);
+        if (cancel_tell_progress(c->job->cancel))
             return STOP_CANCEL;
         if (g_get_monotonic_time() > c->deadline)
             return STOP_TIME;

@@ -1,6 +1,6 @@
 /*
- * Lights and cameras of models. Few formats say in what units lamps shine, so colours are
- * taken as W/sr, or W/m² of directional light.
+ * Lights and cameras of models. Few formats say in what units lights shine, so colours
+ * are taken as W/sr, or W/m² of directional light.
  */
 #include "format/model/model_scene.h"
 
@@ -55,7 +55,7 @@ static bool add_light(model_builder *b, const stream_light *l, GError **error)
     give_point(p, "from", from);
     if (kind != STREAM_POINT)
         give_point(p, "to", to);
-    model_tell(b, "lamps are taken to shine in W/sr and W/m²");
+    model_tell(b, "lights are taken to shine in W/sr and W/m²");
     return builder_add_light(b->builder, kinds[kind], p, &to_world, error);
 }
 

@@ -269,7 +269,7 @@ static float darkest_around(const blend_loop *loop, int c, size_t at)
     return darkest;
 }
 
-/* Lines through the edge of a lamp swing below what is beside it: nothing is darker than
+/* Lines through the edge of a light swing below what is beside it: nothing is darker than
    all around it was. */
 static void join_row(int y, void *data)
 {

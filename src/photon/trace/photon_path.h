@@ -1,5 +1,5 @@
 /*
- * One photon's way, by stages; trace.c leads it from one to the next:
+ * One photon's path, by stages; trace.c leads it from one to the next:
  *
  *   photon_start.c ─► photon_medium.c ─► photon_land.c ─► photon_scatter.c ─┐
  *                       ▲                                                   │
@@ -23,7 +23,7 @@ typedef struct photon_path {
     path_segment at;
     int light;
     float mis_weight; /* of its light that it carries */
-    caustic_end end;  /* the light's end of its way, as far as is known: for the share */
+    caustic_end end;  /* the light's end of it, as far as is known: for its MIS weight */
     uint32_t primitive;  /* of the light */
     bool from_delta;     /* the light cannot be hit by a ray */
     bool specular_only;  /* no lobe but SPECULAR so far */
@@ -83,7 +83,7 @@ unsigned photon_path_lobes(const photon_path *path);
 bool photon_path_survives_landing(photon_path *path, const surface_hit *hit,
                                   const bsdf *b);
 
-/** @brief Scatters at the hit. @return false if the photon's way ends here */
+/** @brief Scatters at the hit. @return false if the photon's path ends here */
 bool photon_path_scatter(photon_path *path, const surface_hit *hit, const bsdf *b);
 
 /** @brief Takes a photon through its medium, where it leaves another of the volume map;

@@ -38,7 +38,7 @@
 #define LONG_PATH 500.0f
 
 /** @brief The most that a path survives with that has had n bounces: all but one for the
- * first ones, so that clear glass brings no grain, and less and less on a long way. */
+ * first ones, so that clear glass brings no grain, and less and less on a long path. */
 static inline float most_survival(int64_t n)
 {
     float part = (float)n / LONG_PATH;

@@ -79,8 +79,8 @@ static void add_floats(void *to, const void *from, int n)
         sum[i] += number[i];
 }
 
-/* Lamps in mirrors are lights in sight: what they are of a layer. */
-static double lamps_luminance(const guide_sum *guides, int layer)
+/* Lights in mirrors are in sight too: what they are of a layer. */
+static double lights_luminance(const guide_sum *guides, int layer)
 {
     return layer == LAYER_SPECULAR ? (double)guides->lights[LUMINANCE] : 0.0;
 }
@@ -95,7 +95,7 @@ void halves_end_pass(const film *f, size_t begin, size_t end)
         add_floats(&pixel->guides, &f->pass_guides[i], GUIDE_NUMBERS);
         for (size_t l = 0; l < N_LIGHTS; l++) {
             double y = (double)number[color + 3 * l + LUMINANCE];
-            y -= lamps_luminance(&f->pass_guides[i], (int)l);
+            y -= lights_luminance(&f->pass_guides[i], (int)l);
             pixel->y2[l] += w > 0.0 ? y * y / w : 0.0;
         }
         if (f->n_passes % 2 == 0) {
@@ -153,13 +153,13 @@ static float layer_variance(const film *f, size_t i, int layer)
 {
     const film_sum *sum = &f->pixels[i].sum;
     double y = sum->color[layer][LUMINANCE], w = fabs(sum->weight);
-    y -= lamps_luminance(&f->halves[i].guides, layer);
+    y -= lights_luminance(&f->halves[i].guides, layer);
     double y2 = f->halves[i].y2[layer], n = (double)f->n_passes;
     if (f->n_cells > 0 && film_pass_counts(f, i)) {
         film_sum pass = {0};
         film_add_pass(&pass, &f->pass[i]);
         double more = pass.color[layer][LUMINANCE], by = fabs(pass.weight);
-        more -= lamps_luminance(&f->pass_guides[i], layer);
+        more -= lights_luminance(&f->pass_guides[i], layer);
         y += more;
         w += by;
         y2 += by > 0.0 ? more * more / by : 0.0;

@@ -3,7 +3,7 @@
  *
  * Their edges are sharper than any filter keeps them with a few samples a pixel, and
  * beside them there may be nothing: they are not filtered. Nor is their mean over a pixel
- * what one wants to see at their edges, where a thousandth of a lamp is brighter than
+ * what one wants to see at their edges, where a thousandth of a light is brighter than
  * white: with the share of the pixel that they take, image_shown_pixel draws them smooth.
  */
 #pragma once

@@ -2,9 +2,9 @@
 #include "transport/path/path_walk.h"
 #include "transport/photonmap/photonmap.h"
 
-/* What photons leave of the light that the path ran into. */
-static float left_by_photons(const path_walk *walk, const camera_path *path,
-                             const met_light *met)
+/* MIS weight of a light that the path ran into, beside the photons that found it. */
+static float weight_beside_photons(const path_walk *walk, const camera_path *path,
+                                   const met_light *met)
 {
     const surface_hit *hit = met->hit;
     vec3 d = path->at.ray.direction;
@@ -37,7 +37,7 @@ static void meet_light(void *data, const met_light *met)
     const scattered_from from = {path->from, path->pdf, path->every_light};
     float weight =
         direct_met_weight(walk->scene, walk->how, &from, path->at.ray.direction, met) *
-        left_by_photons(walk, path, met);
+        weight_beside_photons(walk, path, met);
     path_add_from(walk, path, met->radiance * weight, met->light);
     if (!path->at.eye && path->at.certain)
         walk->out->guide.lights += path->at.throughput * met->radiance * weight;
@@ -49,7 +49,7 @@ static void meet_surface(void *data, const surface_hit *hit)
     direct_meet(walk->scene, &walk->pass->w, &walk->path.at.ray, hit, meet_light, data);
 }
 
-/* Keeps what the share of photons depends on, where they may have one. */
+/* Keeps what the photons' MIS weight depends on, where they may have one. */
 static void note_density(const path_walk *walk, camera_path *path, const surface_hit *hit,
                          const bsdf *b, const bsdf_sample *next)
 {
@@ -141,7 +141,7 @@ static bool path_goes_on(path_walk *walk)
         return false;
     camera_path seen = *path;
     if (event == EVENT_SURFACE)
-        seen.at.throughput *= path_left_by_spots(walk, path, &hit, &b);
+        seen.at.throughput *= path_weight_beside_spots(walk, path, &hit, &b);
     path_sample_lights(walk, &seen, &hit, &b);
     if (event == EVENT_SURFACE) {
         path_gather_caustics(walk, &seen, &hit, &b);

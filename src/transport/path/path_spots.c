@@ -162,8 +162,8 @@ void path_look_at_spots(path_walk *walk, const camera_path *path, const surface_
         note_cost(walk, path, before);
 }
 
-float path_left_by_spots(path_walk *walk, const camera_path *path, const surface_hit *hit,
-                         const bsdf *b)
+float path_weight_beside_spots(path_walk *walk, const camera_path *path,
+                               const surface_hit *hit, const bsdf *b)
 {
     const photon_spots *spots = path->looked > 0.0f ? spots_of(walk, hit->time) : NULL;
     if (!spots || !(path->pdf > 0.0f) || !is_seen_alike(path->by_either, b))

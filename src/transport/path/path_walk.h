@@ -92,7 +92,7 @@ float path_looks(const path_walk *walk, const camera_path *path, const bsdf *b);
 void path_look_at_spots(path_walk *walk, const camera_path *path, const surface_hit *hit,
                         const bsdf *b);
 
-/** @brief What looking at spots from the surface before leaves to a path that came here
- * by itself. */
-float path_left_by_spots(path_walk *walk, const camera_path *path, const surface_hit *hit,
-                         const bsdf *b);
+/** @brief MIS weight of a path that came here by itself, beside looking at spots from the
+ * surface before. */
+float path_weight_beside_spots(path_walk *walk, const camera_path *path,
+                               const surface_hit *hit, const bsdf *b);

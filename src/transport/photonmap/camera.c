@@ -199,7 +199,7 @@ static void shade(camera_tree *tree, camera_branch *branch, const surface_hit *h
 }
 
 /* What light that is scattered in the medium sends along the branch's ray; what comes
-   from behind it is weakened. */
+   from behind it is multiplied by its transmittance. */
 static scene_event shade_medium(void *data, float length, const surface_hit *behind,
                                 surface_hit *at)
 {

@@ -6,8 +6,8 @@
  * A gather ray never counts lights it meets: light → here is the direct layer's, and
  * light → specular → here the caustic map's.
  *
- * Kept irradiance is looked up nearby only. Where light falls off to nothing, as on a
- * wall above its light, there are no photons, and the nearest place with any is far and
+ * The irradiance cache is looked up nearby only. Where light falls off to nothing, as on
+ * a wall above its light, there are no photons, and the nearest place with any is far and
  * in the light: what is dark would shine. There the maps are asked, which is quick, for
  * few photons are in reach.
  */
@@ -17,7 +17,7 @@
 #include "photon/direction.h"
 #include "photon/neighbourhood.h"
 
-/* ---- Irradiance kept at photon positions ---- */
+/* ---- The irradiance cache, at photon positions ---- */
 
 typedef struct irradiance_loop {
     const photonmap_pass *pass;
@@ -120,7 +120,7 @@ void irradiance_cache_free(irradiance_cache *cache)
 
 static irradiance_cache *cache_with_room(size_t n, size_t n_groups, GError **error)
 {
-    const char *what = "kept irradiance";
+    const char *what = "the irradiance cache";
     size_t padded = points_padded(n);
     irradiance_cache *cache = g_new0(irradiance_cache, 1);
     if (point_arrays_make(&cache->places, n, what, error))
@@ -182,7 +182,7 @@ static map_place place_of(const photonmap_pass *pass, const shading_point *at)
     return place;
 }
 
-static float kept_reach(const map_place *at, point_hits *hits)
+static float cache_reach(const map_place *at, point_hits *hits)
 {
     float least = INFINITY;
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
@@ -215,25 +215,25 @@ static unsigned faces_lanes(const void *data, size_t first, unsigned bits)
 
 static const point_rules facing_rules = {.accepts = faces, .accepted = faces_lanes};
 
-/* The nearest kept irradiance of a surface that faces the same way.
+/* The irradiance that the cache has nearest, of a surface that faces the same way.
    @return false: there is none within reach */
-static bool kept_irradiance(const map_place *at, estimate_scratch *scratch,
-                            spectrum *irradiance, const spectrum **groups)
+static bool cached_irradiance(const map_place *at, estimate_scratch *scratch,
+                              spectrum *irradiance, const spectrum **groups)
 {
     const photonmap_pass *pass = at->pass;
     point_hits *hits = &scratch->hits;
-    const irradiance_cache *kept = pass->irradiance[at->slice];
-    float reach = kept_reach(at, hits);
-    const facing by = {kept->normal, at->n};
+    const irradiance_cache *cache = pass->irradiance[at->slice];
+    float reach = cache_reach(at, hits);
+    const facing by = {cache->normal, at->n};
     const point_query query = {.p = at->p, .rules = &facing_rules, .data = &by};
-    if (!point_index_nearest(kept->index, &query, 1, reach, hits))
+    if (!point_index_nearest(cache->index, &query, 1, reach, hits))
         scratch->failed = true;
     if (hits->n == 0)
         return false;
     size_t k = hits->index[0];
-    *irradiance = kept->irradiance[k];
-    if (kept->groups)
-        *groups = kept->groups + (size_t)pass->scene->n_light_groups * k;
+    *irradiance = cache->irradiance[k];
+    if (cache->groups)
+        *groups = cache->groups + (size_t)pass->scene->n_light_groups * k;
     return true;
 }
 
@@ -256,7 +256,7 @@ static void collect(const photonmap_pass *pass, transport_scratch *scratch,
         scratch->gathered[i] += factor * parts[i];
 }
 
-/* What a Lambertian surface sends out by all maps, kept or asked; throughput times its
+/* What a Lambertian surface sends out by all maps, cached or asked; throughput times its
    parts by light groups are collected. */
 static spectrum outgoing_by_maps(const photonmap_pass *pass, const shading_point *at,
                                  spectrum throughput, transport_scratch *scratch)
@@ -264,7 +264,7 @@ static spectrum outgoing_by_maps(const photonmap_pass *pass, const shading_point
     const map_place place = place_of(pass, at);
     const spectrum f = at->bsdf->rho * INV_PI_F, *parts = NULL;
     spectrum irradiance = {0};
-    if (kept_irradiance(&place, &scratch->estimate, &irradiance, &parts)) {
+    if (cached_irradiance(&place, &scratch->estimate, &irradiance, &parts)) {
         collect(pass, scratch, throughput * f, parts);
         return irradiance * f;
     }
@@ -332,7 +332,7 @@ static bool gather_on(gather_path *path, const surface_hit *hit, const bsdf *b)
 }
 
 /* What the medium that the ray travels in sends along it; what comes from behind it is
-   weakened. */
+   multiplied by its transmittance. */
 static scene_event cross_medium(void *data, float length, const surface_hit *behind,
                                 surface_hit *at)
 {

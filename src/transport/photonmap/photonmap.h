@@ -71,7 +71,8 @@ spectrum photonmap_gather(const photonmap_pass *pass, photon_class c,
                           const shading_point *at, unsigned delta_lobes,
                           transport_scratch *scratch);
 
-/** @brief The time at which a slice's maps are probed: its middle, 0 where nothing moves.
+/** @brief The time at which a slice's maps are queried: its middle, 0 where nothing
+ * moves.
  */
 float photonmap_slice_time(const photonmap_pass *pass, int slice);
 

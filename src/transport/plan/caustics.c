@@ -31,7 +31,7 @@ uint64_t caustics_most(const transport_plan *plan)
 }
 
 /* Rays that a camera sample costs more where photons are gathered, however few: at the
-   first surface, whose edges are probed, twice as many, and later seldom. */
+   first surface, whose edges are looked at, twice as many, and later seldom. */
 static double gather_rays(const transport_plan *plan, const path_effort *paths)
 {
     double later = fmax(paths->surfaces - 1.0, 0.0) * (double)plan->p_blurred;

@@ -230,7 +230,7 @@ static inline bool vcm_length_allowed(const vcm_pass *pass, unsigned n)
     return limit < 0 || n <= limit;
 }
 
-/** @brief What is left of light between a hit and a point at distance in direction.
+/** @brief Transmittance between a hit and a point at distance in direction.
  * @return false: something stands between them */
 bool vcm_visible(const vcm_pass *pass, const surface_hit *from, vec3 direction,
                  float distance, spectrum *transmittance);
