@@ -18,6 +18,20 @@ static const GOptionEntry common_entries[] = {
     {"version", 'V', 0, G_OPTION_ARG_NONE, &wants_version, "Show the version", NULL},
     G_OPTION_ENTRY_NULL};
 
+/* In help, FORMATS are those that pictures are written in. */
+static const char *with_formats(const char *text, void *data)
+{
+    (void)data;
+    static const char word[] = "FORMATS";
+    const char *at = strstr(text, word);
+    if (!at)
+        return text;
+    g_autofree char *formats = g_strjoinv(", ", (char **)neph_image_written_extensions());
+    g_autofree char *whole =
+        g_strdup_printf("%.*s%s%s", (int)(at - text), text, formats, at + strlen(word));
+    return g_intern_string(whole);
+}
+
 static GOptionContext *context_new(const usage *how)
 {
     GOptionContext *context = g_option_context_new(how->operands);
@@ -29,6 +43,8 @@ static GOptionContext *context_new(const usage *how)
     if (how->loads_scene)
         g_option_context_add_main_entries(context, loading_entries, NULL);
     g_option_context_add_main_entries(context, common_entries, NULL);
+    g_option_group_set_translate_func(g_option_context_get_main_group(context),
+                                      with_formats, NULL, NULL);
     return context;
 }
 

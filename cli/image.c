@@ -13,7 +13,7 @@ static struct {
 
 static const GOptionEntry entries[] = {
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &given.output,
-     "Write the image there: .exr, .png, .jpg, .hdr or .pfm", "FILE"},
+     "Write the image there: FORMATS", "FILE"},
     {"size", 0, 0, G_OPTION_ARG_STRING, &given.size,
      "Scale each image to so many pixels, by the mean over areas", "WxH"},
     {"layer", 0, 0, G_OPTION_ARG_STRING, &given.layer,

@@ -22,7 +22,7 @@ static const GOptionEntry entries[] = {
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &given.output,
      "Write the photons as binary PLY (position, direction, RGB flux, class), or a "
      "picture "
-     "of them over the wireframe (.png, .jpg, .exr, .hdr, .pfm)",
+     "of them over the wireframe (FORMATS)",
      "FILE"},
     {"size", 0, 0, G_OPTION_ARG_STRING, &given.size,
      "Size of that picture, or of those that --save is planned for, pixels", "WxH"},

@@ -3,7 +3,7 @@
 kind of things has to be named beside its own file and its line of a .def.
 
 Prints both; exits with 1 above MOST_FILES or if a kind is named anywhere else, be it in a text
-that lists kinds.
+or an array that lists kinds.
 """
 import os
 import re
@@ -29,6 +29,16 @@ REGISTRIES = [
 # Kinds that others are made of: a mesh by subdivision and readers, an area light of a
 # shape that shines, the algorithms that auto joins.
 PARTS = {'shape_mesh', 'light_area', 'transport_photonmap', 'transport_path'}
+
+
+# Arrays that list what is another's, whose kinds are ours by name.
+OTHERS = {'src/format/model/model_light.c'}  # the three lamps that an importer's files have
+
+STRING = r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"'
+TEXT = re.compile(rf'{STRING}(?:\s+{STRING})*')
+ARRAY = re.compile(rf'{STRING}(?:\s*,\s*(?:\[\w+\] = )?{STRING})+')
+# "a, b or c", each perhaps in quotes
+LISTED = re.compile(r'\w+(?=,| or )|(?<= or )\w+')
 
 
 def sources(*folders):
@@ -70,16 +80,25 @@ def find_places(registry, symbol, own, texts):
                 yield kind, path
 
 
-def find_lists(own, texts):
-    """Files with a text that lists kinds by name, which is to be made from the .def."""
-    name = re.compile(own.format(r'\w+', r'\w+'))
-    names = {n for path, text in texts if name.match(path)
+def lists_in(text):
+    """Words of each text that lists some, and of each array of words."""
+    for said in TEXT.findall(text):
+        plain = re.sub(r'"\s+"', '', said).replace('\\"', '')
+        yield LISTED.findall(plain)
+    for array in ARRAY.findall(text):
+        yield re.findall(r'"(\w+)"', array)
+
+
+def find_lists(registry, own, texts, lists):
+    """Files with a list of kinds by name, which is to be made from the .def."""
+    file = re.compile(own.format(r'\w+', r'\w+'))
+    names = {n for path, text in texts if file.match(path)
              for n in re.findall(r'\.name = "(\w+)"', text)}
-    for path, text in texts:
-        for said in re.findall(r'"[^"\n]*"(?:\s+"[^"\n]*")*', text):
-            listed = set(re.findall(r'\w+(?=,)', said)) & names
-            if len(listed) > 2:
-                yield ' '.join(sorted(listed)), path
+    names.update(word for words in kinds(registry) for word in words)
+    for path, words in lists:
+        listed = names.intersection(words)
+        if len(listed) > 2:
+            yield ' '.join(sorted(listed)), path
 
 
 def main():
@@ -89,8 +108,11 @@ def main():
         wrong += too_many
         print(f'{n:4} files in {folder}' + (f', more than {MOST_FILES}' if too_many else ''))
     texts = list(sources('src', 'gui', 'cli'))
+    lists = [(path, words) for path, text in texts if path not in OTHERS
+             for words in lists_in(text)]
     for registry, symbol, own in REGISTRIES:
-        places = list(find_places(registry, symbol, own, texts)) + list(find_lists(own, texts))
+        places = (list(find_places(registry, symbol, own, texts)) +
+                  list(find_lists(registry, own, texts, lists)))
         print(f'{len(list(kinds(registry))):4} kinds in {registry}, '
               f'{len(places)} named elsewhere')
         for kind, path in places:

@@ -6,7 +6,7 @@ static render_options given;
 
 static const GOptionEntry entries[] = {
     {"output", 'o', 0, G_OPTION_ARG_FILENAME_ARRAY, &given.outputs,
-     "Write the image there: .exr, .png, .jpg, .hdr or .pfm; may be given again", "FILE"},
+     "Write the image there: FORMATS; may be given again", "FILE"},
     {"layer", 0, 0, G_OPTION_ARG_FILENAME_ARRAY, &given.layers,
      "Write a layer of it there, such as caustic=caustic.png; may be given again",
      "NAME=FILE"},

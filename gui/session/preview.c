@@ -1,7 +1,6 @@
 #include "session/preview.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Pixels of the very first look. */
 enum { FIRST_PIXELS = 9600, LEAST_PIXELS = 1200 };
@@ -28,8 +27,8 @@ NephSettings *preview_settings(const NephSettings *wanted, double extent)
         {"caustic_emission", "specular-area"},
     };
     NephSettings *s = neph_settings_copy(wanted);
-    g_autofree char *integrator = neph_settings_get(s, "integrator");
-    if (strcmp(integrator, "path") != 0)
+    /* What sends photons is seen soonest by few of them. */
+    if (neph_settings_reads(s, "photons"))
         neph_settings_set(s, "integrator", "photonmap", NULL);
     for (size_t i = 0; i < G_N_ELEMENTS(quick); i++)
         neph_settings_set(s, quick[i][0], quick[i][1], NULL);

@@ -13,9 +13,6 @@
 
 #include <string.h>
 
-/* Kind number i; a name of NULL behind the last. */
-typedef directive_kind (*kind_at)(size_t i);
-
 static directive_kind texture_at(size_t i)
 {
     const texture_kind *kind = texture_kind_at(i);
@@ -82,6 +79,7 @@ typedef struct feature_list {
     const char *directive, *pbrt_kinds;
     kind_at at;
     const char *common; /* parameters that all have */
+    bool own_too;       /* then those of the table that pbrt has not */
 } feature_list;
 
 static const feature_list lists[] = {
@@ -89,32 +87,34 @@ static const feature_list lists[] = {
      "seed displacementedgescale gpu pixelstats rendercoordsys wavefront "
      "disablepixeljitter disabletexturefiltering disablewavelengthjitter forcediffuse "
      "msereferenceimage msereferenceout",
-     pbrt_option_kind, NULL},
-    {"Camera", "perspective orthographic spherical realistic", camera_kind_of, NULL},
-    {"Film", "rgb gbuffer spectral", film_at, NULL},
-    {"PixelFilter", "box gaussian mitchell sinc triangle", filter_at, NULL},
+     pbrt_option_kind, NULL, false},
+    {"Camera", "perspective orthographic spherical realistic", camera_kind_of, NULL,
+     false},
+    {"Film", "rgb gbuffer spectral", film_at, NULL, false},
+    {"PixelFilter", "box gaussian mitchell sinc triangle", filter_at, NULL, false},
     {"Sampler", "halton independent paddedsobol pmj02bn sobol stratified zsobol",
-     pbrt_sampler_kind, NULL},
+     pbrt_sampler_kind, NULL, false},
     {"Integrator",
      "ambientocclusion bdpt function lightpath mlt path randomwalk simplepath "
-     "simplevolpath sppm volpath photonmap auto vcm",
-     pbrt_integrator_kind, NULL},
-    {"Accelerator", "bvh kdtree", pbrt_accelerator_kind, NULL},
+     "simplevolpath sppm volpath",
+     pbrt_integrator_kind, NULL, true},
+    {"Accelerator", "bvh kdtree", pbrt_accelerator_kind, NULL, false},
     {"Shape", "bilinearmesh curve cylinder disk loopsubdiv plymesh sphere trianglemesh",
-     shape_at, "alpha camera_visible"},
+     shape_at, "alpha camera_visible", false},
     {"LightSource", "distant goniometric infinite point projection spot", light_at,
-     LIGHT_PARAMETERS},
-    {"AreaLightSource", "diffuse", light_at, LIGHT_PARAMETERS},
+     LIGHT_PARAMETERS, false},
+    {"AreaLightSource", "diffuse", light_at, LIGHT_PARAMETERS, false},
     {"Material",
      "coatedconductor coateddiffuse conductor dielectric diffuse diffusetransmission "
      "hair "
      "interface measured mix subsurface thindielectric",
-     material_at, MATERIAL_PARAMETERS},
-    {"MakeNamedMedium", "homogeneous cloud nanovdb rgbgrid uniformgrid", medium_at, NULL},
+     material_at, MATERIAL_PARAMETERS, false},
+    {"MakeNamedMedium", "homogeneous cloud nanovdb rgbgrid uniformgrid", medium_at, NULL,
+     false},
     {"Texture",
      "bilerp checkerboard constant directionmix dots fbm imagemap marble mix ptex scale "
      "windy wrinkled",
-     texture_at, NULL},
+     texture_at, NULL, false},
 };
 
 /* What is not quite as pbrt has it, or is made elsewhere than in the tables. */
@@ -242,16 +242,24 @@ static void append_row(GString *out, const feature_list *list, const char *name)
                            text ? text : "");
 }
 
+static void append_list(GString *out, const feature_list *list)
+{
+    directive_kind kind;
+    g_auto(GStrv) theirs = g_strsplit(list->pbrt_kinds, " ", -1);
+    for (char **name = theirs; *name; name++)
+        append_row(out, list, *name);
+    for (size_t i = 0; list->own_too && (kind = list->at(i)).name; i++)
+        if (!g_strv_contains((const char *const *)theirs, kind.name))
+            append_row(out, list, kind.name);
+}
+
 char *features_markdown(void)
 {
     GString *out = g_string_new("| directive | kind | | parameters | accepted without "
                                 "effect | |\n"
                                 "|---|---|---|---|---|---|\n");
-    for (size_t i = 0; i < G_N_ELEMENTS(lists); i++) {
-        g_auto(GStrv) kinds = g_strsplit(lists[i].pbrt_kinds, " ", -1);
-        for (char **kind = kinds; *kind; kind++)
-            append_row(out, &lists[i], *kind);
-    }
+    for (size_t i = 0; i < G_N_ELEMENTS(lists); i++)
+        append_list(out, &lists[i]);
     gltf_append_features(out);
     return g_string_free(out, FALSE);
 }

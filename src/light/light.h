@@ -45,7 +45,7 @@ typedef struct light_aim {
 } light_aim;
 
 typedef struct light_kind {
-    const char *name; /**< "point", "spot", "distant", "infinite", "diffuse" (area) */
+    const char *name;       /**< as scenes say it; others may have the same */
     const char *parameters; /**< those it reads, with spaces between */
     /** Tells kinds of one name apart by their parameters, none of which it marks used;
      * NULL: always meant. The first in the table that is meant is made. */

@@ -364,6 +364,23 @@ static void test_own_integrators_keep_their_names(void)
     g_assert_cmpint(s.class_photons[2], ==, 5000);
 }
 
+/* Whatever is registered can be said, by pbrt-v3's files too. */
+static void test_registered_integrators_are_known(void)
+{
+    const char *const *words = settings_find("integrator")->words;
+    static const char *const films[] = {"rgb", "image"}; /* of v4, of v3 */
+    for (size_t f = 0; f < G_N_ELEMENTS(films); f++) {
+        for (int k = 0; k < N_INTEGRATORS; k++) {
+            g_autofree char *text =
+                g_strdup_printf(CAMERA "Film \"%s\" Integrator \"%s\" WorldBegin\n" LIGHT,
+                                films[f], words[k]);
+            g_autoptr(scene) s = scene_of(text);
+            int want = k == INTEGRATOR_PATH ? INTEGRATOR_AUTO : k; /* pbrt's own word */
+            g_assert_cmpint(s->settings.integrator, ==, want);
+        }
+    }
+}
+
 static void test_no_integrator_is_the_default(void)
 {
     settings s = settings_of("Option \"integer seed\" 11 \"bool wavefront\" true\n"
@@ -513,6 +530,8 @@ int main(int argc, char **argv)
     g_test_add_func("/pbrt/sppm", test_sppm_becomes_photonmap);
     g_test_add_func("/pbrt/path", test_paths_become_auto_or_vcm);
     g_test_add_func("/pbrt/own-integrators", test_own_integrators_keep_their_names);
+    g_test_add_func("/pbrt/registered-integrators",
+                    test_registered_integrators_are_known);
     g_test_add_func("/pbrt/no-integrator", test_no_integrator_is_the_default);
     g_test_add_func("/pbrt/repeated", test_last_of_repeated_counts);
     g_test_add_func("/pbrt/notes", test_notes_say_what_was_chosen);

@@ -146,6 +146,20 @@ static void test_preview(void)
     g_assert_cmpfloat(g_ascii_strtod(radius, NULL), >, 0.0);
 }
 
+/* With photons where the picture has them, else as it is. */
+static void test_preview_integrator(void)
+{
+    static const char *const looks[][2] = {
+        {"auto", "photonmap"}, {"vcm", "photonmap"}, {"path", "path"}};
+    g_autoptr(NephSettings) wanted = neph_settings_new();
+    for (size_t i = 0; i < G_N_ELEMENTS(looks); i++) {
+        g_assert_true(neph_settings_set(wanted, "integrator", looks[i][0], NULL));
+        g_autoptr(NephSettings) quick = preview_settings(wanted, 10.0);
+        g_autofree char *integrator = neph_settings_get(quick, "integrator");
+        g_assert_cmpstr(integrator, ==, looks[i][1]);
+    }
+}
+
 /* ---- Colours ---- */
 
 /* A picture of one row, by way of a file: the header makes no images. */
@@ -307,6 +321,7 @@ int main(int argc, char **argv)
     g_test_add_func("/viewpoint/dolly", test_dolly);
     g_test_add_func("/viewpoint/frame", test_frame);
     g_test_add_func("/viewpoint/preview", test_preview);
+    g_test_add_func("/viewpoint/preview-integrator", test_preview_integrator);
     g_test_add_func("/viewpoint/tones", test_tones);
     g_test_add_func("/viewpoint/curves", test_curves);
     g_test_add_func("/viewpoint/layers", test_layers);

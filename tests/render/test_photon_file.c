@@ -217,8 +217,8 @@ static void test_damaged(void)
 static void test_nothing_to_keep(void)
 {
     static const char *const words[][2] = {
-        {"integrator=path", "expected photonmap, sppm or auto"},
-        {"integrator=vcm", "expected photonmap, sppm or auto"},
+        {"integrator=path", "expected one of photonmap, auto, sppm,"},
+        {"integrator=vcm", "expected one of photonmap, auto, sppm,"},
         {"integrator=auto gather_indirect=off", "there is nothing to keep"},
     };
     g_autoptr(view) v = subject(ROOM_CAMERA SIZE(8), ROOM_LAMP(""), "");

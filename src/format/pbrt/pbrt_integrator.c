@@ -39,8 +39,33 @@ static const path_integrator path_integrators[] = {
      "regularize bootstrapsamples chains mutationsperpixel largestepprobability sigma"},
 };
 
-/** Our own, which take every setting as a parameter. */
-static const char *const own_integrators[] = {"photonmap", "auto", "vcm", NULL};
+static const path_integrator *find_path_integrator(const char *name)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(path_integrators); i++)
+        if (strcmp(path_integrators[i].name, name) == 0)
+            return &path_integrators[i];
+    return NULL;
+}
+
+/** Number i of our own, which take every setting as a parameter: those whose names say
+ * nothing else in pbrt. NULL behind the last. */
+static const char *own_integrator(size_t i)
+{
+    const char *const *words = settings_find("integrator")->words;
+    for (int k = 0; k < N_INTEGRATORS; k++)
+        if (!find_path_integrator(words[k]) && i-- == 0)
+            return words[k];
+    return NULL;
+}
+
+static bool is_own(const char *name)
+{
+    const char *own;
+    for (size_t i = 0; (own = own_integrator(i)); i++)
+        if (strcmp(own, name) == 0)
+            return true;
+    return false;
+}
 
 static const directive_kind sppm = {
     "sppm", "maxdepth photonsperiteration radius iterations seed", "", NULL,
@@ -52,10 +77,7 @@ directive_kind pbrt_integrator_kind(size_t i)
     if (i == N_PATHS)
         return sppm;
     if (i > N_PATHS)
-        return (directive_kind){i - N_PATHS - 1 < g_strv_length((char **)own_integrators)
-                                    ? own_integrators[i - N_PATHS - 1]
-                                    : NULL,
-                                "", "", NULL,
+        return (directive_kind){own_integrator(i - N_PATHS - 1), "", "", NULL,
                                 "ours: every [setting](settings.md) is a parameter"};
     const path_integrator *of = &path_integrators[i];
     const char *becomes = of->strategies ? "becomes `vcm`" : "becomes `auto`";
@@ -299,14 +321,6 @@ static void apply_sppm(pbrt_parser *parser, const sampling *samples)
     apply_seed(parser, in->p);
 }
 
-static const path_integrator *find_path_integrator(const char *name)
-{
-    for (size_t i = 0; i < G_N_ELEMENTS(path_integrators); i++)
-        if (strcmp(path_integrators[i].name, name) == 0)
-            return &path_integrators[i];
-    return NULL;
-}
-
 /** pixelsamples in all, a few a pass. */
 static void apply_samples(pbrt_parser *parser, const sampling *samples)
 {
@@ -356,6 +370,21 @@ void pbrt_settle_integrator(pbrt_parser *parser)
          of->name);
 }
 
+static void refuse_integrator(pbrt_parser *parser)
+{
+    const pending *in = &parser->integrator;
+    g_autoptr(GString) ours = g_string_new(NULL);
+    g_autoptr(GString) theirs = g_string_new(sppm.name);
+    const char *own;
+    for (size_t i = 0; (own = own_integrator(i)); i++)
+        g_string_append_printf(ours, "%s\"%s\"", i ? ", " : "", own);
+    for (size_t i = 0; i < G_N_ELEMENTS(path_integrators); i++)
+        g_string_append_printf(theirs, ", %s", path_integrators[i].name);
+    pbrt_error(parser, in->place,
+               "expected Integrator %s or one of pbrt's (%s), found \"%s\"", ours->str,
+               theirs->str, in->kind);
+}
+
 void pbrt_apply_integrator(pbrt_parser *parser)
 {
     const pending *in = &parser->integrator;
@@ -365,18 +394,14 @@ void pbrt_apply_integrator(pbrt_parser *parser)
         return;
     }
     const path_integrator *path = find_path_integrator(in->kind);
-    if (g_strv_contains(own_integrators, in->kind)) {
+    if (is_own(in->kind)) {
         apply_own(parser, &samples);
-    } else if (strcmp(in->kind, "sppm") == 0) {
+    } else if (strcmp(in->kind, sppm.name) == 0) {
         apply_sppm(parser, &samples);
     } else if (path) {
         apply_path(parser, path, &samples);
     } else {
-        pbrt_error(parser, in->place,
-                   "expected Integrator \"photonmap\", \"auto\", \"vcm\" or one of "
-                   "pbrt's (sppm, path, volpath, simplepath, simplevolpath, randomwalk, "
-                   "lightpath, bdpt, mlt), found \"%s\"",
-                   in->kind);
+        refuse_integrator(parser);
         return;
     }
     pbrt_check_used(parser, in->p, "Integrator", in->kind);

@@ -372,7 +372,9 @@ typedef struct directive_kind {
     const char *note;       /**< NULL: none */
 } directive_kind;
 
-/* Number i; a name of NULL behind the last. */
+/** Number i; a name of NULL behind the last. */
+typedef directive_kind (*kind_at)(size_t i);
+
 directive_kind pbrt_sampler_kind(size_t i);
 directive_kind pbrt_integrator_kind(size_t i);
 directive_kind pbrt_accelerator_kind(size_t i);

@@ -9,6 +9,7 @@
 #include "format/pbrt/pbrt_v3_words.h"
 
 #include "base/intern.h"
+#include "format/pbrt/pbrt_parser.h"
 #include "medium/medium_presets.h"
 
 #include <math.h>
@@ -243,11 +244,13 @@ static void translate_filter(const translation *t)
 }
 
 /* Whatever it is called, it finds the same light. */
-static void replace_unknown(const translation *t, const char *what,
-                            const char *const *known, const char *instead)
+static void replace_unknown(const translation *t, const char *what, kind_at known,
+                            const char *instead)
 {
-    if (g_strv_contains(known, *t->kind))
-        return;
+    const char *name;
+    for (size_t i = 0; (name = known(i).name); i++)
+        if (strcmp(*t->kind, name) == 0)
+            return;
     log_at(t->log, LOG_WARNING, t->p->place,
            "%s \"%s\" is unknown: \"%s\" is taken for it", what, *t->kind, instead);
     set_kind(t, instead);
@@ -255,9 +258,6 @@ static void replace_unknown(const translation *t, const char *what,
 
 static void translate_sampler(const translation *t)
 {
-    static const char *const ours[] = {"halton",      "sobol",       "zsobol",
-                                       "paddedsobol", "independent", "stratified",
-                                       "pmj02bn",     NULL};
     static const char *const names[][2] = {{"lowdiscrepancy", "paddedsobol"},
                                            {"02sequence", "paddedsobol"},
                                            {"maxmindist", "pmj02bn"},
@@ -265,7 +265,7 @@ static void translate_sampler(const translation *t)
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++)
         if (strcmp(*t->kind, names[i][0]) == 0)
             set_kind(t, names[i][1]);
-    replace_unknown(t, "sampler", ours, "halton");
+    replace_unknown(t, "sampler", pbrt_sampler_kind, "halton");
     drop(t, "dimensions");
     drop(t, "samplepixelcenter");
 }
@@ -277,9 +277,6 @@ static void translate_integrator(const translation *t)
                                           "cossample",           "nsamples"};
     static const char *const lost[] = {"pixelbounds", "visualizestrategies",
                                        "visualizeweights"};
-    static const char *const ours[] = {
-        "path", "volpath", "simplepath", "simplevolpath", "randomwalk", "lightpath",
-        "bdpt", "mlt",     "photonmap",  "auto",          "vcm",        NULL};
     for (size_t i = 0; i < G_N_ELEMENTS(dropped); i++)
         drop(t, dropped[i]);
     for (size_t i = 0; i < G_N_ELEMENTS(lost); i++) {
@@ -300,7 +297,7 @@ static void translate_integrator(const translation *t)
         note(t, NULL, "this integrator becomes path, which finds indirect light too");
         set_kind(t, "path");
     }
-    replace_unknown(t, "integrator", ours, "path");
+    replace_unknown(t, "integrator", pbrt_integrator_kind, "path");
 }
 
 static void translate_camera(const translation *t)

@@ -13,6 +13,7 @@
 #include "base/intern.h"
 #include "format/given.h"
 #include "format/pbrt/pbrt_v3_words.h"
+#include "texture/texture.h"
 
 #include <string.h>
 
@@ -213,10 +214,14 @@ static const char *twin_of(pbrt_parser *parser, v3_name *n)
 
 /* ---- Textures ---- */
 
-static bool is_noise(const char *kind)
+/* Whether a texture gives numbers and no colours. */
+static bool is_noise(const char *name)
 {
-    static const char *const kinds[] = {"fbm", "wrinkled", "windy", NULL};
-    return g_strv_contains(kinds, kind);
+    const texture_kind *kind;
+    for (size_t i = 0; (kind = texture_kind_at(i)); i++)
+        if (strcmp(kind->name, name) == 0)
+            return !kind->eval_spectrum;
+    return false;
 }
 
 /* Noise is a number: grey as a colour. */

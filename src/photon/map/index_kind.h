@@ -6,7 +6,7 @@
 #include "photon/map/point_index.h"
 
 typedef struct point_index_kind {
-    const char *name; /**< "list", "kdtree", "grid" */
+    const char *name; /**< as the setting `photon_map` says it */
     /** The order that it wants points in, big_alloc'ed; of index->points, not empty. NULL
      * when memory is refused. No function: they stay as they are. */
     size_t *(*sort)(point_index *index, float radius, workers by, GError **error);

@@ -181,6 +181,20 @@ static bool put_all(writer *w, GError **error)
     return true;
 }
 
+/* What the setting `integrator` may say here; owned by the caller. */
+static char *kept_integrators(void)
+{
+    GString *out = g_string_new(NULL);
+    for (const char *const *word = settings_find("integrator")->words; *word; word++) {
+        settings how = settings_default();
+        settings_set(&how, "integrator", *word, NULL);
+        const photon_sender *sender = transport_find(how.integrator)->photons;
+        if (sender && sender->trace_part)
+            g_string_append_printf(out, "%s%s", out->len ? ", " : "", *word);
+    }
+    return g_string_free(out, FALSE);
+}
+
 /* Whether what it sends can be used again. */
 static bool keeps_photons(const transport_plan *plan, const photon_sender *sender,
                           GError **error)
@@ -189,11 +203,12 @@ static bool keeps_photons(const transport_plan *plan, const photon_sender *sende
     uint64_t n = 0;
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         n += plan->n_photons[c];
+    g_autofree char *others = kept_integrators();
     if (!sender || !sender->trace_part)
         error_set(error, ERROR_USAGE,
-                  "integrator %s: expected photonmap, sppm or auto, whose photons do "
-                  "without the camera",
-                  name);
+                  "integrator %s: expected one of %s, whose photons do without the "
+                  "camera",
+                  name, others);
     else if (n == 0)
         error_set(error, ERROR_USAGE,
                   "there is nothing to keep: integrator %s sends no photons here", name);

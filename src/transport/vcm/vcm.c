@@ -58,7 +58,7 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
         const medium *m = plan->scene->media->pdata[0];
         error_set(error, ERROR_INPUT,
                   "vcm does not see participating media, as medium \"%s\": expected "
-                  "integrator auto, path, photonmap or sppm",
+                  "another integrator, such as auto",
                   m->name);
         return false;
     }
