@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""Circles of files: lists files of src/ (or gui/) that call one another in a ring.
+"""Circles: lists files of src/ (or gui/) that call one another in a ring, and folders of
+src/ that include one another so.
 
 usage: circles.py BUILD_FOLDER
 
-Read off the object files: a file calls another if it needs a function that the other one
-defines. Data does not count, so the table of a registry may name kinds that call the
-registry. Speaks TAP; exits with 1 if there is a circle.
+Calls are read off the object files: a file calls another if it needs a function that the
+other one defines. Data does not count, so the table of a registry may name kinds that
+call the registry. Speaks TAP; exits with 1 if there is a circle.
 """
 import glob
 import os
+import pathlib
 import re
 import subprocess
 import sys
@@ -54,8 +56,19 @@ def calls(files):
             for source, path in files.items()}
 
 
+def includes():
+    """Which folder of src/ includes which others."""
+    src = pathlib.Path(__file__).resolve().parent.parent / 'src'
+    graph = {}
+    for file in [*src.rglob('*.[ch]'), *src.rglob('*.cpp')]:
+        own = str(file.parent.relative_to(src))
+        names = re.findall(r'^ *# *include "([^"]+)/[^/"]+"', file.read_text(), re.M)
+        graph.setdefault(own, set()).update(set(names) - {own})
+    return {own: others & set(graph) for own, others in graph.items()}
+
+
 def circles(graph):
-    """Sets of files of which each reaches each other one (Tarjan 1972)."""
+    """Sets of nodes of which each reaches each other one (Tarjan 1972)."""
     number, low, stack, found = {}, {}, [], []
 
     def visit(at):
@@ -80,20 +93,27 @@ def circles(graph):
     return found
 
 
-def main():
-    sys.setrecursionlimit(10000)
-    graph = calls(objects(sys.argv[1]))
-    if len(graph) < 10:
-        sys.exit(f'circles: only {len(graph)} object files in {sys.argv[1]}')
+def tell(number, name, graph):
+    """A line of TAP, and each ring before it; how many there are."""
     found = circles(graph)
     for ring in found:
         print('# circle:', ' '.join(ring))
         for at in ring:
             print('#    ', at, '->', ' '.join(sorted(graph[at] & set(ring))))
-    print(f'# {len(graph)} files, {len(found)} circles\n1..2')
-    print('not ok' if found else 'ok', '1 /circles/none')
+    print(f'# {len(graph)} {name}, {len(found)} circles')
+    print('not ok' if found else 'ok', f'{number} /circles/{name}')
+    return len(found)
+
+
+def main():
+    sys.setrecursionlimit(10000)
+    files, folders = calls(objects(sys.argv[1])), includes()
+    if min(len(files), len(folders)) < 10:
+        sys.exit(f'circles: only {len(files)} object files in {sys.argv[1]}')
+    print('1..3')
+    found = tell(1, 'files', files) + tell(2, 'folders', folders)
     planted = circles({'a': {'b'}, 'b': {'c'}, 'c': {'a'}, 'd': {'a'}})
-    print('ok' if planted == [['a', 'b', 'c']] else 'not ok', '2 /circles/planted-fault')
+    print('ok' if planted == [['a', 'b', 'c']] else 'not ok', '3 /circles/planted-fault')
     sys.exit(1 if found else 0)
 
 

@@ -1,4 +1,4 @@
-#include "format/features.h"
+#include "format/features/features.h"
 #include "nephroid/nephroid.h"
 
 char *neph_features_describe(void)

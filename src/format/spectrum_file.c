@@ -6,7 +6,7 @@
 #include "base/input.h"
 #include "color/curve.h"
 #include "format/number.h"
-#include "format/pbrt/lexer.h"
+#include "format/lexer.h"
 
 static bool read_pairs(lexer *words, GArray *numbers, GError **error)
 {

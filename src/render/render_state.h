@@ -4,10 +4,11 @@
  */
 #pragma once
 
-#include "render/kept/photon_file.h"
 #include "render/look.h"
 #include "render/render.h"
 #include "render/stop.h"
+
+typedef struct photon_file photon_file; /* kept/photon_file.h */
 
 struct render {
     transport_plan plan;       /* by settings that may be paced */

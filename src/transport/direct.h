@@ -7,7 +7,7 @@
 
 #include "math/sampler.h"
 #include "medium/medium_sample.h"
-#include "photon/caustic_mis.h"
+#include "photon/trace/caustic_mis.h"
 #include "scene/advance.h"
 
 /** @brief What to evaluate at a surface, and how its lobes find light otherwise. */

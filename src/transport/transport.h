@@ -12,7 +12,7 @@
 
 #include "base/parallel.h"
 #include "math/sampler.h"
-#include "photon/caustic_mis.h"
+#include "photon/trace/caustic_mis.h"
 #include "photon/estimate.h"
 #include "photon/spots.h"
 #include "photon/trace/trace.h"

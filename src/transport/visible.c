@@ -1,7 +1,7 @@
 #include "transport/visible.h"
 
 #include "scene/advance.h"
-#include "transport/plan/work.h"
+#include "transport/work.h"
 
 /* What all camera rays share. */
 typedef struct lookout {

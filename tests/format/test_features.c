@@ -5,7 +5,7 @@
  * a case fails, and so does a case without a row.
  */
 #include "feature_cases.h"
-#include "format/features.h"
+#include "format/features/features.h"
 #include "render_with.h"
 
 /* A row of the table. */

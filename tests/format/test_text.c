@@ -2,7 +2,7 @@
  * text: numbers are rounded as the C library rounds them, and words carry their places.
  */
 #include "format/number.h"
-#include "format/pbrt/lexer.h"
+#include "format/lexer.h"
 
 #include <math.h>
 #include <stdint.h>

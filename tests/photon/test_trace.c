@@ -7,7 +7,7 @@
 #include "photon/estimate.h"
 #include "photon/trace/trace.h"
 #include "scene_text.h"
-#include "transport/plan/aim.h"
+#include "transport/photonmap/aim.h"
 
 #include <string.h>
 

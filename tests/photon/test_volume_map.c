@@ -7,7 +7,7 @@
 #include "fog_scenes.h"
 #include "photon/trace/trace.h"
 #include "photon/volume_map.h"
-#include "transport/plan/aim.h"
+#include "transport/photonmap/aim.h"
 
 #include <string.h>
 

@@ -25,7 +25,7 @@
  */
 #pragma once
 
-#include "format/pbrt/lexer.h"
+#include "format/lexer.h"
 #include "format/pbrt/pbrt_v3.h"
 #include "scene/builder.h"
 

@@ -1,6 +1,6 @@
 #include "format/pbrt/pbrt_sum.h"
 
-#include "format/pbrt/lexer.h"
+#include "format/lexer.h"
 
 /* Before WorldBegin transformations place the camera. */
 static const char *const about_seeing[] = {"Camera",

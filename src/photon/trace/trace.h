@@ -29,7 +29,7 @@
 #pragma once
 
 #include "base/parallel.h"
-#include "photon/caustic_mis.h"
+#include "photon/trace/caustic_mis.h"
 #include "photon/photon.h"
 #include "photon/trace/emit.h"
 

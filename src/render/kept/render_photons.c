@@ -1,6 +1,7 @@
 /*
  * Passes whose photons were traced before and lie in a file.
  */
+#include "render/kept/photon_file.h"
 #include "render/render_state.h"
 
 void *render_begin_pass(render *r, const transport_plan *plan, uint32_t index,

@@ -4,7 +4,7 @@
 #include "transport/photonmap/photonmap.h"
 #include "transport/plan/caustics.h"
 #include "transport/plan/gather.h"
-#include "transport/plan/work.h"
+#include "transport/work.h"
 #include "transport/visible.h"
 
 /* The share of trial photons, as of a pass with a radius of a few pixels. */

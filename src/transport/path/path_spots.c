@@ -8,7 +8,7 @@
 #include "transport/direct.h"
 #include "transport/path/path_walk.h"
 #include "transport/path/spot_trial.h"
-#include "transport/plan/work.h"
+#include "transport/work.h"
 
 /* A look at a spot: the surface that the ray met, and how likely it was sent there. */
 typedef struct look {

@@ -3,8 +3,8 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "transport/photonmap/photonmap_medium.h"
-#include "transport/plan/aim.h"
-#include "transport/plan/work.h"
+#include "transport/photonmap/aim.h"
+#include "transport/work.h"
 
 /* ---- Planning: who gets how many photons ---- */
 

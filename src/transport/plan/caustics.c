@@ -1,6 +1,6 @@
 #include "transport/plan/caustics.h"
 
-#include "transport/plan/work.h"
+#include "transport/work.h"
 
 /* Photons of a pass that it is tried with at most: so many that with the middle one of
    the shares that are compared they cost what the camera's samples do, and in the

@@ -10,7 +10,7 @@
  */
 #pragma once
 
-#include "transport/plan/aim.h"
+#include "transport/photonmap/aim.h"
 #include "transport/plan/path_trial.h"
 
 /** @brief Before anything is known: `caustic_photons` if it is set, else at most

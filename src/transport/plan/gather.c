@@ -2,7 +2,7 @@
 
 #include "transport/photonmap/photonmap.h"
 #include "transport/plan/trial.h"
-#include "transport/plan/work.h"
+#include "transport/work.h"
 #include "transport/visible.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "transport/plan/path_trial.h"
 
 #include "transport/plan/trial.h"
-#include "transport/plan/work.h"
+#include "transport/work.h"
 
 /* A sample of plain path tracing. */
 static double path_sample(const path_pass *pass, vec2 raster, sampler random,

@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "transport/photonmap/photonmap.h"
-#include "transport/plan/work.h"
+#include "transport/work.h"
 #include "transport/visible.h"
 
 /* The automatic radius over that of photon mapping's indirect light: merging is for what

@@ -4,7 +4,7 @@
  * depend on the vertices they are for.
  */
 #include "base/memory.h"
-#include "transport/plan/work.h"
+#include "transport/work.h"
 #include "transport/vcm/vcm.h"
 
 static bool nearest(const void *vertices, vec3 p, point_hits *hits)

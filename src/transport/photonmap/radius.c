@@ -18,7 +18,7 @@
  */
 #include "math/median.h"
 #include "transport/photonmap/photonmap.h"
-#include "transport/plan/work.h"
+#include "transport/work.h"
 #include "transport/visible.h"
 
 /* Photons wanted within the radius, summed over all passes: what they are shared among

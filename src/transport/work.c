@@ -1,4 +1,4 @@
-#include "transport/plan/work.h"
+#include "transport/work.h"
 
 double plan_rays_of_photons(const transport_counts *counts)
 {

@@ -3,7 +3,7 @@
  * that make them, so that a new row there shows up here by itself. Parameters are the
  * lists that unknown ones are refused by.
  */
-#include "format/features.h"
+#include "format/features/features.h"
 
 #include "base/intern.h"
 #include "format/gltf/gltf_extensions.h"

@@ -1,7 +1,7 @@
 /*
  * The words of a pbrt file.
  */
-#include "format/pbrt/lexer.h"
+#include "format/lexer.h"
 
 #include "base/intern.h"
 

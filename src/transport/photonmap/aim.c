@@ -1,8 +1,8 @@
-#include "transport/plan/aim.h"
+#include "transport/photonmap/aim.h"
 
 #include "base/memory.h"
 #include "scene/advance.h"
-#include "transport/plan/work.h"
+#include "transport/work.h"
 #include "transport/visible.h"
 
 #include <float.h>

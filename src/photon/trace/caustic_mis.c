@@ -1,4 +1,4 @@
-#include "photon/caustic_mis.h"
+#include "photon/trace/caustic_mis.h"
 
 #include "photon/trace/emit.h"
 
