@@ -4,6 +4,8 @@
  * (neighbourhood.h) is so of the others' discs too, as far as a small part of that
  * radius; which of them looks is chance, and their mean that of all. Photons everyone
  * finds by itself: light stays as sharp as it was.
+ *
+ * Without them /looked-around/same-light fails, where a third of the looks is saved.
  */
 #pragma once
 

@@ -9,6 +9,10 @@
  * number), compared as numbers: no index needs to be kept for it, and photons that tie
  * even then are interchangeable. So maps of all kinds find the same photons to the bit.
  *
+ * Of the filter: without one_sided /estimate/even-field-unbiased fails, what arrived from
+ * behind counts; without flatten /estimate/flatten does, a wall lights the floor at its
+ * foot. For the rest of it see photon_query.h.
+ *
  * Memory kept: that of the photons and of the index.
  */
 #pragma once

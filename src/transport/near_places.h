@@ -9,6 +9,8 @@
  *
  * These are listed when a cell is first asked for, and are few: whose list would be
  * longer than a search through a tree is left to the tree.
+ *
+ * The tree alone finds the same places, only later: bench_map says what a query pays.
  */
 #pragma once
 

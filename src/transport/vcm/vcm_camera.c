@@ -322,7 +322,8 @@ static void shade(camera_walk *c, const vcm_vertex *v)
 /* Where light subpaths end, a curve that turns to face rays, connections find all light
    but that which comes by a mirror: only that is merged, for rays to and from the curve
    differ by its width. So what merging there adds to the weights, at_curve, counts once
-   the path has met a mirror next. */
+   the path has met a mirror next. Without the zeros on arrival /flat-curves/room/vcm
+   fails; without those on leaving, or where all is merged, /flat-curves/sky/vcm. */
 static void arrive_past_curve(camera_walk *c, const surface_hit *hit, float cosine)
 {
     weights_arrive(&c->at_curve, length3_2(hit->p - c->walk.from), cosine);
