@@ -15,8 +15,8 @@ typedef struct way {
 /* ---- Under a sky ---- */
 
 static const way sky_ways[] = {
-    {"vcm", "integrator=vcm passes=16 spp=4 photons=4000 radius=0.1", 0.008},
-    {"bpt", "integrator=vcm vcm_strategies=bpt passes=16 spp=4 photons=4000", 0.008},
+    {"vcm", "integrator=vcm passes=16 spp=4 photons=4000 radius=0.1", 0.002},
+    {"bpt", "integrator=vcm vcm_strategies=bpt passes=16 spp=4 photons=4000", 0.002},
     {"bpm", "integrator=vcm vcm_strategies=bpm passes=16 spp=2 photons=10000 radius=0.2",
      0.06},
     {"ppm", "integrator=vcm vcm_strategies=ppm passes=16 spp=2 photons=10000 radius=0.2",
