@@ -5,8 +5,8 @@
 
 #include "base/input.h"
 #include "color/curve.h"
-#include "format/number.h"
 #include "format/lexer.h"
+#include "format/number.h"
 
 static bool read_pairs(lexer *words, GArray *numbers, GError **error)
 {

@@ -23,7 +23,7 @@ render_plan render_plan_of(const transport_plan *plan)
         .guided = plan->guide && plan->n_photons[PHOTON_CAUSTIC] > 0,
         .p_spots = (double)plan->p_spots,
         .p_blurred = plan->uses_mis ? (double)plan->p_blurred : 1.0,
-        .time_slices = scene_time_slices(plan->scene, &plan->how),
+        .time_slices = time_slices_of(plan->scene, &plan->how),
         .work = plan->work,
         .planning = plan->planning,
         .n_trials = plan->n_trials,

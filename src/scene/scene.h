@@ -59,7 +59,7 @@ typedef struct scene {
     uint32_t outer_medium; /**< around the scene: of no bounds; as in a medium_stack
                             */
     float media_radius;    /**< m, around center: where such a medium ends */
-    bool is_animated; /**< it may look otherwise at another time */
+    bool is_animated;      /**< it may look otherwise at another time */
     bool moves;            /**< some instance does while the shutter is open */
     bool camera_facing;    /**< some shape may (surface_hit.camera_facing) */
 } scene;
@@ -189,27 +189,6 @@ void scene_pieces_near(const scene *s, const surface_hit *hit, vec3 p, float rad
                        shape_piece piece, void *data);
 /** @brief How many times an area around the hit becomes by that. */
 double scene_area_change(const scene *s, const surface_hit *hit, float time);
-
-/** @brief Slices of the shutter's time in which photons are kept apart: where nothing
- * moves, one. With one for all /motion/board and /knob-pictures/time-slices fail; with
- * one for each pass a first picture would show no more than that of what moves. */
-static inline int scene_time_slices(const scene *s, const settings *how)
-{
-    return s->moves ? (int)how->time_slices : 1;
-}
-
-/** @brief The slice that a time is in. */
-static inline int time_slice(float time, int n_slices)
-{
-    int slice = (int)(time * (float)n_slices);
-    return slice < n_slices ? slice : n_slices - 1;
-}
-
-/** @brief The middle of a slice: when what moves is where its photons are kept. */
-static inline float time_of_slice(int slice, int n_slices)
-{
-    return ((float)slice + 0.5f) / (float)n_slices;
-}
 
 static inline const light *scene_light(const scene *s, int i)
 {

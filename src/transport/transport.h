@@ -12,9 +12,10 @@
 
 #include "base/parallel.h"
 #include "math/sampler.h"
-#include "photon/trace/caustic_mis.h"
 #include "photon/estimate.h"
 #include "photon/spots.h"
+#include "photon/time_slice.h"
+#include "photon/trace/caustic_mis.h"
 #include "photon/trace/trace.h"
 #include "scene/view.h"
 #include "transport/radius_cache.h"

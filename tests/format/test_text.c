@@ -1,8 +1,8 @@
 /*
  * text: numbers are rounded as the C library rounds them, and words carry their places.
  */
-#include "format/number.h"
 #include "format/lexer.h"
+#include "format/number.h"
 
 #include <math.h>
 #include <stdint.h>

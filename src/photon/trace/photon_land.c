@@ -1,3 +1,4 @@
+#include "photon/time_slice.h"
 #include "photon/trace/photon_path.h"
 
 /* Of the middle of a task's slice of time. */

@@ -29,8 +29,8 @@
 #pragma once
 
 #include "base/parallel.h"
-#include "photon/trace/caustic_mis.h"
 #include "photon/photon.h"
+#include "photon/trace/caustic_mis.h"
 #include "photon/trace/emit.h"
 
 /** Photons and paths from the eye end also among white walls and in a box of mirrors,

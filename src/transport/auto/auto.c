@@ -4,8 +4,8 @@
 #include "transport/photonmap/photonmap.h"
 #include "transport/plan/caustics.h"
 #include "transport/plan/gather.h"
-#include "transport/work.h"
 #include "transport/visible.h"
+#include "transport/work.h"
 
 /* The share of trial photons, as of a pass with a radius of a few pixels. */
 static caustic_mis trial_mis(transport_plan *plan)

@@ -5,10 +5,10 @@
  *
  * Light that goes light → specular or glossy → diffuse surface is found by photons and by
  * paths from the eye; at whatever diffuse surface the camera path stands, and however it
- * got there, each takes the share that it finds better (photon/trace/caustic_mis.h). Every
- * other path is traced from the camera; brightly lit places are looked at as lights are
- * (path_spots.c). Trials tell how many photons a pass is worth, and how often it is worth
- * to look (budget.h); where that is never, this is `path`.
+ * got there, each takes the share that it finds better (photon/trace/caustic_mis.h).
+ * Every other path is traced from the camera; brightly lit places are looked at as lights
+ * are (path_spots.c). Trials tell how many photons a pass is worth, and how often it is
+ * worth to look (budget.h); where that is never, this is `path`.
  */
 #pragma once
 

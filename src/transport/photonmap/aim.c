@@ -2,8 +2,8 @@
 
 #include "base/memory.h"
 #include "scene/advance.h"
-#include "transport/work.h"
 #include "transport/visible.h"
+#include "transport/work.h"
 
 #include <float.h>
 

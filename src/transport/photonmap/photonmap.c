@@ -2,8 +2,8 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "transport/photonmap/photonmap_medium.h"
 #include "transport/photonmap/aim.h"
+#include "transport/photonmap/photonmap_medium.h"
 #include "transport/work.h"
 
 /* ---- Planning: who gets how many photons ---- */
@@ -254,7 +254,7 @@ static void *open_pass(const transport_plan *plan, uint32_t index)
     pass->options.deterministic = !plan->how.multiple_samples;
     pass->options.metal_is_followed = photon_follows_metals(&plan->how);
     pass->has_delta_lights = scene_has_delta_lights(plan->scene);
-    pass->n_slices = scene_time_slices(plan->scene, &plan->how);
+    pass->n_slices = time_slices_of(plan->scene, &plan->how);
     pass->followed = photon_followed_lobes(&plan->how);
     pass->gathered = photon_gathered_lobes(&plan->how);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)

@@ -18,8 +18,8 @@
  */
 #include "math/median.h"
 #include "transport/photonmap/photonmap.h"
-#include "transport/work.h"
 #include "transport/visible.h"
+#include "transport/work.h"
 
 /* Photons wanted within the radius, summed over all passes: what they are shared among
    decides between noise and blur. Caustics are to be sharp, the rest is smooth by nature.
@@ -188,7 +188,7 @@ static double wanted_in_reach(const transport_plan *plan, photon_class c, double
 /* How much denser than those of the pilot photons lie in the maps of a pass. */
 static double density_over_pilot(const pilot *p, photon_class c, const pilot_maps *maps)
 {
-    int n_slices = scene_time_slices(p->plan->scene, &p->plan->how);
+    int n_slices = time_slices_of(p->plan->scene, &p->plan->how);
     return (double)p->plan->n_photons[c] / n_slices / (double)maps->n_emitted;
 }
 

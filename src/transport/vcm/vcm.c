@@ -4,8 +4,8 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "transport/photonmap/photonmap.h"
-#include "transport/work.h"
 #include "transport/visible.h"
+#include "transport/work.h"
 
 /* The automatic radius over that of photon mapping's indirect light: merging is for what
    connections do not find, and that is sharp. With all of it a furnace is off by 0.1 %,
@@ -218,7 +218,7 @@ static void *open_pass(const transport_plan *plan, uint32_t index)
         .light.n = plan->n_photons[PHOTON_INDIRECT],
     };
     double radius = photonmap_radius(plan->radius[PHOTON_INDIRECT], how->alpha, index);
-    pass->n_slices = scene_time_slices(plan->scene, how);
+    pass->n_slices = time_slices_of(plan->scene, how);
     double discs = G_PI * radius * radius * n / pass->n_slices;
     pass->radius = (float)radius;
     for (guint i = 0; i < plan->scene->shapes->len; i++)

@@ -4,8 +4,8 @@
  * depend on the vertices they are for.
  */
 #include "base/memory.h"
-#include "transport/work.h"
 #include "transport/vcm/vcm.h"
+#include "transport/work.h"
 
 static bool nearest(const void *vertices, vec3 p, point_hits *hits)
 {

@@ -1,0 +1,28 @@
+/*
+ * Slices of the shutter's time: where something moves, photons are kept apart by when they
+ * landed, so that what is seen at one time is lit by those of about that time.
+ */
+#pragma once
+
+#include "scene/scene.h"
+
+/** @brief How many there are: where nothing moves, one. With one for all /motion/board and
+ * /knob-pictures/time-slices fail; with one for each pass a first picture would show no
+ * more than that of what moves. */
+static inline int time_slices_of(const scene *s, const settings *how)
+{
+    return s->moves ? (int)how->time_slices : 1;
+}
+
+/** @brief The slice that a time is in. */
+static inline int time_slice(float time, int n_slices)
+{
+    int slice = (int)(time * (float)n_slices);
+    return slice < n_slices ? slice : n_slices - 1;
+}
+
+/** @brief The middle of a slice: when what moves is where its photons are kept. */
+static inline float time_of_slice(int slice, int n_slices)
+{
+    return ((float)slice + 0.5f) / (float)n_slices;
+}
