@@ -8,7 +8,8 @@
  * got there, each takes the share that it finds better (photon/trace/caustic_mis.h).
  * Every other path is traced from the camera; brightly lit places are looked at as lights
  * are (path_spots.c). Trials tell how many photons a pass is worth, and how often it is
- * worth to look (budget.h); where that is never, this is `path`.
+ * worth to look (plan/caustics.h, plan/path_trial.h); where that is never, this is
+ * `path`.
  */
 #pragma once
 
