@@ -12,11 +12,11 @@
    17th, 12th and 8th in a Cornell box, a 5th, 4th and 3rd in one with glass, a 15th, 11th
    and 8th in a glossy one, a 7th in a papered one, a 7th to 9th by 24 lamps, a 15th to
    7th by a glass ball, a 17th and 10th behind a prism, a 4th in water, a 3rd to 2nd
-   through a window and in a bulb of glass (128 x 128, 2, 4 and 16 passes). With 10
-   maps are chosen in 2 and 15 of 30 trials in the papered one and by the lamps, where
-   they take 2 to 4 times as long as paths, with 16 in none and 4; in fog, where they
-   are worth about as much as paths, in 15 and 9. */
-#define BLOTCHES 16.0
+   through a window and in a bulb of glass (128 x 128, 2, 4 and 16 passes). With 16
+   maps are chosen in 2 and 17 of 30 trials in the papered one and by the lamps, where
+   they take 2 to 4 times as long as paths, with 24 in none and 8; in fog, where they
+   are worth about as much as paths, in 15 and 11. */
+#define BLOTCHES 24.0
 
 /* What maps blur below the size of their discs no map shows, and paths only when their
    noise is gone. So much at least is its relative square, over that of the radius in
@@ -465,8 +465,7 @@ static bool gathering_pays(transport_plan *plan, const gather_trial *t)
     plan_cost without = {e.path, t->path_rays + plan->photon_rays};
     plan_cost with = {error_of(plan, &e),
                       rays_of_sample(plan, t) + t->photon_rays * per_sample};
-    bool pays =
-        with.variance * with.rays < CLEARLY_BETTER * without.variance * without.rays;
+    bool pays = with.variance * with.rays < without.variance * without.rays;
     plan_note(plan, "gathered indirect light", without, with, pays);
     return pays;
 }
