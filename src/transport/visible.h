@@ -25,7 +25,10 @@ float visible_pixel(transport_plan *plan);
 #define SHARP_PIXELS 2.0
 
 /** No radius is wider than this share of the scene's: beyond it nothing is local. Where
- * nothing tells of one it is this share of the widest. */
+ * nothing tells of one it is this share of the widest. With 0.03 and 0.3 relMSE x time is
+ * 1.2 and 1.3 times as much, with no bound but the scene 2.2 times (geometric means of
+ * nine scenes by photon mapping, auto or vcm, 18 cases, 128 x 128, 4 and 8 passes, three
+ * seeds: 0.8 to 4.3, 0.95 to 2.2 and 0.96 to 6.3). */
 #define WIDEST_SHARE 0.1
 
 /** @brief The widest radius, m. */
