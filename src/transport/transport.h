@@ -12,9 +12,9 @@
 
 #include "base/parallel.h"
 #include "math/sampler.h"
-#include "photon/trace/caustic_mis.h"
 #include "photon/estimate.h"
 #include "photon/spots.h"
+#include "photon/trace/caustic_mis.h"
 #include "photon/trace/trace.h"
 #include "scene/view.h"
 #include "transport/radius_cache.h"
@@ -99,7 +99,10 @@ typedef struct transport_counts {
 } transport_counts;
 
 /** @brief From so many bounces on, weak paths from the eye end by chance: a picture has
- * little light that came by more, and what comes by fewer shows each chance as grain. */
+ * little light that came by more, and what comes by fewer shows each chance as grain.
+ * With 2 relMSE x time is 0.9 to 1.2 times as much, 1.06 in the mean; with 8 it is half
+ * as much behind a prism, but 1.2 to 1.3 times by auto in glass and at a window (nine
+ * scenes, 18 cases, 128 x 128, 4 and 8 passes, three seeds). */
 enum { ROULETTE_BOUNCES = 4 };
 
 /** @brief A point where the camera looks (transport/visible.h). */
