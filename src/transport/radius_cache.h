@@ -8,7 +8,10 @@
 
 #include "photon/map/point_set.h"
 
-/** Points whose distance tells how close they lie. */
+/** Points whose distance tells how close they lie. With 8 and 32 relMSE x time is 0.95 to
+ * 1.04 times as much, but for two plans by auto that one seed turned: 1.13 in glass with
+ * 8, 0.54 behind a prism with 32 (nine scenes, 18 cases, 128 x 128, 4 and 8 passes, three
+ * seeds). */
 enum { RADIUS_NEAREST = 16 };
 
 typedef struct radius_cache radius_cache;
