@@ -18,8 +18,8 @@
  */
 #include "math/median.h"
 #include "transport/photonmap/photonmap.h"
-#include "transport/work.h"
 #include "transport/visible.h"
+#include "transport/work.h"
 
 /* Photons wanted within the radius, summed over all passes: what they are shared among
    decides between noise and blur. Caustics are to be sharp, the rest is smooth by nature.
