@@ -32,7 +32,9 @@ typedef struct direct_query {
 } direct_query;
 
 /** @brief Up to so many lights are few: each more costs a shadow ray at all that is seen.
- */
+ * With one, so never, relMSE x time is 1.2 to 1.3 times as much in scenes/ring, which has
+ * a lamp and a sky, and 0.93 in a hall with four lamps; with any number it is 1.2 times
+ * as much in that hall with eight (128 x 128, 8 passes, three seeds). */
 enum { FEW_LIGHTS = 4 };
 
 /** @brief Radiance sent to wo from one light, by the class of lobe that sends it. */

@@ -8,7 +8,10 @@
 
 #include "photon/map/point_set.h"
 
-/** Points whose distance tells how close they lie. */
+/** Points whose distance tells how close they lie. With 8 and 32 relMSE x time is 0.95 to
+ * 1.04 times as much, but for two plans by auto that one seed turned: 1.13 in glass with
+ * 8, 0.54 behind a prism with 32 (nine scenes, 18 cases, 128 x 128, 4 and 8 passes, three
+ * seeds). */
 enum { RADIUS_NEAREST = 16 };
 
 typedef struct radius_cache radius_cache;
@@ -28,7 +31,10 @@ typedef struct radius_source {
 } radius_source;
 
 /** @brief At most so many places of a scene are asked about: one for a patch of 14 x 14
- * pixels in a picture of 1024 x 768, or as wide as a sixtieth of what holds the scene. */
+ * pixels in a picture of 1024 x 768, or as wide as a sixtieth of what holds the scene.
+ * With half and twice as many relMSE x time is 0.97 to 1.05 times as much, with a quarter
+ * 0.95 to 1.03 and 1.3 at a window by auto (five scenes, 128 x 128, 32 passes, two
+ * seeds). */
 enum { MOST_PLACES = 4096 };
 
 /** @brief Of n points, evenly chosen, which is place i of MOST_PLACES or fewer. */

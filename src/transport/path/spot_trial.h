@@ -9,7 +9,7 @@
 typedef struct spot_trial {
     double rays;           /**< that looks cost, by their importance */
     double without;        /**< sum of squares of what paths bring without looking ... */
-    double with[N_SHARES]; /**< ... and where one surface in 1, 2, 4, ... looks */
+    double with[N_SHARES]; /**< ... and where each surface looks, or one in two */
 } spot_trial;
 
 /** @brief What one look found. */

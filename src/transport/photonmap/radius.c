@@ -23,7 +23,11 @@
 
 /* Photons wanted within the radius, summed over all passes: what they are shared among
    decides between noise and blur. Caustics are to be sharp, the rest is smooth by nature.
- */
+   With half and twice as many in one map relMSE x time is 0.86 to 1.12 and 0.94 to 1.11
+   times as much (five scenes), of caustics 0.93 to 1.04 and 0.98 to 1.08 (five scenes by
+   photon mapping and auto, 24576 photons, 8 passes, or 200000 and 2); that of indirect
+   light is the same, since its radii are the widest there may be (eight scenes, and
+   three with 200000 photons, 16 passes and one seed; 128 x 128, three seeds). */
 static const double photons_wanted[N_PHOTON_CLASSES] = {600.0, 12000.0, 300.0};
 /* ... but in each pass at least half of what chance alone adds to these or takes from
    them: fewer would end as noise. As many as of caustics are in the ball around a photon
@@ -35,7 +39,11 @@ static double wanted_least(photon_class c)
 
 /* Beside a bright spot, radii are as wide as it takes to reach the wanted photons in it:
    this is light that is not there, in proportion to their share of all. So of a caustic's
-   photons in a map no more are wanted than this share, and at least one. */
+   photons in a map no more are wanted than this share, and at least one. With twice as
+   much, and with no bound, relMSE x time is 1.2 times as much in scenes/ring by photon
+   mapping, 0.99 to 1.06 in five other scenes and by auto; with half as much it is 0.9 to
+   1.02, but 1.3 at a window by auto, where one seed of three turned the plan (128 x 128,
+   8 passes). */
 #define MOST_SHARE (1.0 / 200.0)
 
 typedef struct pilot {

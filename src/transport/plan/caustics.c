@@ -2,21 +2,20 @@
 
 #include "transport/work.h"
 
-/* Photons of a pass that it is tried with at most: so many that with the middle one of
-   the shares that are compared they cost what the camera's samples do, and in the
-   smallest picture one for each place that is asked about. With no bound a render
-   took 1.25 times as long to its error. */
+/* Photons of a pass that it is tried with at most: so many that half of them cost
+   what the camera's samples do, and in the smallest picture one for each place that is
+   asked about. With no bound a render took 1.25 times as long to its error. */
 static int64_t most_of_all(int64_t samples)
 {
-    double middle = plan_share(N_SHARES / 2) * PHOTON_RAYS;
-    return MAX((int64_t)((double)samples * SAMPLE_RAYS / middle), MOST_PLACES);
+    double half = plan_share(SHARE_HALF) * PHOTON_RAYS;
+    return MAX((int64_t)((double)samples * SAMPLE_RAYS / half), MOST_PLACES);
 }
 
 /* No fewer photons than this share of all, if there must be any; and no fewer blurred
    gathers than this share: what is weighed by more stands out in the picture. */
 static double least_share(void)
 {
-    return plan_share(N_SHARES - 1);
+    return plan_share(SHARE_HALF);
 }
 
 uint64_t caustics_most(const transport_plan *plan)
