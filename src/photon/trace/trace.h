@@ -131,10 +131,6 @@ typedef struct photon_event {
     float mis_weight; /**< see trace_task.mis */
 } photon_event;
 
-/** @brief A photon whose share is smaller than this is one of few that carry as much: its
- * flux is multiplied by this instead, with a probability of their ratio. */
-#define PHOTON_LEAST_WEIGHT 0.25f
-
 /** @brief Hears of each event. */
 typedef void (*photon_listener)(const photon_event *event, void *data);
 

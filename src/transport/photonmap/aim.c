@@ -108,15 +108,14 @@ typedef struct trial {
 
 /* A path from the eye that finds by itself what a photon of flux Φ and share w brings has
    a density of (1 - w) / w of that of merging with it. So in a pixel of area a its square
-   adds Φ² w / (1 - w) / a, up to factors that are the same for all. Of photons with small
-   shares, those that survive stand for the others. Where photons help, with m times the
-   density, all of them together leave the 1 / (1 + m)-th part. */
+   adds Φ² w / (1 - w) / a, up to factors that are the same for all. The w-th part of
+   photons survives with all of Φ, and each stands for 1 / w of them. Where photons help,
+   with m times the density, all of them together leave the 1 / (1 + m)-th part. */
 static void add_noise(trial_noise *sum, const photon_event *event, float sight)
 {
     double w = (double)event->mis_weight, odds = w / fmax(1.0 - w, (double)FLT_EPSILON);
-    double survived = fmin(1.0, w / (double)PHOTON_LEAST_WEIGHT);
-    double flux = (double)spectrum_mean(event->flux) * survived / w;
-    double noise = flux * flux * odds / (survived * (double)sight);
+    double flux = (double)spectrum_mean(event->flux);
+    double noise = flux * flux / (fmax(1.0 - w, (double)FLT_EPSILON) * (double)sight);
     sum->of_paths += noise;
     for (int i = 0; i < N_SHARES; i++)
         sum->left[i] += noise / (1.0 + plan_share(i) * odds);
