@@ -49,7 +49,9 @@ typedef struct neighbourhood {
     horizon_side side[NEIGHBOURHOOD_SECTORS];
 } neighbourhood;
 
-/** Height over radius within which a surface counts as the disc's. */
+/** Height over radius within which a surface counts as the disc's. In bench/edges relMSE
+ * with half and twice as much is 1.4 and 0.9 times as much of indirect light at the
+ * widest radius, 1.15 and 1.0 of all, alike at the narrower two (one pass of each). */
 #define NEIGHBOURHOOD_FLATTEN 0.03f
 
 /** What was found at a place, looks or light, serves others that lie so far off, over the

@@ -22,7 +22,10 @@
 #include "photon/photon.h"
 
 /** Where photons lie thinly no radius, of an estimate or of a bright spot, is wider than
- * so many typical ones: one that lies alone covers no more, and look-ups stay quick. */
+ * so many typical ones: one that lies alone covers no more, and look-ups stay quick.
+ * With half as many relMSE is 1.3 times as much behind a window, and relMSE x time 0.86
+ * to 0.95 times as much in water, ball and fog; with twice as many that is 1.02 to 1.13
+ * times as much in all four (128 x 128, 8 passes, three seeds). */
 #define WIDEST_OVER_TYPICAL 4.0f
 
 typedef struct photon_map photon_map;

@@ -68,7 +68,9 @@ static inline bool photon_is_of_face(const photon_query *query, size_t i)
     return dot * dot <= SAME_PLANE * fused(z, z, fused(y, y, x * x));
 }
 
-/** @brief Squared cosine of the angle from which on surfaces are not the same. */
+/** @brief Squared cosine of the angle from which on surfaces are not the same. In
+ * bench/edges relMSE with twice as much is 1.15 and 1.3 times as much at the widest
+ * radius, of indirect and of all light, alike at the other three and with a quarter. */
 #define SAME_SURFACE 0.25f
 
 /** @brief True if the surface of photon i is not turned away from the query's. */

@@ -79,7 +79,7 @@ bool photon_path_scatter(photon_path *path, const surface_hit *hit, const bsdf *
         float weight = mis_weight_at(path, hit, b, &next);
         path->mis_weight *= weight;
         flux *= weight;
-        survival *= minf(1.0f, weight / PHOTON_LEAST_WEIGHT);
+        survival *= weight; /* those that survive carry alike */
     }
     if (!photon_path_survives(path, flux, survival, u.roulette)) {
         photon_path_tell(path, PHOTON_ABSORBED, hit, 0);

@@ -7,10 +7,6 @@
 
 #include <float.h>
 
-/* The first is uniform, the last tells what the guide is worth; between them it is
-   refined twice. */
-enum { ROUNDS = 4 };
-
 /* What a trial photon adds to the noise that paths would have, and to what is left of it
    with shares of all photons. */
 typedef struct trial_noise {
@@ -108,15 +104,14 @@ typedef struct trial {
 
 /* A path from the eye that finds by itself what a photon of flux Φ and share w brings has
    a density of (1 - w) / w of that of merging with it. So in a pixel of area a its square
-   adds Φ² w / (1 - w) / a, up to factors that are the same for all. Of photons with small
-   shares, those that survive stand for the others. Where photons help, with m times the
-   density, all of them together leave the 1 / (1 + m)-th part. */
+   adds Φ² w / (1 - w) / a, up to factors that are the same for all. The w-th part of
+   photons survives with all of Φ, and each stands for 1 / w of them. Where photons help,
+   with m times the density, all of them together leave the 1 / (1 + m)-th part. */
 static void add_noise(trial_noise *sum, const photon_event *event, float sight)
 {
     double w = (double)event->mis_weight, odds = w / fmax(1.0 - w, (double)FLT_EPSILON);
-    double survived = fmin(1.0, w / (double)PHOTON_LEAST_WEIGHT);
-    double flux = (double)spectrum_mean(event->flux) * survived / w;
-    double noise = flux * flux * odds / (survived * (double)sight);
+    double flux = (double)spectrum_mean(event->flux);
+    double noise = flux * flux / (fmax(1.0 - w, (double)FLT_EPSILON) * (double)sight);
     sum->of_paths += noise;
     for (int i = 0; i < N_SHARES; i++)
         sum->left[i] += noise / (1.0 + plan_share(i) * odds);
@@ -271,25 +266,27 @@ static bool run_round(trials *all, emission_guide *guide, uint32_t round, GError
 
 /* Photons of the next round: no more than before, and as many as the grant still allows
    by what the last ones cost; light that is led into glass takes more rays than any. */
-static size_t count_trials(const trials *all, uint32_t rounds_left)
+static size_t count_trials(const trials *all)
 {
     double each = 1.0 + all->round.rays / fmax(all->round.n, 1.0);
-    double n = (all->grant - all->spent) / (each * fmax(rounds_left, 1.0));
+    double n = (all->grant - all->spent) / each;
     return (size_t)CLAMP(n, (double)LEAST_TRIALS, (double)all->each);
 }
 
+/* Uniform photons teach the guide, and as many drawn with it tell what it is worth. */
 static bool learn(trials *all, emission_guide *guide, GError **error)
 {
-    size_t n = ROUNDS * all->each;
+    size_t n = 2 * all->each;
     all->records = big_alloc(n, sizeof *all->records, "trial photons", error);
     all->noise =
         all->records ? big_alloc(n, sizeof *all->noise, "trial photons", error) : NULL;
     bool ok = all->noise != NULL;
-    for (uint32_t round = guide ? 0 : ROUNDS - 1; round < ROUNDS && ok; round++) {
-        ok = run_round(all, guide, round, error);
-        all->each = count_trials(all, ROUNDS - 1 - round);
+    if (ok && guide) {
+        ok = run_round(all, guide, 0, error);
+        all->each = count_trials(all);
         all->task.n_photons = all->each;
     }
+    ok = ok && run_round(all, guide, 1, error);
     big_free(all->records);
     big_free(all->noise);
     return ok;
@@ -312,7 +309,7 @@ static bool guide_pays(const trials *all)
 static trials trials_of(transport_plan *plan, const emission_guide *guide,
                         const cancel_flag *cancel)
 {
-    size_t each = plan_trials_for(plan, 2.0, ROUNDS * PHOTON_RAYS, MOST_PILOTS / ROUNDS);
+    size_t each = plan_trials_for(plan, 2.0, 2.0 * PHOTON_RAYS, MOST_PILOTS / 2);
     return (trials){
         .plan = plan,
         .pixels_each = pixels_each(plan),
