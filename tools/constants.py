@@ -25,7 +25,7 @@ import pathlib
 import re
 import sys
 
-MOST = 26
+MOST = 30
 MOST_OF_ALL = 64
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent

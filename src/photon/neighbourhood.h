@@ -26,7 +26,7 @@
 #include "photon/kernel.h"
 #include "scene/scene.h"
 
-/** math: of a circle, two an octant, told apart by signs and tangents
+/** Of a circle, two an octant, which signs and tangents tell apart
  * (neighbourhood_sector). */
 enum { NEIGHBOURHOOD_SECTORS = 16 };
 

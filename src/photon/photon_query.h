@@ -50,8 +50,8 @@ static inline photon_query photon_query_of(const photon_store *store, vec3 p,
     return query;
 }
 
-/** math: squared sine of the elevation over the plane up to which rounding may
- * lift a photon that lies in it: there any face is the same. */
+/** @brief Squared sine of the elevation over the plane up to which rounding may lift a
+ * photon that lies in it: there any face is the same. */
 #define SAME_PLANE 1e-5f
 
 /** @brief True if photon i lies on the query's face, or in its plane. */

@@ -7,7 +7,8 @@ enum {
        0.96 to 1.05 times as much in scenes/ring, water, ball, prism and cornell-glass
        (128 x 128, 4 and 8 passes, three and nine seeds). */
     BINS = 4,
-    MAX_DEPTH = 40, /* math: cells finer than floats tell apart are none */
+    MAX_DEPTH = 40, /* a guard: halves stay apart, and densities within floats */
+    /* math: of axes */
     N_PAIRS = EMISSION_DIMENSIONS * (EMISSION_DIMENSIONS - 1) / 2,
 };
 
@@ -16,8 +17,8 @@ enum {
    and more did: /guide/flux), */
 #define UNEVEN 0.2
 
-/* math: or the squares of two axes by this χ², one in 10⁴ by chance of 15 degrees of
-   freedom. */
+/* ... or the squares of two axes by this χ², of 15 degrees of freedom, which chance
+   exceeds once in 10⁴. */
 #define CHI2_BY_CHANCE 45.0
 
 typedef struct guide_node {
