@@ -3,8 +3,6 @@
  * instructions of: all that happens within guarded().
  *
  *   bench_instructions WORK SCENE      WORK: photons, map, or an integrator
- *
- * `auto` is none of them, since it plans by the clock.
  */
 #include "format/format.h"
 #include "photon/photon_map.h"

@@ -17,7 +17,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 RECORDS = HERE / "instructions.txt"
 GLASS = HERE / "equal_time/scenes/cornell-glass.pbrt"
 RING = HERE.parent / "scenes/ring/ring.pbrt"
-WORKS = [("photons", GLASS), ("photons", RING), ("map", GLASS), ("path", GLASS),
+WORKS = [("photons", GLASS), ("photons", RING), ("map", GLASS), ("path", GLASS), ("auto", GLASS),
          ("photonmap", GLASS), ("sppm", RING), ("vcm", GLASS)]
 ALLOWED = 0.03
 

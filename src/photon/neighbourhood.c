@@ -69,7 +69,7 @@ static vec3 lifted(const neighbourhood *hood, vec3 p)
 static bool look(neighbourhood *hood, const ray *r, surface_hit *hit)
 {
     hood->n_looks++;
-    return scene_meet_surface(hood->scene, *r, hit);
+    return scene_meet_surface(hood->scene, r, hit);
 }
 
 /* True if what a ray met is not turned away from the disc, as photons are told apart. */

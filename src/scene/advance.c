@@ -72,18 +72,24 @@ bool scene_scatterer(const scene *s, const surface_hit *hit, const wavelengths *
     return true;
 }
 
-bool scene_meet_surface(const scene *s, ray r, surface_hit *hit)
+/* Behind the interface that the ray met. */
+static bool meet_behind(const scene *s, ray r, surface_hit *hit)
 {
-    float way = 0.0f;
-    for (int i = 0; i < MOST_CROSSINGS && scene_intersect(s, &r, hit); i++) {
-        if (hit->material != NO_INDEX) {
-            hit->t += way;
-            return true;
-        }
-        way += hit->t;
+    float length = 0.0f;
+    for (int i = 0; i < MOST_CROSSINGS && hit->material == NO_INDEX; i++) {
+        length += hit->t;
         go_behind(&r, hit);
+        if (!scene_intersect(s, &r, hit))
+            return false;
     }
-    return false;
+    hit->t += length;
+    return true;
+}
+
+bool scene_meet_surface(const scene *s, const ray *r, surface_hit *hit)
+{
+    return scene_intersect(s, r, hit) &&
+           (hit->material != NO_INDEX || meet_behind(s, *r, hit));
 }
 
 bool scene_cross(const scene *s, ray *r, surface_hit *hit)

@@ -80,8 +80,8 @@ bool scene_scatterer(const scene *s, const surface_hit *hit, const wavelengths *
                      int wavelength, const bsdf_options *options, bsdf *out);
 
 /** @brief The nearest surface that has a material: a ray goes through interfaces.
- *  @param hit hit->t is the whole way from where r starts, m */
-bool scene_meet_surface(const scene *s, ray r, surface_hit *hit);
+ *  @param hit hit->t is measured from where r starts, m */
+bool scene_meet_surface(const scene *s, const ray *r, surface_hit *hit);
 
 /** @brief Takes a ray behind the next surface on it, cut-outs taken as solid; t_max
  * shrinks by the way made. @return false: it meets none */
