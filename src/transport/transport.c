@@ -88,6 +88,7 @@ void transport_plan_clear(transport_plan *plan)
     g_clear_pointer(&plan->boost, g_free);
     g_clear_pointer(&plan->sight, g_aligned_free);
     plan->n_sight = 0;
+    g_clear_pointer(&plan->sketch, sketch_free);
     g_clear_pointer(&plan->vertex_radii, radius_cache_free);
     g_free(plan->lit);
     plan->mis = (caustic_mis){0};

@@ -19,6 +19,7 @@
 #include "photon/trace/trace.h"
 #include "scene/view.h"
 #include "transport/radius_cache.h"
+#include "transport/sketch.h"
 
 /** @brief The layers of the picture. Their sum is the beauty image. */
 typedef enum radiance_layer {
@@ -111,6 +112,7 @@ typedef struct visible_point {
     vec3 p;
     float pixel;  /**< width of a pixel's footprint there, m */
     float albedo; /**< mean over wavelengths */
+    vec2 raster;  /**< where it is on the film */
 } visible_point;
 
 /** Of how much there may be of a technique trials compare all and half, beside none. With
@@ -160,6 +162,7 @@ typedef struct transport_plan {
     int n_trials;
     visible_point *sight; /**< where the camera looks; owned; NULL: not looked yet */
     size_t n_sight;
+    sketch *sketch; /**< of the picture (path_effort_measure); owned; NULL: none yet */
     const cancel_flag *cancel; /**< of the render that this is for: once set, passes and
                                   samples end as they are, worth nothing; NULL: never */
     caustic_casters *casters;  /**< owned; NULL: nobody has asked for them yet */

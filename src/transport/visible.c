@@ -13,8 +13,8 @@ typedef struct lookout {
     visible_point *points; /* one a ray; of no size where it met nothing that gathers */
 } lookout;
 
-/* Follows a camera ray to the first surface that gathers. */
-static bool find_one(const lookout *from, const ray *r, sampler *random,
+/* Follows a camera ray to the first surface that gathers, if it meets one. */
+static void find_one(const lookout *from, const ray *r, sampler *random,
                      visible_point *out)
 {
     uint64_t untold = 0;
@@ -28,24 +28,25 @@ static bool find_one(const lookout *from, const ray *r, sampler *random,
         bsdf_sample next;
         vec3 start = path.ray.origin;
         if (scene_advance(&who, &path, &hit) != EVENT_SURFACE)
-            return false;
+            return;
         length += length3(hit.p - start);
         scene_bsdf(from->scene, &hit, &from->w, ALL_WAVELENGTHS, &from->options, &b);
         if (b.lobes & LOBE_DIFFUSE) {
             float area = camera_pixel_area(&from->view->camera, length);
             spectrum albedo = bsdf_albedo(&b, -path.ray.direction, LOBE_ALL);
-            *out = (visible_point){hit.p, sqrtf(area), spectrum_mean(albedo)};
-            return true;
+            out->p = hit.p;
+            out->pixel = sqrtf(area);
+            out->albedo = spectrum_mean(albedo);
+            return;
         }
         float u_lobe = sampler_1d(random);
         vec2 u = sampler_2d(random);
         if (!bsdf_sample_direction(&b, -path.ray.direction, u_lobe, u, LOBE_FOLLOWED,
                                    TRANSPORT_RADIANCE, &next))
-            return false;
+            return;
         path.ray = hit_ray(&hit, next.wi);
         path.eye = NULL;
     } while (sampler_1d(random) < most_survival(++bounces));
-    return false;
 }
 
 static void find_some(size_t begin, size_t end, unsigned thread, void *data)
@@ -59,8 +60,8 @@ static void find_some(size_t begin, size_t end, unsigned thread, void *data)
         vec2 raster = {u.x * (float)c->width, u.y * (float)c->height};
         vec2 u_lens = sampler_2d(&random);
         ray r = camera_ray(c, raster, u_lens, sampler_1d(&random));
-        if (!find_one(from, &r, &random, &from->points[i]))
-            from->points[i].pixel = 0.0f;
+        from->points[i] = (visible_point){.raster = raster};
+        find_one(from, &r, &random, &from->points[i]);
     }
 }
 

@@ -1,7 +1,8 @@
 /*
  * `auto` sends photons only where they pay: with nothing that paths do not find as well
  * it is path tracing, to the bit, and costs little more; where paths can not find a
- * caustic, or hardly, there are photons.
+ * caustic, or hardly, there are photons. How noisy paths would be its trials tell as
+ * pictures by paths show it.
  */
 #define _GNU_SOURCE /* RTLD_NEXT */
 #include "ray_count.h"
@@ -98,6 +99,74 @@ static void test_costs_as_path(gconstpointer data)
     g_assert_cmpfloat(shared, <, DEARER * path);
 }
 
+/* ---- The noise that trials tell ---- */
+
+/* Glass and satin, the lamp out of sight. */
+#define NOISY                                                                            \
+    "LookAt 0 -3.4 1.2  0 0 0.3  0 0 1 Camera \"perspective\" \"float fov\" 40\n" SIZE(  \
+        32) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS                                      \
+        "AttributeBegin Material \"dielectric\" Translate -0.6 0 0.5" AT                 \
+        "0.5 AttributeEnd\n"                                                             \
+        "Material \"conductor\" \"float roughness\" 0.2 Translate 0.7 0.3 0.5" AT        \
+        "0.5\n"
+
+enum { N_SEEDS = 16, N_PICTURES = 64, N_PIXELS = 32 * 32 };
+
+/* What the trial of caustic photons tells of paths without them. */
+static double told_noise(const view *v, int seed)
+{
+    g_autofree char *words = g_strdup_printf("integrator=auto passes=64 seed=%d", seed);
+    g_autoptr(render) r = render_of(v, words);
+    render_plan plan;
+    g_assert_true(render_get_plan(r, &plan, NULL));
+    for (int i = 0; i < plan.n_trials; i++)
+        if (strcmp(plan.trials[i].what, "caustic photons") == 0)
+            return plan.trials[i].without.variance;
+    g_assert_not_reached();
+}
+
+/* Of pictures of one sample a pixel: sums of each pixel's brightness and its square. */
+static void add_picture(const view *v, int seed, double sum[], double square[])
+{
+    g_autofree char *words =
+        g_strdup_printf("integrator=path passes=1 spp=1 seed=%d", seed);
+    g_autoptr(image) img = render_with(v, words);
+    for (int i = 0; i < N_PIXELS; i++) {
+        const float *rgb = &img->pixels[i * img->n_channels];
+        double grey = ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3.0;
+        sum[i] += grey;
+        square[i] += grey * grey;
+    }
+}
+
+/* Each pixel's variance, over the squares of its own brightness and of the picture's. */
+static double noise_of_pictures(const view *v)
+{
+    double sum[N_PIXELS] = {0}, square[N_PIXELS] = {0}, mean = 0.0, noise = 0.0;
+    const double n = N_PICTURES;
+    for (int seed = 0; seed < N_PICTURES; seed++)
+        add_picture(v, seed, sum, square);
+    for (int i = 0; i < N_PIXELS; i++)
+        mean += sum[i] / n / N_PIXELS;
+    for (int i = 0; i < N_PIXELS; i++) {
+        double here = sum[i] / n;
+        double variance = (square[i] - n * here * here) / (n - 1.0);
+        noise += variance / (here * here + mean * mean) / N_PIXELS;
+    }
+    return noise;
+}
+
+static void test_told(void)
+{
+    g_autoptr(view) v = view_of(NOISY);
+    double told = 0.0, noise = noise_of_pictures(v);
+    for (int seed = 0; seed < N_SEEDS; seed++)
+        told += told_noise(v, seed) / N_SEEDS;
+    g_test_message("told %g, noise of pictures %g", told, noise);
+    g_assert_cmpfloat(told, >, 0.7 * noise);
+    g_assert_cmpfloat(told, <, 1.4 * noise);
+}
+
 static void add(const char *what, const subject *of, GTestDataFunc test)
 {
     g_autofree char *path = g_strdup_printf("/budget/%s/%s", what, of->name);
@@ -113,5 +182,6 @@ int main(int argc, char **argv)
     }
     for (size_t i = 0; i < G_N_ELEMENTS(bright); i++)
         add("sends-photons", &bright[i], test_sends_photons);
+    g_test_add_func("/budget/told", test_told);
     return g_test_run();
 }

@@ -62,18 +62,28 @@ static float most_reach(const transport_plan *plan)
     return most;
 }
 
-/* Square of the reach of the visible point that p lies by; 0: out of sight. */
-static float sight_at(const trials *all, vec3 p, point_hits *hits)
+/* Where the camera sees a photon land. */
+typedef struct landing {
+    float area;      /* of what shows it, m²; 0: out of sight */
+    float reflected; /* of its light, toward the camera, sr⁻¹ */
+    vec2 raster;
+} landing;
+
+/* By the visible point that p lies by. */
+static landing land_at(const trials *all, vec3 p, point_hits *hits)
 {
     if (!point_set_nearest(all->visible, p, 1, all->most_reach, hits) || hits->n == 0)
-        return 0.0f;
-    float reach = reach_of(all->plan, &all->plan->sight[hits->index[0]]);
-    return hits->distance2[0] < reach * reach ? reach * reach : 0.0f;
+        return (landing){0};
+    const visible_point *seen = &all->plan->sight[hits->index[0]];
+    float reach = reach_of(all->plan, seen);
+    if (!(hits->distance2[0] < reach * reach))
+        return (landing){0};
+    return (landing){reach * reach, seen->albedo / (float)G_PI, seen->raster};
 }
 
 /* The same of a point in a medium, which is in sight if nothing stands before it and
    light comes from there to the eye. */
-static float sight_in_medium(const trials *all, const surface_hit *hit)
+static landing land_in_medium(const trials *all, const surface_hit *hit)
 {
     const trace_task *task = &all->task;
     const film_settings *film = &all->plan->view->film;
@@ -83,14 +93,16 @@ static float sight_in_medium(const trials *all, const surface_hit *hit)
         !camera_connect(c, hit->p, (vec2){0.5f, 0.5f}, hit->time, &eye) ||
         !(eye.raster.x >= 0.0f && eye.raster.x < (float)film->width) ||
         !(eye.raster.y >= 0.0f && eye.raster.y < (float)film->height))
-        return 0.0f;
+        return (landing){0};
     ray r = hit_ray_to(hit, eye.direction, eye.distance);
     if (scene_occluded(task->scene, &r))
-        return 0.0f;
+        return (landing){0};
     float transmittance = spectrum_mean(scene_transmittance(task->scene, &r, &task->w));
     float pixels = (float)all->pixels_each;
-    return transmittance < DEFENSIVE_SHARE ? 0.0f
-                                           : pixels * camera_pixel_area(c, eye.distance);
+    if (transmittance < DEFENSIVE_SHARE)
+        return (landing){0};
+    return (landing){pixels * camera_pixel_area(c, eye.distance), 0.25f / (float)G_PI,
+                     eye.raster};
 }
 
 /* ---- Trials ---- */
@@ -107,11 +119,13 @@ typedef struct trial {
    adds Φ² w / (1 - w) / a, up to factors that are the same for all. The w-th part of
    photons survives with all of Φ, and each stands for 1 / w of them. Where photons help,
    with m times the density, all of them together leave the 1 / (1 + m)-th part. */
-static void add_noise(trial_noise *sum, const photon_event *event, float sight)
+static void add_noise(trial_noise *sum, const photon_event *event, const landing *at,
+                      double weight)
 {
     double w = (double)event->mis_weight, odds = w / fmax(1.0 - w, (double)FLT_EPSILON);
-    double flux = (double)spectrum_mean(event->flux);
-    double noise = flux * flux / (fmax(1.0 - w, (double)FLT_EPSILON) * (double)sight);
+    double seen = (double)(spectrum_mean(event->flux) * at->reflected);
+    double noise =
+        weight * seen * seen / (fmax(1.0 - w, (double)FLT_EPSILON) * (double)at->area);
     sum->of_paths += noise;
     for (int i = 0; i < N_SHARES; i++)
         sum->left[i] += noise / (1.0 + plan_share(i) * odds);
@@ -124,12 +138,14 @@ static void note_arrival(const photon_event *event, void *data)
     float flux = spectrum_mean(event->flux);
     if (event->kind != PHOTON_STORED || !isfinite(flux))
         return;
-    float sight = event->hit->shape == NO_INDEX ? sight_in_medium(t->all, event->hit)
-                                                : sight_at(t->all, event->p, t->hits);
-    t->value += flux * (sight > 0.0f ? 1.0f : DEFENSIVE_SHARE);
-    if (sight > 0.0f)
-        add_noise(&t->noise, event, sight);
-    *(sight > 0.0f ? &t->noise.seen : &t->noise.unseen) += (double)flux;
+    landing at = event->hit->shape == NO_INDEX ? land_in_medium(t->all, event->hit)
+                                               : land_at(t->all, event->p, t->hits);
+    bool seen = at.area > 0.0f;
+    const sketch *s = t->all->plan->sketch;
+    t->value += flux * (seen ? 1.0f : DEFENSIVE_SHARE);
+    if (seen && s)
+        add_noise(&t->noise, event, &at, sketch_weight(s, at.raster, SIZE_MAX, t->hits));
+    *(seen ? &t->noise.seen : &t->noise.unseen) += (double)flux;
 }
 
 static void run_trials(size_t begin, size_t end, unsigned thread, void *data)
@@ -175,23 +191,13 @@ static size_t keep_arrivals(emission_record *records, trial_noise *noise, size_t
     return kept;
 }
 
-/* Of what the camera sees. */
-static double mean_albedo(const transport_plan *plan)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < plan->n_sight; i++)
-        sum += (double)plan->sight[i].albedo;
-    return sum / (double)MAX(plan->n_sight, 1);
-}
-
 /* What the sum of all trials' parts is to be multiplied with to be a camera sample's. */
 static double noise_scale(const trials *all)
 {
     const film_settings *film = &all->plan->view->film;
     double pixels = (double)film->width * (double)film->height;
-    double reflected = mean_albedo(all->plan) / G_PI;
-    return all->pixels_each / pixels * reflected * reflected *
-           (double)all->task.n_photons / (double)all->task.mis->discs;
+    return all->pixels_each / pixels * (double)all->task.n_photons /
+           (double)all->task.mis->discs;
 }
 
 static void sum_noise(const trials *all)

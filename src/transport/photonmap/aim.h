@@ -9,8 +9,9 @@
 
 /** @brief What the last trials brought. */
 typedef struct aim_result {
-    double noise;  /**< square of the noise that a camera sample had if it had to find by
-                      itself what photons bring: (W m⁻² sr⁻¹ nm⁻¹)² */
+    double
+        noise;     /**< variance that a camera sample had if it had to find by itself what
+                      photons bring, relative as sketch_weight has it; 0 without a sketch */
     double unseen; /**< share of what photons bring that lands out of the camera's sight:
                       it is in the picture by way of other surfaces only, and not in
                       noise */

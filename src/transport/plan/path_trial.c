@@ -15,14 +15,19 @@ static double path_sample(const path_pass *pass, vec2 raster, sampler random,
    through fog noise is as bright as they are, and nothing that is decided takes it away.
    And what is noted meanwhile: all by pieces of LEAST_TRIALS of them, so that any number
    of threads finds the same. */
+typedef struct sample_pair {
+    vec2 raster;
+    double a, b;
+} sample_pair;
+
 typedef struct pair_trial {
     const path_pass *pass;
     uint64_t key;
     struct pair_piece *pieces;
+    sample_pair *pairs; /* one each */
 } pair_trial;
 
 typedef struct pair_piece {
-    double noise; /* sum of the variances that pairs say */
     uint64_t camera_rays, shadow_rays;
     spot_trial looks;
     GArray *lit;
@@ -34,14 +39,19 @@ typedef struct pair_result {
     uint64_t camera_rays, shadow_rays;
 } pair_result;
 
-static double variance_of_pair(const path_pass *pass, uint64_t key, size_t i,
-                               transport_scratch *scratch)
+static double variance_of(const sample_pair *pair)
+{
+    return 0.5 * (pair->a - pair->b) * (pair->a - pair->b);
+}
+
+static sample_pair try_pair(const path_pass *pass, uint64_t key, size_t i,
+                            transport_scratch *scratch)
 {
     sampler random = sampler_make(key, i);
-    vec2 raster = trial_place(pass->plan, &random);
-    double a = path_sample(pass, raster, sampler_split(&random, 0), scratch);
-    double b = path_sample(pass, raster, sampler_split(&random, 1), scratch);
-    return 0.5 * (a - b) * (a - b);
+    sample_pair pair = {.raster = trial_place(pass->plan, &random)};
+    pair.a = path_sample(pass, pair.raster, sampler_split(&random, 0), scratch);
+    pair.b = path_sample(pass, pair.raster, sampler_split(&random, 1), scratch);
+    return pair;
 }
 
 static void try_pairs(size_t begin, size_t end, unsigned thread, void *data)
@@ -57,7 +67,7 @@ static void try_pairs(size_t begin, size_t end, unsigned thread, void *data)
     if (pass.trial)
         pass.trial = &piece->looks;
     for (size_t i = begin; i < end; i++)
-        piece->noise += variance_of_pair(&pass, all->key, i, &scratch);
+        all->pairs[i] = try_pair(&pass, all->key, i, &scratch);
     piece->camera_rays = scratch.camera_rays;
     piece->shadow_rays = scratch.shadow_rays;
     transport_scratch_clear(&scratch);
@@ -73,33 +83,58 @@ static void join_notes(const path_pass *pass, const pair_piece *piece)
                             MIN(piece->lit->len, MOST_PLACES - pass->lit->len));
 }
 
-/* The variance of a sample, from n pairs of them at random places. */
-static bool run_pairs(const path_pass *pass, uint64_t key, uint32_t n,
+/* n pairs of samples at random places. */
+static bool run_pairs(const path_pass *pass, uint64_t key, uint32_t n, sample_pair *pairs,
                       const cancel_flag *cancel, pair_result *out, GError **error)
 {
     size_t n_pieces = (n + LEAST_TRIALS - 1) / LEAST_TRIALS;
-    pair_trial all = {pass, key, g_new0(pair_piece, n_pieces)};
+    pair_trial all = {pass, key, g_new0(pair_piece, n_pieces), pairs};
     const workers by = {(unsigned)pass->plan->how.threads, cancel};
     bool ok = parallel_work(n, LEAST_TRIALS, by, try_pairs, &all, error);
     *out = (pair_result){0};
     for (size_t i = 0; i < n_pieces; i++) {
         const pair_piece *piece = &all.pieces[i];
-        out->variance += piece->noise / n;
         out->camera_rays += piece->camera_rays;
         out->shadow_rays += piece->shadow_rays;
         join_notes(pass, piece);
         if (piece->lit)
             g_array_unref(piece->lit);
     }
+    for (uint32_t i = 0; i < n; i++)
+        out->variance += variance_of(&pairs[i]) / n;
     g_free(all.pieces);
     return ok;
 }
 
+static bool make_sketch(transport_plan *plan, const sample_pair *pairs, uint32_t n,
+                        GError **error)
+{
+    g_autofree vec2 *places = g_new(vec2, n);
+    g_autofree float *brightness = g_new(float, n);
+    for (uint32_t i = 0; i < n; i++) {
+        places[i] = pairs[i].raster;
+        brightness[i] = (float)(0.5 * (pairs[i].a + pairs[i].b));
+    }
+    plan->sketch = sketch_new(places, brightness, n, error);
+    return plan->sketch;
+}
+
+/* The variance of a sample relative to what its neighbours say is there. */
+static double relative_noise(const sketch *s, const sample_pair *pairs, uint32_t n)
+{
+    point_hits hits = {0};
+    double sum = 0.0;
+    for (uint32_t i = 0; i < n; i++)
+        sum += variance_of(&pairs[i]) * sketch_weight(s, pairs[i].raster, i, &hits) / n;
+    point_hits_clear(&hits);
+    return sum;
+}
+
 /* Of n pairs. */
-static path_effort effort_of(const pair_result *found, uint32_t n)
+static path_effort effort_of(const pair_result *found, double noise, uint32_t n)
 {
     return (path_effort){
-        .noise = found->variance,
+        .noise = noise,
         .rays = (double)(found->camera_rays + found->shadow_rays) / (2.0 * n),
         .surfaces = (double)found->camera_rays / (2.0 * n),
     };
@@ -117,10 +152,12 @@ bool path_effort_measure(transport_plan *plan, const cancel_flag *cancel,
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x627564676574u);
     uint32_t n = plan_trials_for(plan, 0.5, 2.0 * SAMPLE_RAYS, MOST_PLACES);
     pair_result found;
-    if (!run_pairs(&pass, key, n, cancel, &found, error))
+    g_autofree sample_pair *pairs = g_new0(sample_pair, n);
+    if (!run_pairs(&pass, key, n, pairs, cancel, &found, error) ||
+        !make_sketch(plan, pairs, n, error))
         return false;
     plan->planning += (double)(found.camera_rays + found.shadow_rays);
-    *out = effort_of(&found, n);
+    *out = effort_of(&found, relative_noise(plan->sketch, pairs, n), n);
     plan->lit = g_array_steal(lit, &plan->n_lit);
     return true;
 }
@@ -134,10 +171,11 @@ static bool run_spot_trial(transport_plan *plan, const path_pass *pass, uint32_t
 {
     path_pass trying = *pass;
     pair_result found;
+    g_autofree sample_pair *pairs = g_new0(sample_pair, n_pairs);
     trying.trial = trial;
     trying.p_spots = 1.0f;
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x73706f7473u);
-    if (!run_pairs(&trying, key, n_pairs, cancel, &found, error))
+    if (!run_pairs(&trying, key, n_pairs, pairs, cancel, &found, error))
         return false;
     plan->planning += (double)(found.camera_rays + found.shadow_rays);
     *noise = found.variance;

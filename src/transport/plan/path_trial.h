@@ -9,14 +9,15 @@
 
 /** @brief Light that paths find, per camera sample. */
 typedef struct path_effort {
-    double noise; /**< variance of a sample, caustics apart: (W m⁻² sr⁻¹ nm⁻¹)² */
+    double noise;    /**< variance of a sample, caustics apart, relative as sketch_weight
+                        has it */
     double rays;     /**< traced, shadow rays too */
     double surfaces; /**< met */
 } path_effort;
 
 /** @brief Measures with a few paths, the same on any number of threads.
  * Where bright spots are asked for, plan->lit gets the places that are lit and light
- * others. @return false with ERROR_CANCELLED if it was cancelled */
+ * others; plan->sketch is made. @return false with ERROR_CANCELLED if it was cancelled */
 bool path_effort_measure(transport_plan *plan, const cancel_flag *cancel,
                          path_effort *out, GError **error);
 

@@ -1,0 +1,19 @@
+/*
+ * A sketch of the picture, from the few paths of a trial: how bright it is around a place
+ * of the film. Noise counts as the picture shows it: relative to what is there.
+ */
+#pragma once
+
+#include "photon/map/point_set.h"
+
+typedef struct sketch sketch;
+
+/** @brief Of n places, > 0, in pixels, and how bright each is. NULL: out of memory */
+sketch *sketch_new(const vec2 *places, const float *brightness, size_t n, GError **error);
+void sketch_free(sketch *s);
+
+/** @brief What a squared error there counts: 1 / (b² + m²), b what the nearest places
+ * say, and m the mean of all; where all are black, 1.
+ *  @param but a place that is left out, as its own error would; n or more: none
+ *  @param hits the caller's, which says if memory was refused */
+double sketch_weight(const sketch *s, vec2 raster, size_t but, point_hits *hits);
