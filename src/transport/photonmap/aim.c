@@ -82,7 +82,7 @@ static landing land_at(const trials *all, vec3 p, point_hits *hits)
 }
 
 /* The same of a point in a medium, which is in sight if nothing stands before it and
-   light comes from there to the eye. */
+   light comes from there to the eye; scattered alike to all sides. */
 static landing land_in_medium(const trials *all, const surface_hit *hit)
 {
     const trace_task *task = &all->task;
@@ -101,8 +101,8 @@ static landing land_in_medium(const trials *all, const surface_hit *hit)
     float pixels = (float)all->pixels_each;
     if (transmittance < DEFENSIVE_SHARE)
         return (landing){0};
-    return (landing){pixels * camera_pixel_area(c, eye.distance), 0.25f / (float)G_PI,
-                     eye.raster};
+    return (landing){pixels * camera_pixel_area(c, eye.distance),
+                     phase_henyey_greenstein(0.0f, 0.0f), eye.raster};
 }
 
 /* ---- Trials ---- */
