@@ -110,7 +110,7 @@ static void test_costs_as_path(gconstpointer data)
         "Material \"conductor\" \"float roughness\" 0.2 Translate 0.7 0.3 0.5" AT        \
         "0.5\n"
 
-enum { N_SEEDS = 16, N_PICTURES = 64, N_PIXELS = 32 * 32 };
+enum { N_SEEDS = 16, N_PICTURES = 256, N_PIXELS = 32 * 32 };
 
 /* What the trial of caustic photons tells of paths without them. */
 static double told_noise(const view *v, int seed)
