@@ -11,15 +11,16 @@ static double path_sample(const path_pass *pass, vec2 raster, sampler random,
     return trial_sample(path_radiance, pass, pass->plan, raster, random, 0, scratch);
 }
 
-/* Pairs of samples at random places, without the lights that are seen: at their edges and
-   through fog noise is as bright as they are, and nothing that is decided takes it away.
-   And what is noted meanwhile: all by pieces of LEAST_TRIALS of them, so that any number
-   of threads finds the same. */
+/* Two samples of a place. */
 typedef struct sample_pair {
     vec2 raster;
     double a, b;
 } sample_pair;
 
+/* Pairs of samples at random places, without the lights that are seen: at their edges and
+   through fog noise is as bright as they are, and nothing that is decided takes it away.
+   And what is noted meanwhile: all by pieces of LEAST_TRIALS of them, so that any number
+   of threads finds the same. */
 typedef struct pair_trial {
     const path_pass *pass;
     uint64_t key;
@@ -120,21 +121,23 @@ static bool make_sketch(transport_plan *plan, const sample_pair *pairs, uint32_t
 }
 
 /* The variance of a sample relative to what its neighbours say is there. */
-static double relative_noise(const sketch *s, const sample_pair *pairs, uint32_t n)
+static bool measure_noise(const sketch *s, const sample_pair *pairs, uint32_t n,
+                          double *noise, GError **error)
 {
     point_hits hits = {0};
-    double sum = 0.0;
+    *noise = 0.0;
     for (uint32_t i = 0; i < n; i++)
-        sum += variance_of(&pairs[i]) * sketch_weight(s, pairs[i].raster, i, &hits) / n;
+        *noise +=
+            variance_of(&pairs[i]) * sketch_weight(s, pairs[i].raster, i, &hits) / n;
+    bool refused = hits.refused;
     point_hits_clear(&hits);
-    return sum;
+    return !refused || point_hits_refuse(error);
 }
 
 /* Of n pairs. */
-static path_effort effort_of(const pair_result *found, double noise, uint32_t n)
+static path_effort effort_of(const pair_result *found, uint32_t n)
 {
     return (path_effort){
-        .noise = noise,
         .rays = (double)(found->camera_rays + found->shadow_rays) / (2.0 * n),
         .surfaces = (double)found->camera_rays / (2.0 * n),
     };
@@ -153,11 +156,13 @@ bool path_effort_measure(transport_plan *plan, const cancel_flag *cancel,
     uint32_t n = plan_trials_for(plan, 0.5, 2.0 * SAMPLE_RAYS, MOST_PLACES);
     pair_result found;
     g_autofree sample_pair *pairs = g_new0(sample_pair, n);
-    if (!run_pairs(&pass, key, n, pairs, cancel, &found, error) ||
-        !make_sketch(plan, pairs, n, error))
+    if (!run_pairs(&pass, key, n, pairs, cancel, &found, error))
         return false;
     plan->planning += (double)(found.camera_rays + found.shadow_rays);
-    *out = effort_of(&found, relative_noise(plan->sketch, pairs, n), n);
+    *out = effort_of(&found, n);
+    if (!make_sketch(plan, pairs, n, error) ||
+        !measure_noise(plan->sketch, pairs, n, &out->noise, error))
+        return false;
     plan->lit = g_array_steal(lit, &plan->n_lit);
     return true;
 }
