@@ -21,6 +21,12 @@ static bool is_beside(const neighbourhood *a, const neighbourhood *b)
            cosine * cosine > SAME_SURFACE;
 }
 
+/* A wall between two discs hides from one what is in sight of the other. */
+static bool is_seen(const looked_disc *by, vec3 p)
+{
+    return by->whole || neighbourhood_sees(&by->hood, p);
+}
+
 const looked_disc *looked_around_find(const looked_around *looked,
                                       const neighbourhood *disc, const kernel *k)
 {
@@ -28,7 +34,7 @@ const looked_disc *looked_around_find(const looked_around *looked,
         const looked_disc *seen = &looked->discs[i];
         if (seen->hood.radius == disc->radius && seen->hood.time == disc->time &&
             seen->kernel.choice == k->choice && seen->kernel.cone_k == k->cone_k &&
-            is_beside(&seen->hood, disc))
+            is_beside(&seen->hood, disc) && is_seen(seen, disc->p))
             return seen;
     }
     return NULL;

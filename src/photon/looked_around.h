@@ -36,8 +36,8 @@ static inline void looked_around_forget(looked_around *looked)
     looked->n = 0;
 }
 
-/** @brief A disc as large, beside this one on the same surface. NULL: none was looked at.
- */
+/** @brief A disc as large, beside this one on the same surface and in its sight. NULL:
+ * none was looked at. */
 const looked_disc *looked_around_find(const looked_around *looked,
                                       const neighbourhood *disc, const kernel *k);
 

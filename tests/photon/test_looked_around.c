@@ -61,6 +61,22 @@ static void test_shared_on_its_surface_alone(void)
     g_assert_null(looked_around_find(&looked, &middle, &CONE));
 }
 
+/* A thin wall stands between them, as a waterline does on the wall of a basin. */
+static void test_shared_on_one_side_alone(void)
+{
+    g_autoptr(view) v = view_of(
+        TABLE "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0 -1 1 0 -1 1 1 -1 -1 1] "
+              "\"integer indices\" [0 1 2 0 2 3]\n");
+    static looked_around looked;
+    const neighbourhood left = disc_at(v->scene, (vec3){-1.01f, 0, 0}),
+                        beside = disc_at(v->scene, (vec3){-1.005f, 0.01f, 0}),
+                        right = disc_at(v->scene, (vec3){-0.99f, 0, 0});
+    const looked_disc seen = disc_look(&left, &CONE);
+    looked_around_put(&looked, &seen);
+    g_assert_nonnull(looked_around_find(&looked, &beside, &CONE));
+    g_assert_null(looked_around_find(&looked, &right, &CONE));
+}
+
 static void test_oldest_goes_first(void)
 {
     g_autoptr(view) v = view_of(TABLE);
@@ -125,6 +141,8 @@ int main(int argc, char **argv)
     g_test_add_func("/looked-around/covers", test_covers);
     g_test_add_func("/looked-around/shared-on-its-surface-alone",
                     test_shared_on_its_surface_alone);
+    g_test_add_func("/looked-around/shared-on-one-side-alone",
+                    test_shared_on_one_side_alone);
     g_test_add_func("/looked-around/oldest-goes-first", test_oldest_goes_first);
     g_test_add_func("/looked-around/same-light", test_same_light);
     return g_test_run();
