@@ -107,6 +107,14 @@ typedef struct transport_counts {
  * scenes, 18 cases, 128 x 128, 4 and 8 passes, three seeds). */
 enum { ROULETTE_BOUNCES = 4 };
 
+/** @brief True where clear glass parts a path from the eye in two, both of which are
+ * followed: the first that it meets. Few paths would find a light that it mirrors by
+ * chance, and of few of them a denoiser makes a smear. */
+static inline bool path_is_parted(unsigned bounces, const bsdf *b)
+{
+    return bounces == 0 && b->lobes == (LOBE_SPECULAR | LOBE_ANY_SIDE);
+}
+
 /** @brief A point where the camera looks (transport/visible.h). */
 typedef struct visible_point {
     vec3 p;

@@ -62,12 +62,12 @@ static void note_density(const path_walk *walk, camera_path *path, const surface
 }
 
 static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
-                   const bsdf *b)
+                   const bsdf *b, unsigned lobes)
 {
     float u_lobe = sampler_1d(walk->random);
     vec2 u = sampler_2d(walk->random);
     bsdf_sample next;
-    if (!bsdf_sample_direction(b, -path->at.ray.direction, u_lobe, u, LOBE_ALL,
+    if (!bsdf_sample_direction(b, -path->at.ray.direction, u_lobe, u, lobes,
                                TRANSPORT_RADIANCE, &next))
         return false;
     if (bsdf_has_both(b))
@@ -112,12 +112,44 @@ static scene_event cross_medium(void *data, float length, const surface_hit *beh
 }
 
 /* The first surface that is not specular guides the denoiser. */
-static void note_guide(const path_walk *walk, const camera_path *path,
-                       const surface_hit *hit, const bsdf *b)
+static void note_guide(const path_walk *walk, camera_path *path, const surface_hit *hit,
+                       const bsdf *b)
 {
-    if (!(walk->out->guide.weight > 0.0f))
-        radiance_sample_guide(walk->out, hit, b, -path->at.ray.direction, walk->eye,
-                              spectrum_mean(path->at.throughput));
+    path->guided = path->guided ||
+                   radiance_sample_guide(walk->out, hit, b, -path->at.ray.direction,
+                                         walk->eye, spectrum_mean(path->at.throughput));
+}
+
+static bool path_goes_on(path_walk *walk);
+
+static void follow(path_walk *walk)
+{
+    while (!cancelled(walk->pass->plan->cancel) && path_goes_on(walk))
+        continue;
+}
+
+/* Goes on by one side of glass, for roulette as if that was all. */
+static bool bounce_by(path_walk *walk, camera_path *path, const surface_hit *hit,
+                      const bsdf *b, unsigned side)
+{
+    float before = spectrum_mean(path->at.throughput);
+    bool goes_on = bounce(walk, path, hit, b, LOBE_SPECULAR | side);
+    path->eta2 = before / spectrum_mean(path->at.throughput);
+    return goes_on;
+}
+
+/* Follows what glass mirrors, and goes on with what it lets through. */
+static bool part(path_walk *walk, camera_path *path, const surface_hit *hit,
+                 const bsdf *b)
+{
+    const camera_path through = *path;
+    sampler *outer = walk->random, own = sampler_split(outer, 0);
+    walk->random = &own;
+    if (bounce_by(walk, path, hit, b, LOBE_REFLECTION))
+        follow(walk);
+    walk->random = outer;
+    *path = through;
+    return bounce_by(walk, path, hit, b, LOBE_TRANSMISSION);
 }
 
 /* One more step of the path. @return false if it was the last. */
@@ -147,7 +179,8 @@ static bool path_goes_on(path_walk *walk)
         path_gather_caustics(walk, &seen, &hit, &b);
         path_look_at_spots(walk, path, &hit, &b);
     }
-    return bounce(walk, path, &hit, &b);
+    return path_is_parted(path->bounces, &b) ? part(walk, path, &hit, &b)
+                                             : bounce(walk, path, &hit, &b, LOBE_ALL);
 }
 
 void path_radiance(const void *data, const ray *r, sampler *random,
@@ -173,8 +206,7 @@ void path_radiance(const void *data, const ray *r, sampler *random,
         .out = out,
         .eye = r->origin,
     };
-    while (!cancelled(pass->plan->cancel) && path_goes_on(&walk))
-        continue;
+    follow(&walk);
 }
 
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)

@@ -20,6 +20,7 @@ typedef struct camera_path {
     float pdf_scatter; /* of the direction, by the bsdf of all wavelengths; where photons
                           share */
     bool every_light;  /* how lights were sampled there */
+    bool guided;       /* a surface that it came to guides the denoiser */
     float looked;      /* probability that bright spots were looked at from there ... */
     bool by_either;    /* ... and it has lobes both diffuse and glossy */
 } camera_path;

@@ -12,6 +12,7 @@ typedef struct camera_walk {
     size_t first_light, end_light; /* the light subpath that it connects to */
     partial_weights at_curve;      /* see leave_curve */
     vec3 eye;                      /* where the camera ray began */
+    bool guided;                   /* a surface that it came to guides the denoiser */
 } camera_walk;
 
 static void add(camera_walk *c, scattering_counts counts, int source, spectrum radiance)
@@ -347,16 +348,46 @@ static void leave_curve(camera_walk *c, const vcm_vertex *v)
     }
 }
 
+/* Goes on from v by some of its lobes. */
+static bool go_on_by(camera_walk *c, const vcm_vertex *v, unsigned lobes)
+{
+    if (!vcm_bounce(c->pass, &c->walk, v, lobes, c->random))
+        return false;
+    leave_curve(c, v);
+    return survives(c);
+}
+
+static void follow(camera_walk *c);
+
+/* Goes on by one side of glass, for roulette as if that was all. */
+static bool go_on_by_side(camera_walk *c, const vcm_vertex *v, unsigned side)
+{
+    float before = spectrum_mean(c->walk.at.throughput);
+    bool goes_on = go_on_by(c, v, LOBE_SPECULAR | side);
+    c->walk.eta2 = before / spectrum_mean(c->walk.at.throughput);
+    return goes_on;
+}
+
+/* Follows what glass mirrors, and goes on with what it lets through. */
+static bool part(camera_walk *c, const vcm_vertex *v)
+{
+    camera_walk mirrored = *c;
+    sampler own = sampler_split(c->random, 0);
+    mirrored.random = &own;
+    if (go_on_by_side(&mirrored, v, LOBE_REFLECTION))
+        follow(&mirrored);
+    return go_on_by_side(c, v, LOBE_TRANSMISSION);
+}
+
 /* Goes on from v, by mirrors only if all else has been merged. */
 static bool go_on(camera_walk *c, const vcm_vertex *v)
 {
     const vcm_strategies *how = &c->pass->strategies;
-    unsigned lobes = how->end_here ? LOBE_SPECULAR | LOBE_ANY_SIDE : LOBE_ALL;
-    if ((!how->connect && !how->merge) ||
-        !vcm_bounce(c->pass, &c->walk, v, lobes, c->random))
+    if (!how->connect && !how->merge)
         return false;
-    leave_curve(c, v);
-    return survives(c);
+    if (path_is_parted((unsigned)c->walk.counts.n, &v->bsdf))
+        return part(c, v);
+    return go_on_by(c, v, how->end_here ? LOBE_SPECULAR | LOBE_ANY_SIDE : LOBE_ALL);
 }
 
 static void follow(camera_walk *c)
@@ -380,9 +411,9 @@ static void follow(camera_walk *c)
         scene_bsdf(pass->scene, &hit, &pass->w, ALL_WAVELENGTHS, &options, &v.bsdf);
         if (walk->at.eye)
             radiance_sample_note(c->out, v.hit, &v.bsdf, v.wo, walk->from);
-        if (!(c->out->guide.weight > 0.0f))
-            radiance_sample_guide(c->out, &hit, &v.bsdf, v.wo, c->eye,
-                                  spectrum_mean(walk->at.throughput));
+        c->guided =
+            c->guided || radiance_sample_guide(c->out, &hit, &v.bsdf, v.wo, c->eye,
+                                               spectrum_mean(walk->at.throughput));
         if (!vcm_length_allowed(pass, walk->counts.n + 1) || !(cosine > 0.0f))
             return;
         weights_arrive(&walk->weights, length3_2(hit.p - walk->from), cosine);
