@@ -433,6 +433,28 @@ static void test_sky_without_grain(void)
     g_assert_cmpfloat(variance, <, 0.25);
 }
 
+/* A lamp that clear glass mirrors, in the dark: each sample sees what Fresnel's equations
+   say of it at 45 degrees, 5.02 % of 100 where its index is 1.5, but for what eight
+   wavelengths say of white. */
+static void test_glint_without_grain(gconstpointer integrator)
+{
+    g_autoptr(view) v = view_of(
+        "LookAt 0 -1 1  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 0.1\n" SIZE(
+            4) "WorldBegin\n"
+               "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [100 100 100]\n"
+               "Material \"diffuse\" \"rgb reflectance\" [0 0 0] Translate 0 3 3\n"
+               "Rotate 135 1 0 0 Shape \"disk\" \"float radius\" 1 AttributeEnd\n"
+               "Material \"dielectric\" Shape \"disk\" \"float radius\" 1\n");
+    g_autofree char *words =
+        g_strconcat("passes=1 spp=1 denoise=off integrator=", integrator, NULL);
+    g_autoptr(image) img = render_with(v, words);
+    for (int i = 0; i < img->width * img->height; i++) {
+        const float *rgb = img->pixels + i * img->n_channels;
+        g_test_message("%g %g %g", (double)rgb[0], (double)rgb[1], (double)rgb[2]);
+        g_assert_cmpfloat_with_epsilon((double)rgb[1], 5.02, 0.15);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -459,5 +481,10 @@ int main(int argc, char **argv)
     g_test_add_func("/transport/cancel-soon", test_cancel_acts_soon);
     g_test_add_func("/transport/long-ways", test_long_ways);
     g_test_add_func("/transport/sky", test_sky_without_grain);
+    static const char *const all[] = {"path", "auto", "vcm", "photonmap", "sppm"};
+    for (size_t i = 0; i < G_N_ELEMENTS(all); i++) {
+        g_autofree char *name = g_strconcat("/transport/glint/", all[i], NULL);
+        g_test_add_data_func(name, all[i], test_glint_without_grain);
+    }
     return g_test_run();
 }
