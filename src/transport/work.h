@@ -42,9 +42,8 @@
 /** What is tried must be better than what is there by so much: variances are known within
  * a factor of two, and noise that is even disturbs least. With 1 in its place time x
  * relMSE is 1.3 to 1.7 times as much in a Cornell box and 1.1 to 1.2 in one with glass
- * and in water, alike in three other scenes (64 x 64, 4 to 64 passes, five seeds); with
- * 0.65 a coffee maker takes 1.3 times as long (128 x 128, to relMSE .015). */
-#define CLEARLY_BETTER 0.5
+ * and in water, alike in three other scenes (64 x 64, 4 to 64 passes, five seeds). */
+#define CLEARLY_BETTER 0.65
 
 /** Fewer trials of anything tell nothing, as fewer photons do of how close they lie: then
  * the decision is the cheap one. A thread takes as many at once, some hundred
