@@ -49,6 +49,5 @@ double sketch_weight(const sketch *s, vec2 raster, size_t but, point_hits *hits)
             sum += (double)s->brightness[hits->index[i]];
             n++;
         }
-    double here = sum / fmax(n, 1.0), square = here * here + s->mean * s->mean;
-    return square > 0.0 ? 1.0 / square : 1.0;
+    return relative_weight(sum / fmax(n, 1.0), s->mean);
 }

@@ -12,8 +12,15 @@ typedef struct sketch sketch;
 sketch *sketch_new(const vec2 *places, const float *brightness, size_t n, GError **error);
 void sketch_free(sketch *s);
 
-/** @brief What a squared error there counts: 1 / (b² + m²), b what the nearest places
- * say, and m the mean of all; where all are black, 1.
+/** @brief What a squared error counts where the picture is so bright, and so bright in
+ * the mean; where all is black, 1. */
+static inline double relative_weight(double here, double mean)
+{
+    double square = here * here + mean * mean;
+    return square > 0.0 ? 1.0 / square : 1.0;
+}
+
+/** @brief The same at a place, as bright as the nearest of the sketch.
  *  @param but a place that is left out, as its own error would; n or more: none
  *  @param hits the caller's, which says if memory was refused */
 double sketch_weight(const sketch *s, vec2 raster, size_t but, point_hits *hits);

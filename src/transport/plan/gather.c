@@ -328,8 +328,7 @@ static double brightness(const gather_place *at)
 /* A place counts by how bright it is, and the picture is. */
 static double weight_of(const gather_place *at, double mean)
 {
-    double here = brightness(at);
-    return 1.0 / (here * here + mean * mean);
+    return relative_weight(brightness(at), mean);
 }
 
 static double mean_of(const gather_trial *t)
