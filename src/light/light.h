@@ -9,6 +9,7 @@
 
 #include "light/light_tree.h"
 #include "math/box.h"
+#include "math/cone.h"
 #include "math/transform.h"
 #include "medium/hit.h"
 #include "params/build_context.h"
@@ -94,6 +95,9 @@ typedef struct light_kind {
                          const wavelengths *w);
     /** Radiance arriving at p from direction d (environment); NULL otherwise. */
     spectrum (*environment)(const void *self, vec3 p, vec3 d, const wavelengths *w);
+    /** The cone that all its light stays in, from the point that it leaves; NULL: light
+     * goes everywhere. */
+    cone3 (*beam)(const void *self);
     /** False if no light comes along this ray, which emit_toward's direction was given
      * another start: behind a portal. NULL: light comes everywhere. */
     bool (*admits)(const void *self, const ray *r);

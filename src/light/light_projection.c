@@ -239,6 +239,14 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     return light_arrive_from_point(l->p, ref, intensity, out);
 }
 
+/* Around the picture's corners. */
+static cone3 beam(const void *self)
+{
+    const projection_light *l = self;
+    const vec3 corner = direction_of(l, (vec2){0.0f, 0.0f});
+    return (cone3){l->p, l->axes.n, corner[2]};
+}
+
 const light_kind light_projection = {
     .name = "projection",
     .parameters = "filename fov scale power",
@@ -252,4 +260,5 @@ const light_kind light_projection = {
     .emit_toward = emit_toward,
     .sample = sample,
     .pdf = light_delta_pdf,
+    .beam = beam,
 };

@@ -184,6 +184,12 @@ static bool sample(const void *self, const wavelengths *w, vec3 ref, float u_pri
     return light_arrive_from_point(l->p, ref, intensity, out);
 }
 
+static cone3 beam(const void *self)
+{
+    const spot_light *l = self;
+    return (cone3){l->p, l->axis.n, 1.0f - l->outer};
+}
+
 const light_kind light_spot = {
     .name = "spot",
     .parameters = "I scale power from to coneangle conedeltaangle",
@@ -197,4 +203,5 @@ const light_kind light_spot = {
     .emit_toward = emit_toward,
     .sample = sample,
     .pdf = light_delta_pdf,
+    .beam = beam,
 };

@@ -126,38 +126,43 @@ medium_sample medium_sample_within(const medium *m, const wavelengths *w,
 
 /* ---- Near a pivot ---- */
 
-medium_pivot medium_pivot_at(const ray *r, vec3 p)
+medium_pivot medium_pivot_at(const ray *r, vec3 p, line_span lit)
 {
     vec3 to = p - r->origin;
     float t = dot3(to, r->direction), away = length3(to);
     float distance = length3(to - t * r->direction);
-    return (medium_pivot){t, maxf(maxf(distance, LEAST_DISTANCE * away), FLT_MIN)};
+    return (medium_pivot){t, maxf(maxf(distance, LEAST_DISTANCE * away), FLT_MIN), lit};
 }
 
-/* The angles under which the pivot sees the ray's two ends, from where it is nearest. */
+/* The angles under which the pivot sees the ends of what it lights, from where the ray is
+   nearest. */
 typedef struct view {
     float from, to;
 } view;
 
-static view view_of(const medium_pivot *pivot, float t_max)
+static float angle_at(const medium_pivot *pivot, float t)
 {
-    return (view){atanf(-pivot->t / pivot->distance),
-                  isinf(t_max) ? 0.5f * (float)G_PI
-                               : atanf((t_max - pivot->t) / pivot->distance)};
+    return isinf(t) ? 0.5f * PI_F : atanf((t - pivot->t) / pivot->distance);
 }
 
-static float draw_near(const medium_pivot *pivot, float t_max, float u)
+static view view_of(const medium_pivot *pivot)
 {
-    view v = view_of(pivot, t_max);
+    return (view){angle_at(pivot, pivot->lit.begin), angle_at(pivot, pivot->lit.end)};
+}
+
+static float draw_near(const medium_pivot *pivot, float u)
+{
+    view v = view_of(pivot);
     float t = pivot->t + pivot->distance * tanf(lerpf(v.from, v.to, u));
-    return clampf(t, 0.0f, nextafterf(t_max, 0.0f));
+    return clampf(t, pivot->lit.begin, nextafterf(pivot->lit.end, 0.0f));
 }
 
-static float density_near(const medium_pivot *pivot, float t_max, float t)
+static float density_near(const medium_pivot *pivot, float t)
 {
-    view v = view_of(pivot, t_max);
+    view v = view_of(pivot);
     float d = pivot->distance, along = t - pivot->t, angle = v.to - v.from;
-    return angle > 0.0f ? d / (angle * (d * d + along * along)) : 0.0f;
+    bool lit = t >= pivot->lit.begin && t < pivot->lit.end && angle > 0.0f;
+    return lit ? d / (angle * (d * d + along * along)) : 0.0f;
 }
 
 medium_sample medium_sample_free_near(const medium *m, const wavelengths *w,
@@ -166,12 +171,11 @@ medium_sample medium_sample_free_near(const medium *m, const wavelengths *w,
 {
     const free_paths f = free_paths_of(m, w, throughput, t_max);
     float near = NEAR_SHARE * spectrum_sum(f.p * f.ends);
-    float t = u < near ? draw_near(pivot, t_max, u / near)
+    float t = u < near ? draw_near(pivot, u / near)
                        : minf(draw_free(&f, (u - near) / (1.0f - near)), t_max);
     spectrum transmittance = transmittance_after(f.sigma_t, t);
     float density = (1.0f - near) * density_free(&f, transmittance, t);
-    if (t < t_max)
-        density += near * density_near(pivot, t_max, t);
+    density += near * density_near(pivot, t);
     return weigh(&f, transmittance, t, density);
 }
 
@@ -182,10 +186,10 @@ medium_sample medium_sample_within_near(const medium *m, const wavelengths *w,
     const float near = NEAR_SHARE;
     free_paths f = free_paths_of(m, w, throughput, t_max);
     leave_clear_wavelengths_out(&f);
-    float t = u < near ? draw_near(pivot, t_max, u / near)
+    float t = u < near ? draw_near(pivot, u / near)
                        : draw_within(&f, (u - near) / (1.0f - near));
     spectrum transmittance = transmittance_after(f.sigma_t, t);
-    float density = (1.0f - near) * density_within(&f, transmittance) +
-                    near * density_near(pivot, t_max, t);
+    float density =
+        (1.0f - near) * density_within(&f, transmittance) + near * density_near(pivot, t);
     return only_within(&f, transmittance, t, density);
 }

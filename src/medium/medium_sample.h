@@ -7,12 +7,13 @@
  *
  * Light from a light in the medium falls off with the squared distance from it, and
  * points near it would be found too seldom. Where one is known, a part of the points is
- * drawn in proportion to that, equally by the angle under which the light sees the ray
- * (Kulla & Fajardo, "Importance Sampling Techniques for Path Tracing in Participating
- * Media", 2012), and weighed by the density of both together.
+ * drawn in proportion to that, equally by the angle under which the light sees what it
+ * can light of the ray (Kulla & Fajardo, "Importance Sampling Techniques for Path Tracing
+ * in Participating Media", 2012), and weighed by the density of both together.
  */
 #pragma once
 
+#include "math/cone.h"
 #include "medium/medium.h"
 
 /** @brief Where light is scattered next. */
@@ -36,10 +37,11 @@ medium_sample medium_sample_within(const medium *m, const wavelengths *w,
 typedef struct medium_pivot {
     float t;        /**< m along the ray, where it is nearest; may be < 0 */
     float distance; /**< m, > 0: there */
+    line_span lit;  /**< of the ray: where light comes from it at all */
 } medium_pivot;
 
-/** @brief How a ray passes a point. */
-medium_pivot medium_pivot_at(const ray *r, vec3 p);
+/** @brief How a ray passes a point. @param lit not empty, as far as the medium reaches */
+medium_pivot medium_pivot_at(const ray *r, vec3 p, line_span lit);
 
 /** @brief medium_sample_free with points near the pivot drawn more often; the more so the
  * more is scattered at all. */

@@ -128,22 +128,35 @@ int direct_light(const direct_query *query, sampler *random,
     return n_found;
 }
 
+/* Where all of a light starts from one point. */
+static bool pivot_of_beam(const light *l, const ray *r, float length, medium_pivot *out)
+{
+    const cone3 beam = l->kind->beam(l->self);
+    const line_span lit = cone3_clip(&beam, r->origin, r->direction, length);
+    *out = medium_pivot_at(r, beam.apex, lit);
+    return lit.end > lit.begin;
+}
+
 bool direct_pivot(const scene *s, const wavelengths *w, const ray *r, float length,
                   sampler *random, medium_pivot *out)
 {
     light_sample to_light;
-    int source;
+    float p;
     const light_numbers u = sampler_light(random);
     float u_segment = sampler_1d(random);
     medium_sample any = medium_sample_within(scene_medium(s, r->media.participating), w,
                                              spectrum_fill(1.0f), length, u_segment);
     vec3 from = r->origin + any.t * r->direction;
-    if (!any.scatters ||
-        !scene_sample_light(s, w, from, u.light, u.primitive, u.place, &source,
-                            &to_light) ||
+    int source = any.scatters ? light_tree_sample(s->light_tree, from, u.light, &p) : -1;
+    if (source < 0)
+        return false;
+    if (scene_light(s, source)->kind->beam)
+        return pivot_of_beam(scene_light(s, source), r, length, out);
+    if (!scene_sample_one_light(s, source, w, from, u.primitive, u.place, &to_light) ||
         !isfinite(to_light.distance))
         return false;
-    *out = medium_pivot_at(r, from + to_light.distance * to_light.wi);
+    *out = medium_pivot_at(r, from + to_light.distance * to_light.wi,
+                           (line_span){0.0f, length});
     return true;
 }
 

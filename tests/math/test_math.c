@@ -2,6 +2,7 @@
  * math: transforms invert, warps have the density they claim, and sampler points are
  * (0,2)-nets.
  */
+#include "math/cone.h"
 #include "math/distribution.h"
 #include "math/frame.h"
 #include "math/median.h"
@@ -279,6 +280,70 @@ static void test_median_is_in_the_middle(void)
     }
 }
 
+/* ---- Cones ---- */
+
+static vec3 random_direction(sampler *random)
+{
+    return warp_sphere(sampler_2d(random));
+}
+
+static bool is_in_cone(const cone3 *c, vec3 p)
+{
+    return dot3(normalize3(p - c->apex), c->axis) >= c->cosine;
+}
+
+/* How much of a line, cut into pieces, is in a cone and not said to be, or the other way
+   around. */
+static int n_wrong(const cone3 *c, vec3 start, vec3 direction, float length,
+                   line_span said)
+{
+    int n = 0;
+    for (int i = 0; i < 1000; i++) {
+        float t = length * ((float)i + 0.5f) / 1000.0f;
+        bool inside = t >= said.begin && t < said.end;
+        n += inside != is_in_cone(c, start + t * direction);
+    }
+    return n;
+}
+
+/* Of cones of all angles and lines of all ways, from within, without, and from the apex,
+   what is said to be inside is. */
+static void test_cones_cut_lines(void)
+{
+    sampler random = sampler_make(9, 0);
+    int n_cut = 0;
+    for (int i = 0; i < 2000; i++) {
+        cone3 c = {random_direction(&random), random_direction(&random),
+                   i % 4 ? sampler_1d(&random) : 1.0f - 0.01f * sampler_1d(&random)};
+        vec3 start = 3.0f * sampler_1d(&random) * random_direction(&random);
+        vec3 direction = random_direction(&random);
+        if (i % 8 == 0)
+            start = c.apex;
+        line_span said = cone3_clip(&c, start, direction, 5.0f);
+        g_assert_cmpint(n_wrong(&c, start, direction, 5.0f, said), <=, 1);
+        n_cut += said.end > said.begin && said.end < 5.0f;
+    }
+    g_assert_cmpint(n_cut, >, 200);
+}
+
+/* A line that has no end may lie in the cone without one; and one wider than half of
+   space cuts nothing. */
+static void test_cones_cut_endless_lines(void)
+{
+    const vec3 z = vec3_make(0, 0, 1), x = vec3_make(1, 0, 0);
+    const cone3 narrow = {(vec3){0}, z, 0.8f}, wide = {(vec3){0}, z, -0.1f};
+    line_span along = cone3_clip(&narrow, vec3_make(0.75f, 0, 0), z, INFINITY);
+    g_assert_cmpfloat_with_epsilon(along.begin, 1.0f, 1e-6);
+    g_assert_true(isinf(along.end));
+    line_span across = cone3_clip(&narrow, vec3_make(-9, 0, 4), x, INFINITY);
+    g_assert_cmpfloat_with_epsilon(across.begin, 6.0f, 1e-6);
+    g_assert_cmpfloat_with_epsilon(across.end, 12.0f, 1e-5);
+    line_span behind = cone3_clip(&narrow, vec3_make(-9, 0, -4), x, INFINITY);
+    g_assert_cmpfloat(behind.end, <=, behind.begin);
+    line_span whole = cone3_clip(&wide, vec3_make(0, 0, -4), x, INFINITY);
+    g_assert_true(whole.begin == 0.0f && isinf(whole.end));
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -297,5 +362,7 @@ int main(int argc, char **argv)
                     test_distribution_picks_by_definition);
     g_test_add_func("/math/noise/gradients", test_noise_has_perlins_gradients);
     g_test_add_func("/math/median/middle", test_median_is_in_the_middle);
+    g_test_add_func("/math/cone/lines", test_cones_cut_lines);
+    g_test_add_func("/math/cone/endless", test_cones_cut_endless_lines);
     return g_test_run();
 }

@@ -88,14 +88,19 @@ typedef struct means {
     double most[N_WAVELENGTHS]; /* the largest value of all */
 } means;
 
-/* Where a lamp is, over t_max (1 m if there is none): t and distance of the pivot. */
-static const float pivots[][2] = {{0.3f, 0.05f}, {0.7f, 2}, {-0.5f, 0.1f}, {1.5f, 0.3f}};
+/* Where a lamp is, over t_max (1 m if there is none): t and distance of the pivot, and
+   what it lights. */
+static const float pivots[][4] = {{0.3f, 0.05f, 0, 1},       {0.7f, 2, 0, 1},
+                                  {-0.5f, 0.1f, 0, 1},       {1.5f, 0.3f, 0, 1},
+                                  {0.3f, 0.05f, 0.2f, 0.5f}, {0.7f, 2, 0.9f, 1}};
 static const float *pivot_now;
 
 static medium_pivot pivot_within(float t_max)
 {
     float unit = isfinite(t_max) ? t_max : 1.0f;
-    return (medium_pivot){pivot_now[0] * unit, pivot_now[1] * unit};
+    float end = pivot_now[3] < 1 ? pivot_now[3] * unit : t_max;
+    return (medium_pivot){
+        pivot_now[0] * unit, pivot_now[1] * unit, {pivot_now[2] * unit, end}};
 }
 
 static medium_sample free_near(const medium *m, const wavelengths *w, spectrum throughput,

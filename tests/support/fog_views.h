@@ -85,6 +85,21 @@ static double disc_over_floor(const fog_view *v)
     return mean_over_unit(under_disc) * exp(-0.5 * 0.5 * G_SQRT2);
 }
 
+/* The beam of a lamp of intensity 1, two metres above (0, 3, 0) and five degrees wide to
+   either side: seen once scattered from the origin along y, in fog of .1 and .2 / m. */
+static double across_beam(const fog_view *v)
+{
+    enum { N = 20000 };
+    const double half = 2 * tan(G_PI / 36), step = 2 * half / N;
+    double sum = 0;
+    (void)v;
+    for (int i = 0; i < N; i++) {
+        double y = (i + 0.5) * step - half, square = 4 + y * y;
+        sum += step / square * exp(-0.3 * (3 + y + sqrt(square)));
+    }
+    return 0.2 / (4 * G_PI) * sum;
+}
+
 /* ---- Views ---- */
 
 #define ABSORBING FOG("f", ".5", "0", "0")
@@ -219,6 +234,17 @@ static const fog_view absorbing[] = {
              .strength = 1},                                                             \
     .eye = {0, 0, 0}, .way = {0, 1, 0}
 
+/* The same fog, and a spot that shines down across it. */
+#define BEAM                                                                             \
+    FOG("f", ".1", ".2", "0")                                                            \
+    EYE("f", "0 0 0  0 1 0")                                                             \
+    BETWEEN("f", "")                                                                     \
+    BALL("99")                                                                           \
+    BETWEEN("f", "f")                                                                    \
+    "LightSource \"spot\" \"rgb I\" [1 1 1] \"point3 from\" [0 3 2] \"point3 to\" [0 3 " \
+    "0] "                                                                                \
+    "\"float conedeltaangle\" 0 \"float coneangle\" 5\n"
+
 #define ONCE .expected = single, .more = " max_backward_bounces=1", .only = "path auto"
 
 static const fog_view scattering[] = {
@@ -234,6 +260,11 @@ static const fog_view scattering[] = {
     {.name = "once-endless-0", .text = ENDLESS("0"), ENDLESS_TWIN(0), ONCE},
     {.name = "once-endless-forward", .text = ENDLESS(".8"), ENDLESS_TWIN(0.8), ONCE},
     {.name = "once-endless-back", .text = ENDLESS("-.6"), ENDLESS_TWIN(-0.6), ONCE},
+    {.name = "once-beam",
+     .text = BEAM,
+     .expected = across_beam,
+     .more = " max_backward_bounces=1",
+     .only = "path auto"},
     {.name = "ball-0",
      .text = BALL_OF("0", "2 -1.5 0"),
      BALL_TWIN(0, 2, -1.5),

@@ -68,6 +68,34 @@ static void test_colour(gconstpointer data)
     }
 }
 
+/* ---- Noise ---- */
+
+/* Squared, over the mean: of pixels that see the same. */
+static double relative_variance(const image *img)
+{
+    const double mean = mean_of(img, "");
+    const size_t n = pixels_of(img);
+    double sum = 0;
+    for (size_t i = 0; i < n; i++) {
+        double off = (double)at(img, i, channel_of(img, "G")) / mean - 1;
+        sum += off * off / (double)(n - 1);
+    }
+    return sum;
+}
+
+/* A ray that crosses a beam is scattered in it by half of the samples, one after the
+   other: the variance of each is .04. With points drawn near the lamp but all along the
+   ray, and only if one drawn before was lit, it was 18. */
+static void test_beam_is_found(void)
+{
+    g_autoptr(view) v = view_of(BEAM);
+    g_autoptr(image) img =
+        render_with(v, "integrator=path spp=16 passes=1 max_backward_bounces=1");
+    double each = 16 * relative_variance(img);
+    g_test_message("variance of a sample: %.2f", each);
+    g_assert_cmpfloat(each, <, 0.5);
+}
+
 /* ---- The twin itself ---- */
 
 static void test_twin(void)
@@ -100,5 +128,6 @@ int main(int argc, char **argv)
         g_autofree char *name = g_strdup_printf("/fog/colour/%s", ways[i].name);
         g_test_add_data_func(name, &ways[i], test_colour);
     }
+    g_test_add_func("/fog/beam-is-found", test_beam_is_found);
     return g_test_run();
 }
