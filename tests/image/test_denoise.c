@@ -97,7 +97,7 @@ static double raw_error(const picture *p)
     return error;
 }
 
-static const denoise_size size = {W, H, 0.5f, 2, NULL, false};
+static const denoise_size size = {W, H, 0.5f, 0.7f, 2, NULL, false};
 
 /* Filters p, with up to one feature. @return the squared error over that of the raw */
 static double gain(picture *p, const denoise_layer *feature, bool divide)
@@ -309,6 +309,35 @@ static void test_few_bright_paths(void)
     g_assert_cmpfloat(left, <, 0.012); /* .0163 where means come back without doubt */
 }
 
+/* Light that a lens or a glossy plate gathers: no feature knows of it. */
+static float burn(int x, int y)
+{
+    float dx = (float)x - 37.2f, dy = (float)y - 30.4f;
+    return 0.5f + 100.0f * expf(-(dx * dx + dy * dy) / 8.0f);
+}
+
+/* Squared error relative to what is there. */
+static double relative_error(const picture *p, const float *out)
+{
+    double sum = 0.0;
+    for (int i = 0; i < 3 * N; i++)
+        sum += pow((double)(out[i] / p->truth[i]) - 1.0, 2.0) / (3 * N);
+    return sum;
+}
+
+/* The noise of what is bright is no reason to keep from the dark beside it what the
+   filter smeared there. */
+static void test_beside_bright(void)
+{
+    for (double sigma = 0.4; sigma > 0.02; sigma *= 0.5) {
+        g_autofree picture *p = noisy(burn, sigma, 51);
+        gain(p, NULL, false);
+        double left = relative_error(p, p->out) / (sigma * sigma);
+        g_test_message("noise %g: %.3f of the squared error", sigma, left);
+        g_assert_cmpfloat(left, <, 0.1);
+    }
+}
+
 static void test_black(void)
 {
     g_autofree picture *p = noisy(flat, 0.1, 15);
@@ -343,7 +372,7 @@ static void test_small_pictures(void)
         float half[2][3 * 20 * 3], out[3 * 20 * 3];
         for (int i = 0; i < 3 * 3 * w; i++)
             half[0][i] = half[1][i] = 0.25f;
-        const denoise_size small = {w, 3, 0.5f, 1, NULL, false};
+        const denoise_size small = {w, 3, 0.5f, 0.7f, 1, NULL, false};
         const denoise_layer light = {3, {half[0], half[1]}, NULL};
         g_autoptr(denoiser) d = denoiser_new(&small, NULL);
         g_assert_true(denoiser_filter(d, &light, -1, out, NULL));
@@ -577,6 +606,7 @@ int main(int argc, char **argv)
     g_test_add_func("/denoise/not-finite", test_not_finite);
     g_test_add_func("/denoise/outlier", test_outlier);
     g_test_add_func("/denoise/few-bright-paths", test_few_bright_paths);
+    g_test_add_func("/denoise/beside-bright", test_beside_bright);
     g_test_add_func("/denoise/black", test_black);
     g_test_add_func("/denoise/threads", test_threads);
     g_test_add_func("/denoise/small-pictures", test_small_pictures);

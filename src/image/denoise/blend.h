@@ -5,12 +5,15 @@
 #pragma once
 
 #include "image/denoise/regress.h"
+#include "math/vec.h"
 
 typedef struct blend {
     const regression *done;
     float share;                   /**< of all samples that are in the first half */
     const float *variance;         /**< of the luminance of the mean, mirrored */
     const float *raw[N_HALVES][3]; /**< as rendered: before outliers were cut */
+    float *const *albedo;          /**< light was divided by, three planes; or NULL */
+    float brightness;              /**< denoise_size.brightness */
     float *out[3];                 /**< may be sums of the regression */
 } blend;
 
@@ -18,6 +21,22 @@ typedef struct blend {
 static inline float luminance(float r, float g, float b)
 {
     return 0.2126f * r + 0.7152f * g + 0.0722f * b;
+}
+
+/* Light is divided by no less: where nearly nothing is reflected, noise would be blown up
+   and taken back in vain. */
+#define LEAST_ALBEDO 0.02f
+
+/** @brief What light was divided by there. @param albedo three planes, or NULL */
+static inline float divisor(float *const *albedo, int c, size_t at)
+{
+    return albedo ? maxf(albedo[c][at], LEAST_ALBEDO) : 1.0f;
+}
+
+static inline float mean_divisor(float *const *albedo, size_t at)
+{
+    return luminance(divisor(albedo, 0, at), divisor(albedo, 1, at),
+                     divisor(albedo, 2, at));
 }
 
 bool blend_all(const blend *b, GError **error);

@@ -13,10 +13,6 @@ enum {
     OUTLIER_REACH = 2, /* pixels around one that may be an outlier */
 };
 
-/* Light is divided by no less: where nearly nothing is reflected, noise would be blown up
-   and taken back in vain. */
-#define LEAST_ALBEDO 0.02f
-
 /* A pixel of one half is cut to so many times the brightest around it, in the other half
    and beside it: more has come by a path that hardly anyone finds. */
 #define OUTLIER 4.0f
@@ -31,6 +27,7 @@ enum {
 struct denoiser {
     grid g;
     float share;
+    float brightness;
     int step; /* regression.step */
     int n_planes;
     float *plane[MOST_FEATURES];
@@ -51,6 +48,7 @@ denoiser *denoiser_new(const denoise_size *size, GError **error)
     denoiser *d = g_new0(denoiser, 1);
     d->g = grid_make(size->width, size->height, size->threads, size->cancel);
     d->share = size->share;
+    d->brightness = size->brightness;
     d->step = size->coarse ? 4 : 2;
     return d;
 }
@@ -207,11 +205,6 @@ typedef struct light_loop {
     light_planes p;
 } light_loop;
 
-static float divisor(const light_loop *loop, int c, size_t at)
-{
-    return loop->albedo ? maxf(loop->albedo[c][at], LEAST_ALBEDO) : 1.0f;
-}
-
 static void divide_row(int y, void *data)
 {
     const light_loop *loop = data;
@@ -219,7 +212,7 @@ static void divide_row(int y, void *data)
     for (int x = 0; x < g->width; x++) {
         size_t at = plane_at(g, x, y);
         for (int c = 0; c < 3; c++) {
-            float by = divisor(loop, c, at);
+            float by = divisor(loop->albedo, c, at);
             for (int h = 0; h < 2; h++)
                 loop->p.raw[h][c][at] /= by;
         }
@@ -237,8 +230,7 @@ static void variance_row(int y, void *data)
     float share = loop->d->share;
     for (int x = 0; x < g->width; x++) {
         size_t at = plane_at(g, x, y);
-        float by =
-            luminance(divisor(loop, 0, at), divisor(loop, 1, at), divisor(loop, 2, at));
+        float by = mean_divisor(loop->albedo, at);
         float apart = loop->p.bright[0][at] - loop->p.bright[1][at];
         float told = given ? given[(size_t)y * (size_t)g->width + (size_t)x] : NAN;
         loop->p.variance[at] = isfinite(told) && told >= 0.0f
@@ -366,7 +358,11 @@ static regression regression_of(const light_loop *loop)
 
 static blend blend_of(const light_loop *loop, const regression *r)
 {
-    blend b = {.done = r, .share = loop->d->share, .variance = loop->p.variance};
+    blend b = {.done = r,
+               .share = loop->d->share,
+               .variance = loop->p.variance,
+               .albedo = loop->albedo,
+               .brightness = loop->d->brightness};
     for (int c = 0; c < 3; c++) {
         b.out[c] = loop->p.out[c];
         for (int h = 0; h < N_HALVES; h++)
@@ -388,7 +384,7 @@ static void write_row(int y, void *data)
     for (int x = 0; x < g->width; x++) {
         size_t at = plane_at(g, x, y);
         for (int c = 0; c < 3; c++)
-            *out++ = loop->light->p.out[c][at] * divisor(loop->light, c, at);
+            *out++ = loop->light->p.out[c][at] * divisor(loop->light->albedo, c, at);
     }
 }
 

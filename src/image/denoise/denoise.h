@@ -11,7 +11,7 @@
  * - shrink: toward the picture as it was, as far as what was taken out of it is more than
  *   its noise; James & Stein, "Estimation with Quadratic Loss", 1961. First means over
  *   squares, of which noise is small, then single pixels. So whatever the filter does,
- * the error falls with that of the picture: a picture without noise stays what it is.
+ *   the error falls with that of the picture: a picture without noise stays what it is.
  *
  * The same bits on any number of threads. Numbers that are not finite are replaced by the
  * other half's or a neighbour's.
@@ -32,7 +32,9 @@ typedef struct denoise_layer {
 /** @brief Of the picture. */
 typedef struct denoise_size {
     int width, height;
-    float share; /**< of all samples that are in the first half, 0..1 exclusive */
+    float share;      /**< of all samples that are in the first half, 0..1 exclusive */
+    float brightness; /**< mean luminance of all that is filtered: the eye, made for it,
+                         sees less in what is darker */
     unsigned threads;
     const cancel_flag *cancel; /**< may be NULL */
     bool coarse; /**< windows around every fourth pixel in place of every second */

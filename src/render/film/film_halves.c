@@ -382,6 +382,19 @@ static float share_of_even(const film *f)
     return (float)(even / (even + odd));
 }
 
+/* Mean luminance of what is filtered. */
+static float mean_luminance(const film *f)
+{
+    double y = 0.0, weight = 0.0;
+    for (size_t i = 0; i < n_pixels(f); i++) {
+        const film_sum *sum = &f->pixels[i].sum;
+        for (int l = 0; l < N_LIGHTS; l++)
+            y += sum->color[l][LUMINANCE] - lights_luminance(&f->halves[i].guides, l);
+        weight += sum->weight;
+    }
+    return y > 0.0 && weight > 0.0 ? (float)(y / weight) * f->scale : 0.0f;
+}
+
 /* Processes that deal passes out may have given all to one half. */
 #define LEAST_SHARE 0.05f
 
@@ -430,7 +443,13 @@ float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
                     GError **error)
 {
     float even = clampf(share_of_even(f), LEAST_SHARE, 1.0f - LEAST_SHARE);
-    const denoise_size size = {f->width, f->height, even, threads, cancel, f->coarse};
+    const denoise_size size = {.width = f->width,
+                               .height = f->height,
+                               .share = even,
+                               .brightness = mean_luminance(f),
+                               .threads = threads,
+                               .cancel = cancel,
+                               .coarse = f->coarse};
     memory_release(f->denoise_size);
     float *out = denoise(f, &size, error);
     memory_count(f->denoise_size);
