@@ -13,7 +13,9 @@
 # Exits with 1 where memory is more than 1 % larger in the second half of what follows the
 # first minute than in the first half (nine tenths of the time: each pass takes some and gives
 # it back), where the most it ever took grew by more than 1 % after the first minute, where a picture
-# was much worse than the one before, or the last not better than the first.
+# was much worse than the one before, or the last not better than the first. The first minute is
+# one of the render's processor time, as much as a third of the whole: with --together the clock's
+# is over before some have planned.
 set -u
 size=128x128 threads=0 together='' keep='' integrators=()
 while [ $# -gt 0 ]; do
@@ -47,13 +49,18 @@ render() { # SCENE FILE OPTION...; becomes the program, so that who begins it ha
         --set denoise=off "${@:3}"
 }
 
-# watch PID FOLDER: writes seconds, KiB of memory and the most it ever was to FOLDER/memory,
-# and keeps each picture.
+processor() { # PID: seconds of processor time it has taken
+    awk -v ticks="$(getconf CLK_TCK)" '{ sub(/.*\) /, ""); print ($12 + $13) / ticks }' "/proc/$1/stat"
+}
+
+# watch PID FOLDER: writes seconds, KiB of memory, the most it ever was and seconds of processor
+# time to FOLDER/memory, and keeps each picture.
 watch() {
     local start=$SECONDS now seen='' n=0
     while kill -0 "$1" 2>/dev/null; do
-        awk -v t=$((SECONDS - start)) '/^VmRSS/ { now = $2 } /^VmHWM/ { most = $2 }
-            END { if (now) print t, now, most }' "/proc/$1/status" 2>/dev/null >>"$2/memory"
+        awk -v t=$((SECONDS - start)) -v took="$(processor "$1" 2>/dev/null)" '
+            /^VmRSS/ { now = $2 } /^VmHWM/ { most = $2 }
+            END { if (now && took != "") print t, now, most, took }' "/proc/$1/status" 2>/dev/null >>"$2/memory"
         now=$(stat -c %i.%Y "$2/a.exr" 2>/dev/null) || now=''
         if [ -n "$now" ] && [ "$now" != "$seen" ]; then
             seen=$now
@@ -75,12 +82,12 @@ soak() { # SCENE INTEGRATOR FOLDER
 
 # judge SCENE INTEGRATOR FOLDER REFERENCE: one line, and whether all is well.
 judge() {
-    local errors picture settled=$((seconds / 3 < 60 ? seconds / 3 : 60))
+    local errors picture
     errors=$(for picture in "$3"/at.*.exr "$3/a.exr"; do
         "$program" compare "$picture" "$4" --metric relmse
     done | tr '\n' ' ')
     [ ! -e "$3/failed" ] || errors=''
-    awk -v name="$(basename "$1" .pbrt) $2" -v errors="$errors" -v settled=$settled -v seconds="$seconds" '
+    awk -v name="$(basename "$1" .pbrt) $2" -v errors="$errors" -v seconds="$seconds" '
         function high(from, to,    n, size, i, j, t) { # KiB not exceeded nine tenths of the time
             for (i = 1; i <= NR; i++)
                 if (time[i] >= from && time[i] < to) {
@@ -89,13 +96,18 @@ judge() {
                 }
             return n ? size[int(0.9 * (n - 1)) + 1] : 0
         }
-        { time[NR] = $1; now[NR] = $2; most = $3; if ($1 <= settled) first_most = $3 }
+        { time[NR] = $1; now[NR] = $2; most[NR] = $3; took[NR] = $4 }
         END {
+            first = took[NR] / 3 < 60 ? took[NR] / 3 : 60
+            for (i = 1; i <= NR && took[i] <= first; i++) {
+                settled = time[i]
+                first_most = most[i]
+            }
             middle = (settled + seconds) / 2
             before = high(settled, middle)
             after = high(middle, seconds - 2)
             grew = before > 0 ? 100 * (after / before - 1) : 999
-            peak = first_most > 0 ? 100 * (most / first_most - 1) : 999
+            peak = first_most > 0 ? 100 * (most[NR] / first_most - 1) : 999
             n = split(errors, error, " ")
             worse = 0
             for (i = 2; i <= n; i++) if (error[i] > 1.1 * error[i - 1]) worse++
