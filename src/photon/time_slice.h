@@ -1,14 +1,16 @@
 /*
- * Slices of the shutter's time: where something moves, photons are kept apart by when they
- * landed, so that what is seen at one time is lit by those of about that time.
+ * Slices of the shutter's time: where something moves, photons are kept apart by when
+ * they landed, so that what is seen at one time is lit by those of about that time.
  */
 #pragma once
 
 #include "scene/scene.h"
 
-/** @brief How many there are: where nothing moves, one. With one for all /motion/board and
- * /knob-pictures/time-slices fail; with one for each pass a first picture would show no
- * more than that of what moves. */
+/** @brief How many there are: where nothing moves, one. With one for all /motion/board
+ * and /knob-pictures/time-slices fail. With one of eight for all that a pass does, eye's
+ * rays too, what moves has holes till eight passes are done: a ball that rolls by its
+ * width has 3.1 and 1.7 times the squared error after one and two (paths; .83 after 16).
+ */
 static inline int time_slices_of(const scene *s, const settings *how)
 {
     return s->moves ? (int)how->time_slices : 1;
