@@ -294,11 +294,6 @@ static box3 bounds(const void *self)
     return box;
 }
 
-static dvec3 from_doubles(const double v[3])
-{
-    return (dvec3){v[0], v[1], v[2], 0.0};
-}
-
 static bool intersect(const void *self, uint32_t primitive, const ray *r, float t_min,
                       float tuv[3])
 {
@@ -307,8 +302,7 @@ static bool intersect(const void *self, uint32_t primitive, const ray *r, float 
     quadric_ray object = quadric_to_object(&c->q, r);
     const double range[2] = {(double)t_min, (double)r->t_max};
     double at, along, across;
-    if (!curve_intersect(&span, c->type, from_doubles(object.o), from_doubles(object.d),
-                         range, &at, &along, &across))
+    if (!curve_intersect(&span, c->type, object.o, object.d, range, &at, &along, &across))
         return false;
     tuv[0] = (float)at;
     tuv[1] = (float)along;
@@ -363,8 +357,8 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     const curve_shape *c = self;
     const curve_segment *s = span_of(c, hit->primitive).segment;
     quadric_ray object = quadric_to_object(&c->q, r);
-    dvec3 d = from_doubles(object.d);
-    dvec3 p = from_doubles(object.o) + (double)hit->t * d;
+    dvec3 d = object.d;
+    dvec3 p = object.o + (double)hit->t * d;
     curve_point at = segment_at(s, (double)u);
     curve_hit h = c->type == CURVE_FLAT     ? flat_hit(&at, p, d, v)
                   : c->type == CURVE_RIBBON ? ribbon_hit(s, &at, (double)u, v)

@@ -58,6 +58,9 @@ void quadric_place(quadric *q, const shape_place *at)
                    .is_similar = is_similarity(at->to_world.m),
                    .phi_max = 2.0 * G_PI,
                    .mean_steps = MEAN_STEPS};
+    for (int column = 0; column < 4; column++)
+        for (int i = 0; i < 3; i++)
+            q->to_object[column][i] = at->to_world.inverse[i][column];
 }
 
 bool quadric_init(quadric *q, const params *p, const shape_place *at, GError **error)
@@ -131,19 +134,6 @@ bool quadric_set_area(quadric *q, quadric_map map, double object_area, const par
     return false;
 }
 
-quadric_ray quadric_to_object(const quadric *q, const ray *r)
-{
-    quadric_ray out;
-    for (int i = 0; i < 3; i++) {
-        const double *row = q->to_world.inverse[i];
-        out.o[i] = row[0] * (double)r->origin[0] + row[1] * (double)r->origin[1] +
-                   row[2] * (double)r->origin[2] + row[3];
-        out.d[i] = row[0] * (double)r->direction[0] + row[1] * (double)r->direction[1] +
-                   row[2] * (double)r->direction[2];
-    }
-    return out;
-}
-
 static vec3 point_to_world(const quadric *q, const double p[3])
 {
     vec3 out = {0};
@@ -203,24 +193,6 @@ box3 quadric_bounds(const quadric *q, const double low[3], const double high[3])
         box.high[i] = nextafterf(box.high[i], INFINITY);
     }
     return box;
-}
-
-bool quadric_roots(const quadric_ray *r, int n, double radius, double roots[2])
-{
-    /* From the point of the line nearest the axis or centre, where nothing cancels. */
-    double a = dot_double(r->d, r->d, n);
-    double middle = -dot_double(r->o, r->d, n) / a;
-    double near[3] = {0};
-    for (int i = 0; i < n; i++)
-        near[i] = r->o[i] + middle * r->d[i];
-    double distance = sqrt(dot_double(near, near, n));
-    double half2 = (radius - distance) * (radius + distance) / a;
-    if (!(half2 >= 0.0) || !isfinite(middle))
-        return false;
-    double half = sqrt(half2);
-    roots[0] = middle - half;
-    roots[1] = middle + half;
-    return true;
 }
 
 float quadric_area(const void *self)

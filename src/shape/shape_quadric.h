@@ -11,6 +11,7 @@
  */
 #pragma once
 
+#include "math/dvec.h"
 #include "shape/shape.h"
 
 /** @brief A point of the surface in object space. */
@@ -25,6 +26,7 @@ typedef quadric_point (*quadric_map)(const void *self, vec2 u);
 /** @brief The first member of every quadric shape. */
 typedef struct quadric {
     transform to_world;
+    dvec3_stored to_object[4]; /**< columns of its inverse */
     bool flip;       /**< normals point to the other side: reversed xor mirrored */
     bool is_similar; /**< to_world keeps shapes: rotation, mirroring, uniform scale */
     double phi_max;  /**< rad, in (0, 2 pi] */
@@ -36,7 +38,7 @@ typedef struct quadric {
 
 /** @brief A ray in object space; d is not unit. */
 typedef struct quadric_ray {
-    double o[3], d[3];
+    dvec3 o, d;
 } quadric_ray;
 
 /** @brief What the place tells; phi_max is a full turn. */
@@ -48,7 +50,16 @@ bool quadric_init(quadric *q, const params *p, const shape_place *at, GError **e
 bool quadric_set_area(quadric *q, quadric_map map, double object_area, const params *p,
                       GError **error);
 
-quadric_ray quadric_to_object(const quadric *q, const ray *r);
+static inline quadric_ray quadric_to_object(const quadric *q, const ray *r)
+{
+    const dvec3_stored *column = q->to_object;
+    dvec3 d = column[0] * (double)r->direction[0] + column[1] * (double)r->direction[1] +
+              column[2] * (double)r->direction[2];
+    dvec3 o = column[0] * (double)r->origin[0] + column[1] * (double)r->origin[1] +
+              column[2] * (double)r->origin[2] + column[3];
+    return (quadric_ray){o, d};
+}
+
 /** @brief Puts a point of the surface into the world: p, n_geom, n, uv; dpdu and dpdv
  * given in object space. */
 void quadric_fill_hit(const quadric *q, const quadric_point *at, const double dpdu[3],
@@ -64,7 +75,32 @@ static inline bool quadric_in_turn(const quadric *q, const double p[3])
 
 /** @brief World bounds of a box in object space, rounded outward. */
 box3 quadric_bounds(const quadric *q, const double low[3], const double high[3]);
-/** @brief Both roots of |d t + o|² = r² over the first n coordinates, ascending. */
-bool quadric_roots(const quadric_ray *r, int n, double radius, double roots[2]);
+
+/** @brief The product of the first n coordinates. */
+static inline double quadric_dot(dvec3 a, dvec3 b, int n)
+{
+    dvec3 p = a * b;
+    return n == 2 ? p[0] + p[1] : p[0] + p[1] + p[2];
+}
+
+/** @brief Both roots of |d t + o|² = r² over the first n coordinates, 2 or 3, ascending:
+ * from the point of the line nearest the axis or centre, where nothing cancels. */
+static inline bool quadric_roots(const quadric_ray *r, int n, double radius,
+                                 double roots[2])
+{
+    double a = quadric_dot(r->d, r->d, n);
+    double middle = -quadric_dot(r->o, r->d, n) / a;
+    dvec3 near = r->o + middle * r->d;
+    double distance2 = quadric_dot(near, near, n);
+    if (!(distance2 <= radius * radius)) /* also where there is no such point */
+        return false;
+    double distance = sqrt(distance2);
+    double half2 = (radius - distance) * (radius + distance) / a;
+    double half = sqrt(half2);
+    roots[0] = middle - half;
+    roots[1] = middle + half;
+    return true;
+}
+
 float quadric_area(const void *self);
 shape_sample quadric_sample_area(const void *self, float u_primitive, vec2 u);
