@@ -6,7 +6,7 @@ usage: bench/equal_time/equal_time.py [--quick | --small] [--build DIR] [--repor
 Runs equal_time (equal_time.c) on the scenes beside it and those of ../shared, and writes
 points.tsv, error.svg (error against processor seconds, log-log) and table.txt to
 DIR/equal_time, where references are kept too: `--quick` takes some minutes, `--small` (all scenes
-at 128 x 128, one seed) half an hour of two processors, all some hours.
+at 128 x 128, three seeds) three quarters of an hour of two processors, all some hours.
 `--report` puts table and curves into docs/report too, `--points FILE` reads what was measured
 before. Each algorithm stands there twice: as rendered, and without its noise.
 """
@@ -26,7 +26,7 @@ LEVELS = (0.05, 0.015, 0.005)  # of relMSE
 FLIPS = (0.2, 0.1, 0.06)
 QUICK = ["cornell", "cornell-glass", "ball", "window"]
 QUICKLY = "--size 64x64 --seconds 1.5 --longest 12 --seeds 3".split()
-SMALL_ONES = "--size 128x128 --seconds 3 --longest 12 --seeds 1".split()
+SMALL_ONES = "--size 128x128 --seconds 3 --longest 12 --seeds 3".split()
 ALL = QUICK + ["glossy", "textured", "lamps", "water", "prism", "fog"]
 ELSEWHERE = [ROOT / "scenes/ring/ring.pbrt", SHARED / "bitterli/coffee/scene-v4.pbrt",
              SHARED / "bitterli/veach-mis/scene-v4.pbrt"]
