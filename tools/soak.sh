@@ -1,21 +1,21 @@
 #!/bin/bash
 # Long renders: whether memory stays as it is after the first minute, and the picture goes on
 # getting better. Each of auto, sppm and vcm on each scene renders for so many minutes; the
-# picture of every eighth of it, or of 50 s, is compared in the end with a reference,
-# rendered by vcm with another seed for as long.
+# picture of every 24th of it, or of 50 s, is compared in the end with a reference,
+# rendered by sppm with another seed for as long.
 # usage: soak.sh [--size WxH] [--threads N] [--together] [--integrator NAME]... [--keep FOLDER] NEPHROID MINUTES [SCENE...]
 #   --size WxH      of each picture (128x128; a huge page of 2 MiB is 5 % of what that takes, and
 #                   1 % at 512x512)
 #   --threads N     threads of each render (all processors')
 #   --together      all renders, and the references, at the same time
 #   --integrator    these in place of auto, sppm and vcm
-#   --keep FOLDER   leaves pictures and memory by the second there
-# Exits with 1 where memory is more than 1 % larger in the second half of what follows the
-# first minute than in the first half (nine tenths of the time: each pass takes some and gives
-# it back), where the most it ever took grew by more than 1 % after the first minute, where a picture
-# was much worse than the one before, or the last not better than the first. The first minute is
-# one of the render's processor time, as much as a third of the whole: with --together the clock's
-# is over before some have planned.
+#   --keep FOLDER   leaves pictures and memory there
+# What follows the first minute (of the render's processor time, and as much as a third of the
+# whole: with --together the clock's is over before some have planned) is cut into eight spans, or
+# more of them, in each of which a picture is written twice; the most memory in each is exact: the
+# kernel's high-water mark is set back where a span begins.
+# Exits with 1 where the most in a span is not within 1 % of that in the first of them, where a
+# picture was much worse than the one before, or the last not better than the first.
 set -u
 size=128x128 threads=0 together='' keep='' integrators=()
 while [ $# -gt 0 ]; do
@@ -36,6 +36,8 @@ shift 2
 root=$(cd "$(dirname "$0")/.." && pwd)
 [ $# -gt 0 ] || set -- "$root/scenes/ring/ring.pbrt" "$root/bench/equal_time/scenes/cornell-glass.pbrt"
 seconds=$(awk -v m="$minutes" 'BEGIN { print int(60 * m) }')
+every=$(awk -v s="$seconds" 'BEGIN { print s / 24 < 50 ? s / 24 : 50 }')
+span=$(awk -v e="$every" 'BEGIN { print int(2 * e) }')
 if [ -n "$keep" ]; then
     work=$keep
     mkdir "$work" || exit 99
@@ -53,14 +55,17 @@ processor() { # PID: seconds of processor time it has taken
     awk -v ticks="$(getconf CLK_TCK)" '{ sub(/.*\) /, ""); print ($12 + $13) / ticks }' "/proc/$1/stat"
 }
 
-# watch PID FOLDER: writes seconds, KiB of memory, the most it ever was and seconds of processor
-# time to FOLDER/memory, and keeps each picture.
+# watch PID FOLDER: writes a line a span to FOLDER/memory (seconds of the clock and of the processor
+# at its end, the most memory in it, KiB), and keeps each picture.
 watch() {
-    local start=$SECONDS now seen='' n=0
+    local start=$SECONDS next=$span now seen='' n=0
     while kill -0 "$1" 2>/dev/null; do
-        awk -v t=$((SECONDS - start)) -v took="$(processor "$1" 2>/dev/null)" '
-            /^VmRSS/ { now = $2 } /^VmHWM/ { most = $2 }
-            END { if (now && took != "") print t, now, most, took }' "/proc/$1/status" 2>/dev/null >>"$2/memory"
+        if [ $((SECONDS - start)) -ge "$next" ]; then
+            next=$((next + span))
+            awk -v t=$((SECONDS - start)) -v took="$(processor "$1" 2>/dev/null)" '
+                /^VmHWM/ && took != "" { print t, took, $2 }' "/proc/$1/status" 2>/dev/null >>"$2/memory"
+            echo 5 2>/dev/null >"/proc/$1/clear_refs"
+        fi
         now=$(stat -c %i.%Y "$2/a.exr" 2>/dev/null) || now=''
         if [ -n "$now" ] && [ "$now" != "$seen" ]; then
             seen=$now
@@ -72,8 +77,6 @@ watch() {
 }
 
 soak() { # SCENE INTEGRATOR FOLDER
-    local every
-    every=$(awk -v s="$seconds" 'BEGIN { print s / 8 < 50 ? s / 8 : 50 }')
     render "$1" "$3/a.exr" --integrator "$2" --every "${every}s" &
     local job=$!
     watch "$job" "$3"
@@ -87,33 +90,24 @@ judge() {
         "$program" compare "$picture" "$4" --metric relmse
     done | tr '\n' ' ')
     [ ! -e "$3/failed" ] || errors=''
-    awk -v name="$(basename "$1" .pbrt) $2" -v errors="$errors" -v seconds="$seconds" '
-        function high(from, to,    n, size, i, j, t) { # KiB not exceeded nine tenths of the time
-            for (i = 1; i <= NR; i++)
-                if (time[i] >= from && time[i] < to) {
-                    for (j = n++; j > 0 && size[j] > now[i]; j--) size[j + 1] = size[j]
-                    size[j + 1] = now[i]
-                }
-            return n ? size[int(0.9 * (n - 1)) + 1] : 0
-        }
-        { time[NR] = $1; now[NR] = $2; most[NR] = $3; took[NR] = $4 }
+    awk -v name="$(basename "$1" .pbrt) $2" -v errors="$errors" '
+        { took[NR] = $2; most[NR] = $3 }
         END {
             first = took[NR] / 3 < 60 ? took[NR] / 3 : 60
-            for (i = 1; i <= NR && took[i] <= first; i++) {
-                settled = time[i]
-                first_most = most[i]
+            for (from = 1; from < NR && took[from] <= first; from++)
+                ;
+            from++ # the span in which the first minute ended
+            for (i = from; i <= NR; i++) {
+                change = 100 * (most[i] / most[from] - 1)
+                if (change < low) low = change
+                if (change > high) high = change
             }
-            middle = (settled + seconds) / 2
-            before = high(settled, middle)
-            after = high(middle, seconds - 2)
-            grew = before > 0 ? 100 * (after / before - 1) : 999
-            peak = first_most > 0 ? 100 * (most[NR] / first_most - 1) : 999
             n = split(errors, error, " ")
             worse = 0
             for (i = 2; i <= n; i++) if (error[i] > 1.1 * error[i - 1]) worse++
-            ok = grew <= 1 && peak <= 1 && n > 1 && !worse && error[n] < error[1]
-            printf "%-20s memory %.1f MiB, then %+.2f %%; most %.1f MiB, then %+.2f %%; relMSE %s: %s\n",
-                name, before / 1024, grew, first_most / 1024, peak, errors, ok ? "good" : "BAD"
+            ok = NR >= from + 3 && high <= 1 && low >= -1 && n > 1 && !worse && error[n] < error[1]
+            printf "%-20s memory %.1f MiB, then %+.2f to %+.2f %% in %d spans; relMSE %s: %s\n", name,
+                most[from] / 1024, low, high, NR - from, errors, ok ? "good" : "BAD"
             exit !ok
         }' "$3/memory"
 }
@@ -121,7 +115,7 @@ judge() {
 n=0
 for scene in "$@"; do
     n=$((n + 1))
-    render "$scene" "$work/$n.exr" --integrator vcm --seed 7 &
+    render "$scene" "$work/$n.exr" --integrator sppm --seed 7 &
     [ -n "$together" ] || wait
     for integrator in "${integrators[@]}"; do
         mkdir -p "$work/$n.$integrator"

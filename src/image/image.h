@@ -94,7 +94,7 @@ const char *const *image_written_extensions(void);
  * @param eight_bits whether what it writes there is as it is seen, with eight bits */
 bool image_is_written(const char *path, bool *eight_bits);
 
-/** @brief About how long image_write would take for the image, s: writes it to memory. */
+/** @brief About how long image_write would take for the image, s: writes it nowhere. */
 double image_write_seconds(const image *img, const char *path);
 
 /** @brief Whether image_write knows the path's extension and its folder is writable:
