@@ -14,14 +14,15 @@
 #define OPEN_OF(size) ROOM_CAMERA SIZE(size) "WorldBegin\n" FLOOR
 
 /* A lamp in a bulb of glass, in sight, is all that lights the room. */
-#define BULB                                                                             \
+#define LIT_BY_BULB(more)                                                                \
     ROOM_CAMERA SIZE(                                                                    \
-        128) "WorldBegin\n" ROOM_WALLS "AttributeBegin Translate 0 1 1.5\n"              \
+        128) "WorldBegin\n" ROOM_WALLS more "AttributeBegin Translate 0 1 1.5\n"         \
              "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [60 60 60]\n"         \
              "Shape \"sphere\" \"float radius\" 0.08 AttributeEnd\n"                     \
              "Material \"dielectric\" \"float eta\" 1.5 Shape \"sphere\" \"float "       \
              "radius\" 0.2\n"                                                            \
              "ReverseOrientation Shape \"sphere\" \"float radius\" 0.18 AttributeEnd\n"
+#define BULB LIT_BY_BULB("")
 
 typedef struct choice {
     const char *name, *text, *words;
@@ -127,6 +128,38 @@ static void test_told(void)
     }
 }
 
+/* A pane of almost no glass before the camera changes nothing that is seen, but all is
+   seen by way of it: what caustic photons bring is as little a reason to gather as
+   without. */
+#define PANE                                                                             \
+    "AttributeBegin Translate 0 -3.3 1.19 Rotate 90 1 0 0\n"                             \
+    "Material \"dielectric\" \"float eta\" 1.0001 Shape \"disk\" \"float radius\" 0.2\n" \
+    "Translate 0 0 0.002 Rotate 180 1 0 0 Shape \"disk\" \"float radius\" 0.2 "          \
+    "AttributeEnd\n"
+
+static double told_of_seeds(const char *text, const char *words)
+{
+    g_autoptr(view) v = view_of(text);
+    double sum = 0.0;
+    for (int seed = 0; seed < N_SEEDS; seed++) {
+        render_plan plan;
+        plan_of(v, words, seed, &plan);
+        g_assert_cmpuint(plan.photons[PHOTON_CAUSTIC], >, 0);
+        sum += told_error(&plan) / N_SEEDS;
+    }
+    return sum;
+}
+
+static void test_behind_glass(void)
+{
+    const char *words = "integrator=auto spp=1 passes=16 photons=3000 denoise=off";
+    double clear = told_of_seeds(LIT_BY_BULB(""), words);
+    double pane = told_of_seeds(LIT_BY_BULB(PANE), words);
+    g_test_message("told %g, behind a pane %g", clear, pane);
+    g_assert_cmpfloat(pane, <, 1.3 * clear);
+    g_assert_cmpfloat(pane, >, clear / 1.3);
+}
+
 /* Noise times rays, planning included. */
 static double effort(const view *v, const char *words)
 {
@@ -192,6 +225,7 @@ int main(int argc, char **argv)
     }
     g_test_add_func("/gather/told", test_told);
     g_test_add_func("/gather/bulb", test_bulb);
+    g_test_add_func("/gather/behind-glass", test_behind_glass);
     g_test_add_data_func("/gather/pays/room", ROOM_OF(128), test_pays);
     g_test_add_data_func("/gather/pays/glass", ROOM_OF(128) GLASS_BALL, test_pays);
     g_test_add_func("/gather/converges", test_converges);

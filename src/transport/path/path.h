@@ -25,6 +25,8 @@ typedef struct path_pass {
                     NULL */
     bool without_caustics; /**< to measure with: light by way of a specular or glossy
                               bounce to a diffuse surface is left out */
+    bool caustics_apart;   /**< to measure with: those of the first diffuse surface are in
+                              their layer, also behind glass and in mirrors */
     bool without_lights;   /**< to measure with: lights that are seen, also in mirrors and
                               through clear glass, are left out */
 } path_pass;

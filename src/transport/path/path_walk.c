@@ -7,9 +7,10 @@
 #include "transport/direct.h"
 #include "transport/photonmap/photonmap.h"
 
-static radiance_layer layer_of(const camera_path *path)
+static radiance_layer layer_of(const path_walk *walk, const camera_path *path)
 {
-    if (path->n_before > 0)
+    bool is_seen_caustic = path->n_diffuse == 1 && path->n_after > 0;
+    if (path->n_before > 0 && !(walk->pass->caustics_apart && is_seen_caustic))
         return LAYER_SPECULAR;
     if (path->n_diffuse == 0)
         return LAYER_EMISSION;
@@ -50,7 +51,7 @@ static bool add(path_walk *walk, const camera_path *path, spectrum radiance)
         walk->scratch->n_not_finite++;
         return false;
     }
-    walk->out->layers[layer_of(path)] += value;
+    walk->out->layers[layer_of(walk, path)] += value;
     return true;
 }
 

@@ -54,7 +54,8 @@ static bool add(camera_tree *tree, const camera_branch *branch, radiance_layer l
         tree->scratch->n_not_finite++;
         return false;
     }
-    tree->out->layers[branch->n_followed ? LAYER_SPECULAR : layer] += value;
+    bool apart = tree->pass->caustics_apart && layer == LAYER_CAUSTIC;
+    tree->out->layers[branch->n_followed && !apart ? LAYER_SPECULAR : layer] += value;
     return true;
 }
 

@@ -44,6 +44,7 @@ typedef struct photonmap_pass {
     estimate_options estimates[N_PHOTON_CLASSES];
     caustic_mis mis; /**< if plan->uses_mis */
     bool has_delta_lights;
+    bool caustics_apart; /**< as of path_pass */
 } photonmap_pass;
 
 /** @brief Whether the bsdf has one of the lobes. */

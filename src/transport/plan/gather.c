@@ -28,6 +28,7 @@
 typedef struct gather_place {
     double path[2], smooth[2]; /* each with a sampler of its own */
     double near[2], twice[2];  /* all with the first one */
+    double seen;               /* with the caustics that those leave out */
     double first_rays;         /* of a pixel's first sample */
     double later_rays;         /* of another one, which shares the first one's looks */
     double path_rays;          /* of a path */
@@ -182,6 +183,7 @@ static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError *
     if (!t->maps[i])
         return false;
     double rays = plan_rays_of_photons(&counts);
+    t->maps[i]->caustics_apart = true;
     t->photon_rays += 0.5 * rays * t->fewer;
     plan_note_photons(&t->plan, rays - (double)counts.photon_rays,
                       (double)counts.photon_rays);
@@ -190,13 +192,31 @@ static bool send_few(gather_trial *t, int i, const cancel_flag *cancel, GError *
 
 /* ---- Trial samples ---- */
 
-/* Not of the caustics that either way are photons'. */
+/* Without the caustics that either way are photons'. */
+static double without_shared(const transport_plan *plan, const trial_light *of)
+{
+    return of->all - (plan->n_photons[PHOTON_CAUSTIC] > 0 ? of->caustic : 0.0);
+}
+
 static double sample(radiance_function *radiance, const void *pass,
                      const transport_plan *plan, vec2 raster, sampler random,
                      transport_scratch *scratch)
 {
-    unsigned without = plan->n_photons[PHOTON_CAUSTIC] > 0 ? 1u << LAYER_CAUSTIC : 0;
-    return trial_sample(radiance, pass, plan, raster, random, without, scratch);
+    trial_light found = trial_sample(radiance, pass, plan, raster, random, scratch);
+    return without_shared(plan, &found);
+}
+
+/* What the smooth map sees, by two samplers. */
+static void see(const gather_task *all, vec2 raster, const sampler by[2],
+                transport_scratch *scratch, gather_place *at)
+{
+    const photonmap_pass *smooth = all->trial->smooth;
+    for (int k = 0; k < 2; k++) {
+        trial_light found =
+            trial_sample(photonmap_radiance, smooth, all->plan, raster, by[k], scratch);
+        at->smooth[k] = without_shared(all->plan, &found);
+        at->seen += 0.5 * found.all;
+    }
 }
 
 /* What gathering takes at a place, as if there were all photons. */
@@ -226,22 +246,20 @@ static void ask(const gather_task *all, uint32_t i, transport_scratch *scratch)
     gather_place *at = &t->places[i];
     sampler random = sampler_make(all->key, i);
     const vec2 raster = trial_place(plan, &random);
-    const sampler one = sampler_split(&random, 0), two = sampler_split(&random, 1);
+    const sampler by[2] = {sampler_split(&random, 0), sampler_split(&random, 1)};
     double before = plan_rays_of(scratch);
-    find_price(all, raster, one, scratch, at);
+    find_price(all, raster, by[0], scratch, at);
     looked_around_forget(&scratch->estimate.looked);
-    at->smooth[0] = sample(photonmap_radiance, t->smooth, plan, raster, one, scratch);
-    at->smooth[1] = sample(photonmap_radiance, t->smooth, plan, raster, two, scratch);
+    see(all, raster, by, scratch, at);
     for (int k = 0; k < 2; k++) {
         const photonmap_pass *near = t->near[k], *twice = t->twice[k];
-        at->near[k] = sample(photonmap_radiance, near, plan, raster, one, scratch);
-        at->twice[k] = sample(photonmap_radiance, twice, plan, raster, one, scratch);
+        at->near[k] = sample(photonmap_radiance, near, plan, raster, by[0], scratch);
+        at->twice[k] = sample(photonmap_radiance, twice, plan, raster, by[0], scratch);
     }
     double between = plan_rays_of(scratch);
     for (int k = 0; k < 2; k++) {
         looked_around_forget(&scratch->estimate.looked);
-        at->path[k] =
-            sample(path_radiance, all->paths, plan, raster, k ? two : one, scratch);
+        at->path[k] = sample(path_radiance, all->paths, plan, raster, by[k], scratch);
     }
     double after = plan_rays_of(scratch);
     at->path_rays = 0.5 * (after - between);
@@ -298,7 +316,9 @@ static bool run_places(gather_trial *t, transport_plan *plan, const path_pass *p
 {
     const workers by = {(unsigned)plan->how.threads, cancel};
     uint64_t key = hash_mix((uint64_t)plan->how.seed, 0x706c61636573u);
-    gather_task task = {t, plan, paths, key, 0};
+    path_pass apart = *paths;
+    apart.caustics_apart = true;
+    gather_task task = {t, plan, &apart, key, 0};
     t->places = g_new0(gather_place, MOST_PLACES);
     if (!widen_all(t, error))
         return false;
@@ -320,22 +340,11 @@ static double rays_of_sample(const transport_plan *plan, const gather_trial *t)
 
 /* ---- What they say ---- */
 
-static double brightness(const gather_place *at)
-{
-    return (at->smooth[0] + at->smooth[1]) / 2.0;
-}
-
-/* A place counts by how bright it is, and the picture is. */
-static double weight_of(const gather_place *at, double mean)
-{
-    return relative_weight(brightness(at), mean);
-}
-
 static double mean_of(const gather_trial *t)
 {
     double sum = 0.0;
     for (uint32_t i = 0; i < t->n; i++)
-        sum += brightness(&t->places[i]);
+        sum += t->places[i].seen;
     return sum / t->n;
 }
 
@@ -363,7 +372,7 @@ static double square_total(const square_sum *of)
 /* How far both paths are from what the map sees. */
 static double off_map(const gather_place *at)
 {
-    double seen = brightness(at);
+    double seen = (at->smooth[0] + at->smooth[1]) / 2.0;
     return (fabs(at->path[0] - seen) + fabs(at->path[1] - seen)) / 2.0;
 }
 
@@ -418,7 +427,7 @@ static gather_errors errors_of(const gather_trial *t)
     gather_sums sums = {0};
     double mean = mean_of(t);
     for (uint32_t i = 0; i < t->n && mean > 0.0; i++)
-        add_place(&sums, &t->places[i], weight_of(&t->places[i], mean), t->n);
+        add_place(&sums, &t->places[i], relative_weight(t->places[i].seen, mean), t->n);
     return (gather_errors){
         .path = fmax(square_total(&sums.path), sums.off * sums.off),
         .samples = square_total(&sums.sample),

@@ -8,7 +8,7 @@ static double path_sample(const path_pass *pass, vec2 raster, sampler random,
                           transport_scratch *scratch)
 {
     looked_around_forget(&scratch->estimate.looked);
-    return trial_sample(path_radiance, pass, pass->plan, raster, random, 0, scratch);
+    return trial_sample(path_radiance, pass, pass->plan, raster, random, scratch).all;
 }
 
 /* Two samples of a place. */

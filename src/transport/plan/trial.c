@@ -9,9 +9,15 @@ vec2 trial_place(const transport_plan *plan, sampler *random)
     return (vec2){u.x * (float)film->width, u.y * (float)film->height};
 }
 
-double trial_sample(radiance_function *radiance, const void *pass,
-                    const transport_plan *plan, vec2 raster, sampler random,
-                    unsigned without, transport_scratch *scratch)
+static double mean_of(spectrum s)
+{
+    double mean = (double)spectrum_mean(s);
+    return isfinite(mean) ? mean : 0.0;
+}
+
+trial_light trial_sample(radiance_function *radiance, const void *pass,
+                         const transport_plan *plan, vec2 raster, sampler random,
+                         transport_scratch *scratch)
 {
     radiance_sample out = {.groups = NULL};
     spectrum sum = {0};
@@ -19,8 +25,6 @@ double trial_sample(radiance_function *radiance, const void *pass,
     ray r = camera_ray(&plan->view->camera, raster, u_lens, sampler_1d(&random));
     radiance(pass, &r, &random, scratch, &out);
     for (unsigned i = 0; i < N_LAYERS; i++)
-        if (!(without >> i & 1))
-            sum += out.layers[i];
-    double mean = (double)spectrum_mean(sum);
-    return isfinite(mean) ? mean : 0.0;
+        sum += out.layers[i];
+    return (trial_light){mean_of(sum), mean_of(out.layers[LAYER_CAUSTIC])};
 }

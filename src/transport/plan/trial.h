@@ -13,9 +13,12 @@ typedef void radiance_function(const void *pass, const ray *r, sampler *random,
 /** @brief A place of the film, anywhere. @return pixels from its corner */
 vec2 trial_place(const transport_plan *plan, sampler *random);
 
-/** @brief Light through that place: the mean over wavelengths of its layers together,
- * W m⁻² sr⁻¹ nm⁻¹; 0 where it is not finite.
- *  @param without layers that are left out, bits 1 << layer */
-double trial_sample(radiance_function *radiance, const void *pass,
-                    const transport_plan *plan, vec2 raster, sampler random,
-                    unsigned without, transport_scratch *scratch);
+/** @brief Means over wavelengths, W m⁻² sr⁻¹ nm⁻¹; 0 where they are not finite. */
+typedef struct trial_light {
+    double all, caustic; /**< of all layers together, and of that of caustics */
+} trial_light;
+
+/** @brief Light through that place. */
+trial_light trial_sample(radiance_function *radiance, const void *pass,
+                         const transport_plan *plan, vec2 raster, sampler random,
+                         transport_scratch *scratch);
