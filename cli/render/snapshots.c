@@ -35,9 +35,10 @@ bool snapshots_init(snapshots *s, const char *text, GError **error)
 bool snapshots_due(snapshots *s, int64_t passes_done)
 {
     const int64_t now = g_get_monotonic_time();
-    if (passes_done == s->last_passes ||
-        !((s->passes && passes_done >= s->last_passes + s->passes) ||
-          (s->interval && now >= s->last_time + s->interval)))
+    const bool is_new = passes_done != s->seen_passes;
+    s->seen_passes = passes_done;
+    if (!is_new || !((s->passes && passes_done >= s->last_passes + s->passes) ||
+                     (s->interval && now >= s->last_time + s->interval)))
         return false;
     s->last_passes = passes_done;
     s->last_time = now;
