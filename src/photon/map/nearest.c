@@ -8,8 +8,6 @@
  */
 #include "photon/map/nearest.h"
 
-enum { FEW = 2 * LANES, MOST_GUESSES = 6 };
-
 /* -1, 0, 1 as a is before, like or after b. */
 static int compare(float a, float b)
 {
@@ -122,22 +120,37 @@ typedef struct value_range {
     size_t below_low, below_high;
 } value_range;
 
-/* Those around rank: few, unless they are spread unevenly. */
+static size_t size_of(const value_range *r)
+{
+    return r->below_high - r->below_low;
+}
+
+/* Parts the range where the value of a rank would be, were they spread evenly, and keeps
+ * the side of another. */
+static void narrow(value_range *r, const float *a, size_t n, float rank, size_t wanted)
+{
+    float share = (rank - (float)r->below_low) / (float)size_of(r);
+    float guess = r->low + (r->high - r->low) * clampf(share, 0.0f, 1.0f);
+    size_t below = count_below(a, n, guess);
+    if (below > wanted) {
+        r->high = guess;
+        r->below_high = below;
+    } else {
+        r->low = guess;
+        r->below_low = below;
+    }
+}
+
+/* Those around rank: a vector or two, or more if a pair of guesses does not leave less
+ * than half, for they are spread unevenly. */
 static value_range find_range(const float *a, size_t n, size_t rank)
 {
     value_range r = {0.0f, nextafterf(largest_value(a, n), INFINITY), 0, n};
-    for (int i = 0; i < MOST_GUESSES && r.below_high - r.below_low > FEW; i++) {
-        float into = (float)rank - (float)r.below_low + (i % 2 ? -0.5f : 0.5f) * FEW;
-        float share = into / (float)(r.below_high - r.below_low);
-        float guess = r.low + (r.high - r.low) * clampf(share, 0.0f, 1.0f);
-        size_t below = count_below(a, n, guess);
-        if (below > rank) {
-            r.high = guess;
-            r.below_high = below;
-        } else {
-            r.low = guess;
-            r.below_low = below;
-        }
+    for (size_t before = SIZE_MAX;
+         size_of(&r) > 2 * LANES && size_of(&r) <= before / 2;) {
+        before = size_of(&r);
+        narrow(&r, a, n, (float)rank + LANES, rank);
+        narrow(&r, a, n, (float)rank - LANES, rank);
     }
     return r;
 }
