@@ -1,10 +1,6 @@
 /*
- * Cutting back to the k nearest: the k-th distance, one pass that keeps what is nearer,
- * and an exact order among those that tie.
- *
- * On a surface squared distances are about evenly spread, so that the k-th lies between
- * two guesses with few others: they are counted, LANES at a time, and only those between
- * them go through quickselect.
+ * Cutting back to the k nearest: the k-th distance by quickselect over a copy of the
+ * distances, one pass that keeps what is nearer, and an exact order among those that tie.
  */
 #include "photon/map/nearest.h"
 
@@ -38,7 +34,7 @@ bool nearest_begin(nearest_set *set, const point_arrays *points, const point_que
 {
     size_t full = 2 * k + LANES;
     *set = (nearest_set){points, query, hits, .k = k, .full = full};
-    /* Above the buffer lies room for what quickselect works on, and for ties. */
+    /* Above the buffer lies room for the copy that quickselect works on. */
     bool ok = point_hits_reserve(hits, 2 * (full + LANES));
     nearest_restart(set, radius);
     return ok;
@@ -91,85 +87,6 @@ static float select_value(float *a, size_t n, size_t rank)
     }
 }
 
-static float largest_value(const float *a, size_t n)
-{
-    lane_floats largest = fill_lanes(0.0f);
-    size_t i = 0;
-    for (; i + LANES <= n; i += LANES)
-        largest = max_lanes(largest, load_lanes(a + i));
-    float all = largest[0];
-    for (int lane = 1; lane < LANES; lane++)
-        all = maxf(all, largest[lane]);
-    for (; i < n; i++)
-        all = maxf(all, a[i]);
-    return all;
-}
-
-static size_t count_below(const float *a, size_t n, float limit)
-{
-    size_t below = 0;
-    for (size_t i = 0; i < n; i += LANES)
-        below += (size_t)__builtin_popcount(
-            bits_below(load_lanes(a + i), fill_lanes(limit)) & bits_first(n - i));
-    return below;
-}
-
-/* Values from low on and below high, and how many there are below each. */
-typedef struct value_range {
-    float low, high;
-    size_t below_low, below_high;
-} value_range;
-
-static size_t size_of(const value_range *r)
-{
-    return r->below_high - r->below_low;
-}
-
-/* Parts the range where the value of a rank would be, were they spread evenly, and keeps
- * the side of another. */
-static void narrow(value_range *r, const float *a, size_t n, float rank, size_t wanted)
-{
-    float share = (rank - (float)r->below_low) / (float)size_of(r);
-    float guess = r->low + (r->high - r->low) * clampf(share, 0.0f, 1.0f);
-    size_t below = count_below(a, n, guess);
-    if (below > wanted) {
-        r->high = guess;
-        r->below_high = below;
-    } else {
-        r->low = guess;
-        r->below_low = below;
-    }
-}
-
-/* Those around rank: a vector or two, or more if a pair of guesses does not leave less
- * than half, for they are spread unevenly. */
-static value_range find_range(const float *a, size_t n, size_t rank)
-{
-    value_range r = {0.0f, nextafterf(largest_value(a, n), INFINITY), 0, n};
-    for (size_t before = SIZE_MAX;
-         size_of(&r) > 2 * LANES && size_of(&r) <= before / 2;) {
-        before = size_of(&r);
-        narrow(&r, a, n, (float)rank + LANES, rank);
-        narrow(&r, a, n, (float)rank - LANES, rank);
-    }
-    return r;
-}
-
-/* The distance of rank. What lies behind the buffer's room is overwritten. */
-static float find_distance2(point_hits *hits, size_t room, size_t rank)
-{
-    value_range r = find_range(hits->distance2, hits->n, rank);
-    float *between = hits->distance2 + room;
-    size_t n = 0;
-    for (size_t i = 0; i < hits->n; i += LANES) {
-        lane_floats values = load_lanes(hits->distance2 + i);
-        unsigned bits = bits_below(values, fill_lanes(r.high)) &
-                        ~bits_below(values, fill_lanes(r.low)) & bits_first(hits->n - i);
-        n += pack_lanes(values, bits, 0, between + n, hits->index + room);
-    }
-    return select_value(between, n, rank - r.below_low);
-}
-
 /* Hoare's partition of index[low, high); returns where the upper part begins. */
 static size_t partition_ties(const nearest_set *set, uint32_t *index, size_t low,
                              size_t high)
@@ -206,15 +123,14 @@ static void select_ties(const nearest_set *set, uint32_t *index, size_t n, size_
 static size_t keep_nearer(point_hits *hits, float limit, uint32_t *ties)
 {
     size_t nearer = 0, tied = 0;
-    for (size_t i = 0; i < hits->n; i += LANES) {
-        lane_floats values = load_lanes(hits->distance2 + i);
-        unsigned all = bits_first(hits->n - i);
-        unsigned below = bits_below(values, fill_lanes(limit)) & all;
-        unsigned like = all & ~below & ~bits_below(fill_lanes(limit), values);
-        for (; like; like &= like - 1u)
-            ties[tied++] = hits->index[i + (size_t)__builtin_ctz(like)];
-        nearer += pack_lane_pairs(values, hits->index + i, below,
-                                  hits->distance2 + nearer, hits->index + nearer);
+    for (size_t i = 0; i < hits->n; i++) {
+        uint32_t index = hits->index[i];
+        float distance2 = hits->distance2[i];
+        ties[tied] = index;
+        tied += !(distance2 < limit) && !(distance2 > limit);
+        hits->index[nearer] = index;
+        hits->distance2[nearer] = distance2;
+        nearer += distance2 < limit;
     }
     hits->n = nearer + tied;
     return nearer;
@@ -226,7 +142,9 @@ void nearest_cut(nearest_set *set)
     if (hits->n < set->k)
         return;
     size_t room = set->full + LANES;
-    float kth = find_distance2(hits, room, set->k - 1);
+    float *copy = hits->distance2 + room;
+    memcpy(copy, hits->distance2, hits->n * sizeof *copy);
+    float kth = select_value(copy, hits->n, set->k - 1);
     uint32_t *ties = hits->index + room;
     size_t nearer = keep_nearer(hits, kth, ties);
     size_t wanted = set->k - nearer;
