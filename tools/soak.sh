@@ -4,15 +4,15 @@
 # picture of every 24th of it, or of 50 s, is compared in the end with a reference,
 # rendered by sppm with another seed for as long.
 # usage: soak.sh [--size WxH] [--threads N] [--together] [--integrator NAME]... [--keep FOLDER] NEPHROID MINUTES [SCENE...]
-#   --size WxH      of each picture (128x128; a huge page of 2 MiB is 5 % of what that takes, and
-#                   1 % at 512x512)
+#   --size WxH      of each picture (128x128; a huge page of 2 MiB is 5 % of what that takes, 1 %
+#                   at 512x512: memory is flat within 1 % only where pictures are larger)
 #   --threads N     threads of each render (all processors')
 #   --together      all renders, and the references, at the same time
 #   --integrator    these in place of auto, sppm and vcm
 #   --keep FOLDER   leaves pictures and memory there
 # What follows the first minute (of the render's processor time, and as much as a third of the
 # whole: with --together the clock's is over before some have planned) is cut into eight spans, or
-# more of them, in each of which a picture is written twice; the most memory in each is exact: the
+# more of them, each as long as between three pictures; the most memory in each is exact: the
 # kernel's high-water mark is set back where a span begins.
 # Exits with 1 where the most in a span is not within 1 % of that in the first of them, where a
 # picture was much worse than the one before, or the last not better than the first.
@@ -96,7 +96,7 @@ judge() {
             first = took[NR] / 3 < 60 ? took[NR] / 3 : 60
             for (from = 1; from < NR && took[from] <= first; from++)
                 ;
-            from++ # the span in which the first minute ended
+            from++ # the minute ended within the span before
             for (i = from; i <= NR; i++) {
                 change = 100 * (most[i] / most[from] - 1)
                 if (change < low) low = change
