@@ -19,16 +19,21 @@
 #define SOLID "Material \"gltf\" \"float transmission\" 1 \"bool thin\" false "
 #define MATT "Material \"diffuse\" "
 
-static void check(const char *world, const char *expected)
+static void check_warnings(const char *text, const char *expected)
 {
-    g_autofree char *text = g_strconcat(HEAD, world, NULL);
     g_autoptr(view) v = view_of(text);
     g_autoptr(GPtrArray) warnings = describe_warnings(v);
     const char *found = warnings->len ? warnings->pdata[0] : NULL;
-    g_test_message("%s: %s", world, found ? found : "nothing");
+    g_test_message("%s: %s", text, found ? found : "nothing");
     g_assert_cmpuint(warnings->len, ==, expected != NULL);
     if (expected)
         g_assert_nonnull(strstr(found, expected));
+}
+
+static void check(const char *world, const char *expected)
+{
+    g_autofree char *text = g_strconcat(HEAD, world, NULL);
+    check_warnings(text, expected);
 }
 
 static void test_glass(void)
@@ -251,11 +256,7 @@ static void test_media(void)
 static void check_fog(const char *lamp, const char *world, bool warned)
 {
     g_autofree char *text = g_strconcat(IN_FOG, lamp, world, NULL);
-    g_autoptr(view) v = view_of(text);
-    g_autoptr(GPtrArray) warnings = describe_warnings(v);
-    g_assert_cmpuint(warnings->len, ==, warned);
-    if (warned)
-        g_assert_nonnull(strstr(warnings->pdata[0], "through medium 'fog'"));
+    check_warnings(text, warned ? "through medium 'fog'" : NULL);
 }
 
 /* Light from beyond all meets fog that ends, but not fog that does not. */
@@ -275,11 +276,7 @@ static void check_lamp(const char *before, const char *between, const char *text
     g_autofree char *all = g_strconcat(
         FOG, before, "LookAt 0 -9 2  0 0 0  0 0 1 Camera \"perspective\" WorldBegin\n",
         between, "LightSource \"point\"\n", NULL);
-    g_autoptr(view) v = view_of(all);
-    g_autoptr(GPtrArray) warnings = describe_warnings(v);
-    g_assert_cmpuint(warnings->len, ==, text ? 1 : 0);
-    if (text)
-        g_assert_nonnull(strstr(warnings->pdata[0], text));
+    check_warnings(all, text);
 }
 
 /* The way from the camera to a lamp leads through interfaces that fit. */
@@ -297,6 +294,20 @@ static void test_lamp_in_medium(void)
                "in medium 'fog', but the way to it from the camera ends in 'none'");
 }
 
+/* A wall within fog has fog on the side that is seen. */
+static void test_wall_in_medium(void)
+{
+    const char *const wall = MATT "Shape \"disk\" \"float radius\" 20\n";
+    g_autofree char *right = g_strconcat(IN_FOG, wall, NULL);
+    g_autofree char *both =
+        g_strconcat(IN_FOG, "MediumInterface \"fog\" \"fog\"", wall, NULL);
+    g_autofree char *wrong = g_strconcat(IN_FOG, "ReverseOrientation\n", wall, NULL);
+    check_warnings(right, NULL);
+    check_warnings(both, NULL);
+    check_warnings(wrong, "seen from the camera through medium 'fog', but its "
+                          "MediumInterface has 'none' on that side");
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -312,5 +323,6 @@ int main(int argc, char **argv)
     g_test_add_func("/info/media", test_media);
     g_test_add_func("/info/fog-without-bounds", test_fog_without_bounds);
     g_test_add_func("/info/lamp-in-medium", test_lamp_in_medium);
+    g_test_add_func("/info/wall-in-medium", test_wall_in_medium);
     return g_test_run();
 }

@@ -241,6 +241,49 @@ static void inspect_light_in_medium(inspection *in, guint i)
          i, l->kind->name, medium_name(s, is), medium_name(s, behind));
 }
 
+/* A surface that says that its near side is in another medium than the way to it. */
+static bool contradicts(const surface_hit *hit, vec3 direction)
+{
+    return hit->boundary &&
+           hit_media(hit, -direction).participating != hit->media.participating;
+}
+
+/* The first of those on a ray, as far as light goes; its shape, NO_INDEX: none. */
+static int find_contradiction(const scene *s, ray r, surface_hit *hit)
+{
+    for (int i = 0; i < MOST_CROSSINGS && scene_cross(s, &r, hit); i++) {
+        if (contradicts(hit, r.direction))
+            return hit->shape;
+        if (!lets_light_through(s, hit))
+            break;
+    }
+    return NO_INDEX;
+}
+
+/* Which of two media fills a place must not depend on the way there, or integrators
+   differ. */
+static void inspect_interfaces(inspection *in)
+{
+    const scene *s = in->scene;
+    for (int k = 0; scene_has_media(s) && k < N_WAYS; k++) {
+        ray r = {.origin = transform_point(&in->camera->to_world, (vec3){0}),
+                 .direction = way_out(k),
+                 .t_max = INFINITY,
+                 .media.participating = in->camera->media.participating};
+        surface_hit hit;
+        int shape = find_contradiction(s, r, &hit);
+        if (shape == NO_INDEX)
+            continue;
+        warn(in,
+             "shape %d is seen from the camera through medium '%s', but its "
+             "MediumInterface has '%s' on that side: its normals, or the two media, are "
+             "the wrong way round, or another surface's are",
+             shape, medium_name(s, hit.media.participating),
+             medium_name(s, hit_media(&hit, -r.direction).participating));
+        return;
+    }
+}
+
 /* Less of a light is as good as none. */
 #define LEAST_LEFT 0.01f
 
@@ -287,6 +330,7 @@ GPtrArray *describe_warnings(const view *v)
         inspect_fog(&in, i);
         inspect_light_in_medium(&in, i);
     }
+    inspect_interfaces(&in);
     if (s->shapes->len > 0 && (s->radius > LARGEST_RADIUS || s->radius < SMALLEST_RADIUS))
         warn(&in, "the scene is %g m wide; lengths are in metres",
              2.0 * (double)s->radius);
