@@ -23,7 +23,8 @@ typedef struct accel_group {
     unsigned
         *shapes; /* indices in accel.shapes; their places here are Embree's numbers */
     unsigned n;
-    size_t n_parts;  /* of all of them, that a ray may meet */
+    size_t n_parts; /* of all of them, that a ray may meet */
+    bool has_triangles;
     box3 bounds;     /* m */
     float per_metre; /* Embree's units: a power of two */
     box3 core;       /* of an object, m; empty: it has none */
@@ -125,9 +126,16 @@ static void find_bounds(accel *a, accel_group *group)
     for (unsigned i = 0; i < group->n; i++) {
         const shape *s = a->shapes[group->shapes[i]].shape;
         group->n_parts += core_parts_of(s);
+        group->has_triangles |= s->kind->triangles && !s->is_invisible;
         if (!s->is_invisible)
             group->bounds = box3_union(group->bounds, s->kind->bounds(s->self));
     }
+}
+
+static bool is_halved(const accel_group *group, const shape *s)
+{
+    mesh halves;
+    return group->has_triangles && s->kind->halves && s->kind->halves(s->self, &halves);
 }
 
 static void attach_shapes(accel *a, accel_group *group)
@@ -135,6 +143,7 @@ static void attach_shapes(accel *a, accel_group *group)
     for (unsigned i = 0; i < group->n && still_wanted(NULL); i++) {
         given_shape *given = &a->shapes[group->shapes[i]];
         given->per_metre = group->per_metre;
+        given->is_halved = is_halved(group, given->shape);
         if (!given->shape->is_invisible)
             attach(group, shape_geometry(a->embree.device, given), i);
     }
@@ -415,8 +424,10 @@ static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit 
     name_hit(a, &query.hit, hit);
     hit->t = begin + query.ray.tfar / a->world.per_metre;
     hit->time = r->time;
-    hit->primitive = query.hit.primID;
-    hit->corners = (vec2){query.hit.u, query.hit.v};
+    const given_place at = given_place_of(&a->shapes[hit->shape], query.hit.primID,
+                                          query.hit.u, query.hit.v);
+    hit->primitive = at.primitive;
+    hit->corners = at.corners;
     accel_fill_hit(a, r, hit);
     return true;
 }

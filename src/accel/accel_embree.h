@@ -26,8 +26,24 @@ enum { RAY_SOLID = 1 }; /**< RTCRay.flags: cut-outs do not count */
 typedef struct given_shape {
     shape *shape; /**< borrowed */
     float
-        per_metre; /**< Embree's units in a metre of the shape's space: a power of two */
+        per_metre;  /**< Embree's units in a metre of the shape's space: a power of two */
+    bool is_halved; /**< as triangles, by shape_kind.halves */
 } given_shape;
+
+/** @brief Where on a shape it is that Embree's numbers tell. */
+typedef struct given_place {
+    uint32_t primitive;
+    vec2 corners; /**< u and v, as shape_kind.fill_hit takes them */
+} given_place;
+
+static inline given_place given_place_of(const given_shape *given, uint32_t number,
+                                         float u, float v)
+{
+    if (!given->is_halved)
+        return (given_place){number, {u, v}};
+    bool second = number & 1;
+    return (given_place){number / 2, {second ? u : u + v, second ? u + v : v}};
+}
 
 /** @brief An object as an instance places it. All is borrowed. */
 typedef struct placed {

@@ -1,6 +1,10 @@
 /*
  * What Embree calls back. Triangles are handed over as shared buffers; quadrics, patches
- * and curves as user geometry that is intersected exactly.
+ * and curves as user geometry that is intersected exactly. Patches that are
+ * parallelograms are handed over as triangles where there are others: every kind of
+ * geometry has a tree of its own, and a ray goes through each (a room of triangles with a
+ * patch for a lamp takes .84 of the time); where there are none, a tree of patches is as
+ * fast.
  *
  * An instance that stands still is Embree's own. One that moves is user geometry too: the
  * ray is taken to the object's space at its own time by the same transform that later
@@ -65,9 +69,10 @@ static void filter_cut_out(const struct RTCFilterFunctionNArguments *args)
     if (!args->valid[0] || (query->flags & RAY_SOLID))
         return;
     const given_shape *given = args->geometryUserPtr;
+    const given_place at = given_place_of(given, hit->primID, hit->u, hit->v);
     ray r = from_embree(query, given->per_metre);
-    const float tuv[3] = {r.t_max, hit->u, hit->v};
-    if (!stops(given->shape, &r, hit->primID, tuv))
+    const float tuv[3] = {r.t_max, at.corners.x, at.corners.y};
+    if (!stops(given->shape, &r, at.primitive, tuv))
         args->valid[0] = 0;
 }
 
@@ -203,6 +208,9 @@ RTCGeometry shape_geometry(RTCDevice device, given_shape *given)
 {
     const shape *s = given->shape;
     const mesh *m = s->kind->triangles ? s->kind->triangles(s->self) : NULL;
+    mesh halves;
+    if (given->is_halved && s->kind->halves(s->self, &halves))
+        m = &halves;
     RTCGeometry g = m ? triangle_geometry(device, given, m) : exact_geometry(device, s);
     rtcSetGeometryUserData(g, given);
     return g;

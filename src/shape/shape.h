@@ -60,6 +60,11 @@ typedef struct shape_kind {
     /** Of kinds with intersect; NULL: one primitive, with the bounds of all. */
     size_t (*n_primitives)(const void *self);
     box3 (*primitive_bounds)(const void *self, uint32_t primitive);
+    /** Of kinds with intersect whose primitives are parallelograms, u and v along their
+     * sides: triangles 2 i, with corners (0,0) (1,0) (1,1), and 2 i + 1, with (0,0) (1,1)
+     * (0,1), make up primitive i. *out borrows. false: they are none. NULL: they never
+     * are. */
+    bool (*halves)(const void *self, mesh *out);
     /** Fills p, n_geom, n, dpdu, uv from the primitive and Embree's or intersect's u, v.
      */
     void (*fill_hit)(const void *self, const ray *r, float u, float v, surface_hit *hit);

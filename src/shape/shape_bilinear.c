@@ -1,6 +1,8 @@
 /*
- * Meshes of bilinear patches, intersected exactly. Which side is outside is decided as
- * for triangles (mesh.c): by ∂p/∂u × ∂p/∂v and the orientation, or by the normals given.
+ * Meshes of bilinear patches, intersected exactly; where all are parallelograms, as most
+ * lamps are, they may be met as triangles in place of that. Which side is outside is
+ * decided as for triangles (mesh.c): by ∂p/∂u × ∂p/∂v and the orientation, or by the
+ * normals given.
  *
  *   indices of a face: p00 p10 p01 p11
  *
@@ -15,6 +17,7 @@
 #include "shape/rectangle.h"
 #include "shape/shape_kinds.h"
 
+#include <float.h>
 #include <glib.h>
 #include <string.h>
 
@@ -24,7 +27,8 @@ typedef struct bilinear_mesh {
     float *normals;   /* 3 per vertex, world, NULL */
     vec2 *uvs;        /* per vertex, NULL */
     uint32_t *indices;
-    bool flip; /* without normals */
+    uint32_t *halves; /* corners of two triangles per patch; NULL: not all are flat */
+    bool flip;        /* without normals */
     distribution areas;
     bool is_rectangle;
     rectangle rectangle; /* if it is one */
@@ -37,6 +41,7 @@ static void free_mesh(void *self)
     big_free(m->normals);
     big_free(m->uvs);
     big_free(m->indices);
+    big_free(m->halves);
     distribution_clear(&m->areas);
     g_free(m);
 }
@@ -110,6 +115,35 @@ static bool init_areas(bilinear_mesh *m, const params *p, GError **error)
     return done;
 }
 
+/* A fourth corner that is this far off, of the largest coordinate, is so by rounding. */
+#define ROUNDING (4.0 * (double)FLT_EPSILON)
+
+static bool is_parallelogram(const bilinear_mesh *m, size_t primitive)
+{
+    const patch s = patch_of(m, primitive);
+    bool is_flat = dvec3_length(patch_cross(&s, 0.0, 0.0)) > 0.0;
+    for (int c = 0; c < 3 && is_flat; c++) {
+        double b = fabs(s.p00[c]) + fabs(s.a[c]) + fabs(s.b[c]);
+        is_flat = fabs(s.e[c]) <= ROUNDING * b;
+    }
+    return is_flat;
+}
+
+static bool init_halves(bilinear_mesh *m, GError **error)
+{
+    for (size_t i = 0; i < m->n_patches; i++)
+        if (!is_parallelogram(m, i))
+            return true;
+    m->halves =
+        big_alloc(6 * m->n_patches, sizeof *m->halves, "halves of patches", error);
+    for (size_t i = 0; m->halves && i < m->n_patches; i++) {
+        const uint32_t *v = m->indices + 4 * i;
+        const uint32_t corners[6] = {v[0], v[1], v[3], v[0], v[3], v[2]};
+        memcpy(m->halves + 6 * i, corners, sizeof corners);
+    }
+    return m->halves;
+}
+
 static void find_rectangle(bilinear_mesh *m)
 {
     vec3 p[4];
@@ -131,7 +165,8 @@ static void *create(const params *p, const shape_place *at, GError **error)
     bilinear_mesh *m = g_new0(bilinear_mesh, 1);
     m->flip = at->reverse_orientation != transform_swaps_handedness(&at->to_world);
     if (check_emission(p, error) && read_mesh(m, p, error) &&
-        move_to_world(m, at, p, error) && init_areas(m, p, error)) {
+        move_to_world(m, at, p, error) && init_areas(m, p, error) &&
+        init_halves(m, error)) {
         find_rectangle(m);
         return m;
     }
@@ -144,6 +179,16 @@ static void *create(const params *p, const shape_place *at, GError **error)
 static size_t n_primitives(const void *self)
 {
     return ((const bilinear_mesh *)self)->n_patches;
+}
+
+static bool halves(const void *self, mesh *out)
+{
+    const bilinear_mesh *m = self;
+    *out = (mesh){.n_vertices = m->n_vertices,
+                  .n_triangles = 2 * m->n_patches,
+                  .positions = m->positions,
+                  .indices = m->halves};
+    return m->halves && 2 * m->n_patches < UINT32_MAX;
 }
 
 /* A patch lies in the hull of its corners; what rounding and seams add is far below. */
@@ -240,6 +285,16 @@ static vec2 uv_of(const bilinear_mesh *m, const uint32_t *vertex, const patch *s
     return (vec2){(float)value[0], (float)value[1]};
 }
 
+/* The most that is believed of triangles (shape_mesh.c), for Embree may meet it as such.
+ */
+static float rounding_error(const bilinear_mesh *m, const uint32_t *vertex, vec3 p)
+{
+    vec3 reach = {0};
+    for (int i = 0; i < 4 && m->halves; i++)
+        reach = max3(reach, abs3(load3(m->positions, vertex[i]) - p));
+    return 16.0f * FLT_EPSILON * max_component3(reach);
+}
+
 static void fill_hit(const void *self, const ray *r, float u, float v, surface_hit *hit)
 {
     (void)r;
@@ -255,7 +310,7 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     hit->dpdv = dp[1];
     if (!(length3_2(hit->dpdu) > 0.0f))
         hit->dpdu = frame_from_normal(hit->n).s;
-    hit->error = 0.0f;
+    hit->error = rounding_error(m, vertex, hit->p);
 }
 
 static float area(const void *self)
@@ -267,12 +322,13 @@ static shape_sample sample_at(const bilinear_mesh *m, size_t i, const patch *s, 
 {
     const double at[2] = {(double)u.x, (double)u.y};
     const uint32_t *vertex = m->indices + 4 * i;
-    vec3 ignored, tangents[2];
-    return (shape_sample){.p = dvec3_to_float(patch_point(s, at[0], at[1])),
+    vec3 ignored, tangents[2], p = dvec3_to_float(patch_point(s, at[0], at[1]));
+    return (shape_sample){.p = p,
                           .n = normal_of(m, vertex, s, at, &ignored),
                           .uv = uv_of(m, vertex, s, at, tangents),
                           .primitive = (uint32_t)i,
-                          .pdf = 1.0f / area(m)};
+                          .pdf = 1.0f / area(m),
+                          .error = rounding_error(m, vertex, p)};
 }
 
 static shape_sample sample_area(const void *self, float u_primitive, vec2 u)
@@ -326,6 +382,7 @@ const shape_kind shape_bilinear = {
     .n_primitives = n_primitives,
     .primitive_bounds = primitive_bounds,
     .intersect = intersect,
+    .halves = halves,
     .fill_hit = fill_hit,
     .area = area,
     .sample_area = sample_area,

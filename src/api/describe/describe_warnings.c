@@ -271,14 +271,14 @@ static void inspect_interfaces(inspection *in)
                  .t_max = INFINITY,
                  .media.participating = in->camera->media.participating};
         surface_hit hit;
-        int shape = find_contradiction(s, r, &hit);
-        if (shape == NO_INDEX)
+        int found = find_contradiction(s, r, &hit);
+        if (found == NO_INDEX)
             continue;
         warn(in,
              "shape %d is seen from the camera through medium '%s', but its "
              "MediumInterface has '%s' on that side: its normals, or the two media, are "
              "the wrong way round, or another surface's are",
-             shape, medium_name(s, hit.media.participating),
+             found, medium_name(s, hit.media.participating),
              medium_name(s, hit_media(&hit, -r.direction).participating));
         return;
     }
