@@ -132,18 +132,12 @@ static void find_bounds(accel *a, accel_group *group)
     }
 }
 
-static bool is_halved(const accel_group *group, const shape *s)
-{
-    mesh halves;
-    return group->has_triangles && s->kind->halves && s->kind->halves(s->self, &halves);
-}
-
 static void attach_shapes(accel *a, accel_group *group)
 {
     for (unsigned i = 0; i < group->n && still_wanted(NULL); i++) {
         given_shape *given = &a->shapes[group->shapes[i]];
         given->per_metre = group->per_metre;
-        given->is_halved = is_halved(group, given->shape);
+        given->is_beside_triangles = group->has_triangles;
         if (!given->shape->is_invisible)
             attach(group, shape_geometry(a->embree.device, given), i);
     }

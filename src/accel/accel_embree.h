@@ -26,8 +26,9 @@ enum { RAY_SOLID = 1 }; /**< RTCRay.flags: cut-outs do not count */
 typedef struct given_shape {
     shape *shape; /**< borrowed */
     float
-        per_metre;  /**< Embree's units in a metre of the shape's space: a power of two */
-    bool is_halved; /**< as triangles, by shape_kind.halves */
+        per_metre; /**< Embree's units in a metre of the shape's space: a power of two */
+    bool is_beside_triangles;
+    bool is_halved; /**< given as triangles, by shape_kind.halves */
 } given_shape;
 
 /** @brief Where on a shape it is that Embree's numbers tell. */
@@ -90,7 +91,8 @@ static inline bool embree_takes(const struct RTCRay *r, float reach)
 /** @brief Where it is at a time of the shutter, 0..1. */
 transform placed_at(const placed *p, float time);
 
-/** @brief A shape, which must outlive it; to be committed and attached. */
+/** @brief A shape, which must outlive it; to be committed and attached. Sets is_halved.
+ */
 RTCGeometry shape_geometry(RTCDevice device, given_shape *given);
 /** @brief A placed object, which must outlive it. */
 RTCGeometry placed_geometry(RTCDevice device, placed *p);

@@ -209,7 +209,9 @@ RTCGeometry shape_geometry(RTCDevice device, given_shape *given)
     const shape *s = given->shape;
     const mesh *m = s->kind->triangles ? s->kind->triangles(s->self) : NULL;
     mesh halves;
-    if (given->is_halved && s->kind->halves(s->self, &halves))
+    given->is_halved = given->is_beside_triangles && s->kind->halves &&
+                       s->kind->halves(s->self, &halves);
+    if (given->is_halved)
         m = &halves;
     RTCGeometry g = m ? triangle_geometry(device, given, m) : exact_geometry(device, s);
     rtcSetGeometryUserData(g, given);

@@ -1,8 +1,8 @@
 /*
  * Meshes of bilinear patches, intersected exactly; where all are parallelograms, as most
  * lamps are, they may be met as triangles in place of that. Which side is outside is
- * decided as for triangles (mesh.c): by ∂p/∂u × ∂p/∂v and the orientation, or by the
- * normals given.
+ * decided as for triangles (shape_mesh.c): by ∂p/∂u × ∂p/∂v and the orientation, or by
+ * the normals given.
  *
  *   indices of a face: p00 p10 p01 p11
  *

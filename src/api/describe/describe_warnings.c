@@ -241,6 +241,14 @@ static void inspect_light_in_medium(inspection *in, guint i)
          i, l->kind->name, medium_name(s, is), medium_name(s, behind));
 }
 
+static ray ray_from_camera(const inspection *in, int k)
+{
+    return (ray){.origin = transform_point(&in->camera->to_world, (vec3){0}),
+                 .direction = way_out(k),
+                 .t_max = INFINITY,
+                 .media.participating = in->camera->media.participating};
+}
+
 /* A surface that says that its near side is in another medium than the way to it. */
 static bool contradicts(const surface_hit *hit, vec3 direction)
 {
@@ -248,16 +256,16 @@ static bool contradicts(const surface_hit *hit, vec3 direction)
            hit_media(hit, -direction).participating != hit->media.participating;
 }
 
-/* The first of those on a ray, as far as light goes; its shape, NO_INDEX: none. */
-static int find_contradiction(const scene *s, ray r, surface_hit *hit)
+/* The first of those on a ray, as far as light goes. */
+static bool find_contradiction(const scene *s, ray r, surface_hit *hit)
 {
     for (int i = 0; i < MOST_CROSSINGS && scene_cross(s, &r, hit); i++) {
         if (contradicts(hit, r.direction))
-            return hit->shape;
+            return true;
         if (!lets_light_through(s, hit))
-            break;
+            return false;
     }
-    return NO_INDEX;
+    return false;
 }
 
 /* Which of two media fills a place must not depend on the way there, or integrators
@@ -265,20 +273,16 @@ static int find_contradiction(const scene *s, ray r, surface_hit *hit)
 static void inspect_interfaces(inspection *in)
 {
     const scene *s = in->scene;
-    for (int k = 0; scene_has_media(s) && k < N_WAYS; k++) {
-        ray r = {.origin = transform_point(&in->camera->to_world, (vec3){0}),
-                 .direction = way_out(k),
-                 .t_max = INFINITY,
-                 .media.participating = in->camera->media.participating};
+    for (int k = 0; k < N_WAYS; k++) {
+        ray r = ray_from_camera(in, k);
         surface_hit hit;
-        int found = find_contradiction(s, r, &hit);
-        if (found == NO_INDEX)
+        if (!find_contradiction(s, r, &hit))
             continue;
         warn(in,
              "shape %d is seen from the camera through medium '%s', but its "
              "MediumInterface has '%s' on that side: its normals, or the two media, are "
              "the wrong way round, or another surface's are",
-             found, medium_name(s, hit.media.participating),
+             hit.shape, medium_name(s, hit.media.participating),
              medium_name(s, hit_media(&hit, -r.direction).participating));
         return;
     }
@@ -297,10 +301,7 @@ static void inspect_fog(inspection *in, guint i)
     if (!comes_from_beyond || !s->outer_medium)
         return;
     for (int k = 0; k < N_WAYS; k++) {
-        ray r = {.origin = transform_point(&in->camera->to_world, (vec3){0}),
-                 .direction = way_out(k),
-                 .t_max = INFINITY,
-                 .media.participating = in->camera->media.participating};
+        ray r = ray_from_camera(in, k);
         if (spectrum_mean(scene_transmittance(s, &r, &w)) > LEAST_LEFT)
             return;
     }
@@ -330,7 +331,8 @@ GPtrArray *describe_warnings(const view *v)
         inspect_fog(&in, i);
         inspect_light_in_medium(&in, i);
     }
-    inspect_interfaces(&in);
+    if (scene_has_media(s))
+        inspect_interfaces(&in);
     if (s->shapes->len > 0 && (s->radius > LARGEST_RADIUS || s->radius < SMALLEST_RADIUS))
         warn(&in, "the scene is %g m wide; lengths are in metres",
              2.0 * (double)s->radius);
