@@ -406,6 +406,19 @@ static bool ask_any_in_parts(const accel *a, const ray *r)
     return ask_any(a, &rest);
 }
 
+/* What Embree found at t on a ray, but not yet what follows from it (accel_fill_hit). */
+static void place_hit(const accel *a, const struct RTCHit *found, float t, float time,
+                      surface_hit *hit)
+{
+    name_hit(a, found, hit);
+    const given_place at =
+        given_place_of(&a->shapes[hit->shape], found->primID, found->u, found->v);
+    hit->t = t;
+    hit->time = time;
+    hit->primitive = at.primitive;
+    hit->corners = at.corners;
+}
+
 static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit *hit)
 {
     struct RTCRayHit query;
@@ -415,13 +428,7 @@ static bool intersect(const accel *a, const ray *r, unsigned flags, surface_hit 
                    : ask_nearest(a, r, flags, &query);
     if (!met)
         return false;
-    name_hit(a, &query.hit, hit);
-    hit->t = begin + query.ray.tfar / a->world.per_metre;
-    hit->time = r->time;
-    const given_place at = given_place_of(&a->shapes[hit->shape], query.hit.primID,
-                                          query.hit.u, query.hit.v);
-    hit->primitive = at.primitive;
-    hit->corners = at.corners;
+    place_hit(a, &query.hit, begin + query.ray.tfar / a->world.per_metre, r->time, hit);
     accel_fill_hit(a, r, hit);
     return true;
 }
@@ -434,6 +441,48 @@ bool accel_intersect(const accel *a, const ray *r, surface_hit *hit)
 bool accel_intersect_solid(const accel *a, const ray *r, surface_hit *hit)
 {
     return intersect(a, r, RAY_SOLID, hit);
+}
+
+/* The nearest hits, in Embree's words. */
+static void ask_packet(const accel *a, const ray *rays, int n, struct RTCRayHit16 *query)
+{
+    int valid[RAY_PACKET] __attribute__((aligned(64))) = {0};
+    for (int i = 0; i < n; i++) {
+        const struct RTCRay one = embree_ray(&rays[i], a->world.per_metre);
+        valid[i] = embree_takes(&one, WORLD_REACH) ? -1 : 0;
+        packet_put(&query->ray, &one, RAY_ROWS, RAY_PACKET, (unsigned)i);
+        query->hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        query->hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    embree_nearest_packet(a->world.scene, valid, query);
+}
+
+static void intersect_one_by_one(const accel *a, const ray *rays, int n,
+                                 surface_hit *hits)
+{
+    for (int i = 0; i < n; i++)
+        if (!accel_intersect(a, &rays[i], &hits[i]))
+            hits[i].shape = NO_INDEX;
+}
+
+void accel_intersect_packet(const accel *a, const ray *rays, int n, surface_hit *hits)
+{
+    struct RTCRayHit16 query;
+    if (accel_core_exists(&a->core)) {
+        intersect_one_by_one(a, rays, n, hits);
+        return;
+    }
+    ask_packet(a, rays, n, &query);
+    for (int i = 0; i < n; i++) {
+        struct RTCHit found;
+        packet_get(&found, &query.hit, HIT_ROWS, RAY_PACKET, (unsigned)i);
+        hits[i].shape = NO_INDEX;
+        if (found.geomID == RTC_INVALID_GEOMETRY_ID)
+            continue;
+        place_hit(a, &found, query.ray.tfar[i] / a->world.per_metre, rays[i].time,
+                  &hits[i]);
+        accel_fill_hit(a, &rays[i], &hits[i]);
+    }
 }
 
 bool accel_occluded(const accel *a, const ray *r)

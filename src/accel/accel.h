@@ -28,6 +28,11 @@ void accel_free(accel *a);
 bool accel_intersect(const accel *a, const ray *r, surface_hit *hit);
 /** @brief The same with all cut-outs solid. */
 bool accel_intersect_solid(const accel *a, const ray *r, surface_hit *hit);
+/** Rays of a packet, at most. */
+enum { RAY_PACKET = 16 };
+/** @brief accel_intersect of n rays together, which pays where they begin or go side by
+ * side. @param hits [n]: shape is NO_INDEX where nothing was met */
+void accel_intersect_packet(const accel *a, const ray *rays, int n, surface_hit *hits);
 /** @brief Fills in what a nearest hit of the ray is beyond its t, time, shape, instance,
  * primitive and corners. */
 void accel_fill_hit(const accel *a, const ray *r, surface_hit *hit);

@@ -3,8 +3,8 @@
  * accel_geometry.c is what Embree calls back; disc_set.c has a scene of its own. No other
  * file includes Embree.
  *
- * Embree 3 passes a context with every query, Embree 4 optional arguments: the two
- * functions embree_nearest and embree_any hold the whole difference.
+ * Embree 3 passes a context with every query, Embree 4 optional arguments: the functions
+ * embree_nearest… and embree_any… hold the whole difference.
  */
 #pragma once
 
@@ -12,6 +12,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #if __has_include(<embree4/rtcore.h>)
@@ -97,6 +98,33 @@ RTCGeometry shape_geometry(RTCDevice device, given_shape *given);
 /** @brief A placed object, which must outlive it. */
 RTCGeometry placed_geometry(RTCDevice device, placed *p);
 
+/* ---- Packets ----
+ *
+ * Of n rays together Embree keeps each member of RTCRay, and after them of RTCHit, as a
+ * row of n. */
+
+enum {
+    RAY_ROWS = sizeof(struct RTCRay) / sizeof(float),
+    HIT_ROWS = offsetof(struct RTCHit, instID) / sizeof(float) + 1
+};
+
+/** @brief Ray or hit number i of n. */
+static inline void packet_get(void *one, const void *rows, size_t n_rows, unsigned n,
+                              unsigned i)
+{
+    for (size_t k = 0; k < n_rows; k++)
+        memcpy((float *)one + k, (const float *)rows + k * n + i, sizeof(float));
+}
+
+static inline void packet_put(void *rows, const void *one, size_t n_rows, unsigned n,
+                              unsigned i)
+{
+    for (size_t k = 0; k < n_rows; k++)
+        memcpy((float *)rows + k * n + i, (const float *)one + k, sizeof(float));
+}
+
+/* ---- Queries ---- */
+
 static inline void embree_nearest(RTCScene scene, struct RTCRayHit *query)
 {
 #if RTC_VERSION_MAJOR >= 4
@@ -105,6 +133,23 @@ static inline void embree_nearest(RTCScene scene, struct RTCRayHit *query)
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcIntersect1(scene, &context, query);
+#endif
+}
+
+/** @brief embree_nearest of the rays of a packet whose valid is -1, not 0. */
+static inline void embree_nearest_packet(RTCScene scene, const int *valid,
+                                         struct RTCRayHit16 *query)
+{
+#if RTC_VERSION_MAJOR >= 4
+    struct RTCIntersectArguments args;
+    rtcInitIntersectArguments(&args);
+    args.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, query, &args);
+#else
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, &context, query);
 #endif
 }
 

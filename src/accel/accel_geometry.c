@@ -1,10 +1,10 @@
 /*
- * What Embree calls back. Triangles are handed over as shared buffers; quadrics, patches
- * and curves as user geometry that is intersected exactly. Patches that are
- * parallelograms are handed over as triangles where there are others: every kind of
- * geometry has a tree of its own, and a ray goes through each (a room of triangles with a
- * patch for a lamp takes .84 of the time); where there are none, a tree of patches is as
- * fast.
+ * What Embree calls back: with one ray, or to intersect also with a packet of them.
+ * Triangles are handed over as shared buffers; quadrics, patches and curves as user
+ * geometry that is intersected exactly. Patches that are parallelograms are handed over
+ * as triangles where there are others: every kind of geometry has a tree of its own, and
+ * a ray goes through each (a room of triangles with a patch for a lamp takes .84 of the
+ * time); where there are none, a tree of patches is as fast.
  *
  * An instance that stands still is Embree's own. One that moves is user geometry too: the
  * ray is taken to the object's space at its own time by the same transform that later
@@ -61,25 +61,61 @@ static bool stops(const shape *s, const ray *r, uint32_t primitive, const float 
     return (float)(h >> 40) * 0x1p-24f < opacity;
 }
 
-/* Filter of triangles with cut-outs. */
-static void filter_cut_out(const struct RTCFilterFunctionNArguments *args)
+static bool cut_out_stops(const given_shape *given, const struct RTCRay *query,
+                          const struct RTCHit *hit)
 {
-    const struct RTCRay *query = (const struct RTCRay *)args->ray;
-    const struct RTCHit *hit = (const struct RTCHit *)args->hit;
-    if (!args->valid[0] || (query->flags & RAY_SOLID))
-        return;
-    const given_shape *given = args->geometryUserPtr;
     const given_place at = given_place_of(given, hit->primID, hit->u, hit->v);
     ray r = from_embree(query, given->per_metre);
     const float tuv[3] = {r.t_max, at.corners.x, at.corners.y};
-    if (!stops(given->shape, &r, at.primitive, tuv))
-        args->valid[0] = 0;
+    return (query->flags & RAY_SOLID) || stops(given->shape, &r, at.primitive, tuv);
+}
+
+/* Filter of triangles with cut-outs. */
+static void filter_cut_out(const struct RTCFilterFunctionNArguments *args)
+{
+    for (unsigned i = 0; i < args->N; i++) {
+        struct RTCRay query;
+        struct RTCHit hit;
+        if (!args->valid[i])
+            continue;
+        packet_get(&query, args->ray, RAY_ROWS, args->N, i);
+        packet_get(&hit, args->hit, HIT_ROWS, args->N, i);
+        if (!cut_out_stops(args->geometryUserPtr, &query, &hit))
+            args->valid[i] = 0;
+    }
 }
 
 /* Interfaces without a material hide nothing. */
 static void let_through(const struct RTCFilterFunctionNArguments *args)
 {
     args->valid[0] = 0;
+}
+
+/* ---- One by one ---- */
+
+typedef struct RTCIntersectFunctionNArguments intersect_arguments;
+typedef bool (*intersect_one)(const intersect_arguments *args, struct RTCRayHit *query);
+
+/* The rays of a packet; of one alone the packet is the ray. */
+static inline void intersect_each(const intersect_arguments *args, intersect_one meets)
+{
+    float *rows = (float *)args->rayhit;
+    const unsigned n = args->N;
+    if (n == 1) {
+        if (args->valid[0])
+            meets(args, (struct RTCRayHit *)args->rayhit);
+        return;
+    }
+    for (unsigned i = 0; i < n; i++) {
+        struct RTCRayHit one = {0};
+        if (!args->valid[i])
+            continue;
+        packet_get(&one.ray, rows, RAY_ROWS, n, i);
+        if (!meets(args, &one))
+            continue;
+        packet_put(rows, &one.ray, RAY_ROWS, n, i);
+        packet_put(rows + (size_t)RAY_ROWS * n, &one.hit, HIT_ROWS, n, i);
+    }
 }
 
 /* ---- Exact surfaces as user geometry ---- */
@@ -135,19 +171,23 @@ static bool user_meets(const given_shape *given, uint32_t primitive,
     return met;
 }
 
-static void user_intersect(const struct RTCIntersectFunctionNArguments *args)
+static bool user_intersect_one(const intersect_arguments *args, struct RTCRayHit *query)
 {
-    struct RTCRayHit *query = (struct RTCRayHit *)args->rayhit;
     float tuv[3];
-    if (!args->valid[0] ||
-        !user_meets(args->geometryUserPtr, args->primID, &query->ray, tuv))
-        return;
+    if (!user_meets(args->geometryUserPtr, args->primID, &query->ray, tuv))
+        return false;
     query->ray.tfar = tuv[0];
     query->hit.u = tuv[1];
     query->hit.v = tuv[2];
     query->hit.primID = args->primID;
     query->hit.geomID = args->geomID;
     query->hit.instID[0] = args->context->instID[0];
+    return true;
+}
+
+static void user_intersect(const intersect_arguments *args)
+{
+    intersect_each(args, user_intersect_one);
 }
 
 static void user_occluded(const struct RTCOccludedFunctionNArguments *args)
@@ -259,22 +299,25 @@ static struct RTCRay taken_to_object(const placed *p, const struct RTCRay *query
     return out;
 }
 
-static void moving_intersect(const struct RTCIntersectFunctionNArguments *args)
+static bool moving_intersect_one(const intersect_arguments *args, struct RTCRayHit *query)
 {
     const placed *p = args->geometryUserPtr;
-    struct RTCRayHit *query = (struct RTCRayHit *)args->rayhit;
-    if (!args->valid[0])
-        return;
     struct RTCRayHit inner = {.ray = taken_to_object(p, &query->ray)};
     if (!embree_takes(&inner.ray, OBJECT_REACH))
-        return;
+        return false;
     inner.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     embree_nearest(p->object, &inner);
     if (inner.hit.geomID == RTC_INVALID_GEOMETRY_ID)
-        return;
+        return false;
     query->ray.tfar = inner.ray.tfar;
     query->hit = inner.hit;
     query->hit.instID[0] = args->geomID;
+    return true;
+}
+
+static void moving_intersect(const intersect_arguments *args)
+{
+    intersect_each(args, moving_intersect_one);
 }
 
 static void moving_occluded(const struct RTCOccludedFunctionNArguments *args)

@@ -72,6 +72,14 @@ static bool look(neighbourhood *hood, const ray *r, surface_hit *hit)
     return scene_meet_surface(hood->scene, r, hit);
 }
 
+/* hits[i].shape is NO_INDEX where nothing was met. */
+static void look_together(neighbourhood *hood, const ray *rays, int n, surface_hit *hits)
+{
+    hood->n_looks += (uint32_t)n;
+    for (int i = 0; i < n; i += RAY_PACKET)
+        scene_meet_surfaces(hood->scene, rays + i, MIN(n - i, RAY_PACKET), hits + i);
+}
+
 /* True if what a ray met is not turned away from the disc, as photons are told apart. */
 static bool is_alike(const neighbourhood *hood, const surface_hit *hit)
 {
@@ -79,17 +87,21 @@ static bool is_alike(const neighbourhood *hood, const surface_hit *hit)
     return cosine * cosine > SAME_SURFACE;
 }
 
-/* How far the surface of the disc lies off the point q of its plane, over what is
-   allowed; 1 or more: there is none. */
-static float surface_height(neighbourhood *hood, vec3 q)
+/* From above a point q of the plane through all that counts as surface. */
+static ray down_to(const neighbourhood *hood, vec3 q)
 {
-    const ray down = {.origin = lifted(hood, q),
-                      .direction = -hood->n,
-                      .t_max = 2.0f * slab(hood),
-                      .time = hood->time};
-    surface_hit hit;
-    bool found = look(hood, &down, &hit) && is_alike(hood, &hit);
-    return found ? fabsf(hit.t / slab(hood) - 1.0f) : 1.0f;
+    return (ray){.origin = lifted(hood, q),
+                 .direction = -hood->n,
+                 .t_max = 2.0f * slab(hood),
+                 .time = hood->time};
+}
+
+/* How far the surface that such a ray met lies off the plane, over what is allowed; 1 or
+   more: there is none. */
+static float surface_height(const neighbourhood *hood, const surface_hit *hit)
+{
+    bool found = hit->shape != NO_INDEX && is_alike(hood, hit);
+    return found ? fabsf(hit->t / slab(hood) - 1.0f) : 1.0f;
 }
 
 /* From the lifted centre through the rim, until it is as far below the plane as a surface
@@ -138,6 +150,7 @@ static bool rim_is_surface(neighbourhood *hood, vec3 d)
     return look(hood, &down, &hit) && is_joined(hood, &down, &hit);
 }
 
+/* One after the other: all eight rays together take longer than those that it needs. */
 static bool whole_rim(neighbourhood *hood)
 {
     vec3 s = hood->frame.s, t = hood->frame.t;
@@ -159,16 +172,22 @@ static void find_horizon(neighbourhood *hood)
     const turn sector = turn_by(2.0f * half);
     /* Sides between open corners clear the disc, and those that share it. */
     float reach = (1.0f + SHARED_REACH) * hood->radius / cosf(half);
-    turn a = {1.0f, 0.0f};
+    turn a[NEIGHBOURHOOD_SECTORS] = {{1.0f, 0.0f}};
+    ray along[NEIGHBOURHOOD_SECTORS];
+    surface_hit hit[NEIGHBOURHOOD_SECTORS];
     vec2 corner[NEIGHBOURHOOD_SECTORS];
-    for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++, a = turn_further(a, sector)) {
-        ray along = {.origin = lifted(hood, hood->p),
-                     .time = hood->time,
-                     .direction = direction_at(hood, a),
-                     .t_max = reach};
-        surface_hit hit;
-        float free = look(hood, &along, &hit) ? hit.t : reach;
-        corner[i] = (vec2){free * a.c, free * a.s};
+    for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++) {
+        if (i > 0)
+            a[i] = turn_further(a[i - 1], sector);
+        along[i] = (ray){.origin = lifted(hood, hood->p),
+                         .time = hood->time,
+                         .direction = direction_at(hood, a[i]),
+                         .t_max = reach};
+    }
+    look_together(hood, along, NEIGHBOURHOOD_SECTORS, hit);
+    for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++) {
+        float free = hit[i].shape != NO_INDEX ? hit[i].t : reach;
+        corner[i] = (vec2){free * a[i].c, free * a[i].s};
     }
     for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++) {
         vec2 p = corner[i], q = corner[(i + 1) % NEIGHBOURHOOD_SECTORS];
@@ -182,15 +201,23 @@ float neighbourhood_coverage(neighbourhood *hood, const kernel *k)
 {
     const turn golden = turn_by(PI_F * (3.0f - sqrtf(5.0f))); /* math: its angle */
     turn a = {1.0f, 0.0f};
-    float whole = 0.0f, found = 0.0f;
+    float whole = 0.0f, found = 0.0f, r2[AREA_LOOKS];
+    ray down[AREA_LOOKS];
+    surface_hit hit[AREA_LOOKS];
+    int n = 0;
     find_horizon(hood);
     for (int i = 0; i < AREA_LOOKS; i++, a = turn_further(a, golden)) {
-        float r2 = ((float)i + hood->offset) / AREA_LOOKS;
-        vec3 q = hood->p + hood->radius * sqrtf(r2) * direction_at(hood, a);
-        float height = neighbourhood_sees(hood, q) ? surface_height(hood, q) : 1.0f;
-        whole += kernel_eval(k, r2, 1.0f);
+        r2[n] = ((float)i + hood->offset) / AREA_LOOKS;
+        vec3 q = hood->p + hood->radius * sqrtf(r2[n]) * direction_at(hood, a);
+        whole += kernel_eval(k, r2[n], 1.0f);
+        if (neighbourhood_sees(hood, q))
+            down[n++] = down_to(hood, q);
+    }
+    look_together(hood, down, n, hit);
+    for (int i = 0; i < n; i++) {
+        float height = surface_height(hood, &hit[i]);
         if (height < 1.0f)
-            found += kernel_eval(k, maxf(r2, height * height), 1.0f);
+            found += kernel_eval(k, maxf(r2[i], height * height), 1.0f);
     }
     return maxf(found / whole, LEAST_COVERAGE);
 }

@@ -92,6 +92,18 @@ bool scene_meet_surface(const scene *s, const ray *r, surface_hit *hit)
            (hit->material != NO_INDEX || meet_behind(s, *r, hit));
 }
 
+void scene_meet_surfaces(const scene *s, const ray *rays, int n, surface_hit *hits)
+{
+    accel_intersect_packet(s->accel, rays, n, hits);
+    for (int i = 0; i < n; i++) {
+        if (hits[i].shape == NO_INDEX)
+            continue;
+        scene_fill_hit(s, &rays[i], &hits[i]);
+        if (hits[i].material == NO_INDEX && !meet_behind(s, rays[i], &hits[i]))
+            hits[i].shape = NO_INDEX;
+    }
+}
+
 bool scene_cross(const scene *s, ray *r, surface_hit *hit)
 {
     if (!scene_intersect_solid(s, r, hit))

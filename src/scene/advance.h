@@ -83,6 +83,9 @@ bool scene_scatterer(const scene *s, const surface_hit *hit, const wavelengths *
  *  @param hit hit->t is measured from where r starts, m */
 bool scene_meet_surface(const scene *s, const ray *r, surface_hit *hit);
 
+/** @brief scene_meet_surface of the rays of a packet (accel_intersect_packet). */
+void scene_meet_surfaces(const scene *s, const ray *rays, int n, surface_hit *hits);
+
 /** @brief Takes a ray behind the next surface on it, cut-outs taken as solid; t_max
  * shrinks by the way made. @return false: it meets none */
 bool scene_cross(const scene *s, ray *r, surface_hit *hit);
