@@ -52,8 +52,8 @@ static const setting_row table[] = {
      "passes, is below this; 0: never."},
     {"planned_passes", SETTING_REAL, AT(planned_passes), "", 0, MOST_PASSES, 0, NULL, "",
      "photonmap auto vcm",
-     "Passes that radii and the number of photons are planned for; 0: passes, or 16 if "
-     "those are not known, or what there is time for."},
+     "Passes that radii of indirect light and the number of photons are planned for; 0: "
+     "passes, or 16 if those are not known, or what there is time for."},
     {"spp", SETTING_COUNT, AT(spp), "samples/pixel", 1, 65536, 4, NULL,
      "pixelsamples samples_per_pixel", "all", "Camera rays a pixel in each pass."},
     {"first_spp", SETTING_COUNT, AT(first_spp), "samples/pixel", 0, 65536, 0, NULL, "",

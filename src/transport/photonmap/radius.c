@@ -29,17 +29,19 @@
    were blurred where passes are few and noisy where they are many: relMSE of water by
    auto with 1, 2, 8, 64 and 400 passes is .79, .87, .93, .98 and .99 of what it was, raw
    .79, .99, 1.06, .74, .80; of two boxes by photons in one map with 4 and 64 passes .73
-   to 1.02, raw .53 to 1.12; in five other scenes .95 to 1.01. With half as many of
-   caustics, in water with 2, 8 and 16 passes, .85, 1.02, 1.08, raw up to 1.2 (128 x 128,
-   24576 photons, one to three seeds). That of indirect light by photon mapping is the
-   same with any of these, since its radii are the widest there may be. */
+   to 1.02, raw .53 to 1.12; in five other scenes .95 to 1.01 (with 17.3). With half as
+   many of caustics, in water with 2, 8 and 16 passes, .85, 1.02, 1.08, raw up to 1.2 (128
+   x 128, 24576 photons, one to three seeds). That of indirect light by photon mapping is
+   the same with any of these, since its radii are the widest there may be. */
 static const double photons_wanted[N_PHOTON_CLASSES] = {37.5, 12000.0, 18.75};
 
 static double wanted_in_pass(const settings *how, photon_class c)
 {
+    if (c == PHOTON_CAUSTIC)
+        return photons_wanted[c];
+    if (c == PHOTON_DIRECT || settings_one_map(how))
+        return photons_wanted[PHOTON_DIRECT];
     const double smooth = photons_wanted[PHOTON_INDIRECT];
-    if (c != PHOTON_INDIRECT || settings_one_map(how))
-        return photons_wanted[c == PHOTON_CAUSTIC ? c : PHOTON_DIRECT];
     double passes = fmax(settings_planned_passes(how), 1.0);
     /* At least half of what chance alone adds to all or takes from them: fewer would end
        as noise. */
