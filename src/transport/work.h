@@ -42,9 +42,7 @@
 /** What is tried must be better than what is there by so much: variances are known within
  * a factor of two, and noise that is even disturbs least. With 1 in its place time x
  * relMSE is 1.3 to 1.7 times as much in a Cornell box and 1.1 to 1.2 in one with glass
- * and in water, alike in three other scenes (64 x 64, 4 to 64 passes, five seeds); with
- * 0.5 a ring's caustic is left to paths, and jumps, at roughness 0.28
- * (/verify/caustic/roughness). */
+ * and in water, alike in three other scenes (64 x 64, 4 to 64 passes, five seeds). */
 #define CLEARLY_BETTER 0.65
 
 /** Fewer trials of anything tell nothing, as fewer photons do of how close they lie: then

@@ -145,7 +145,7 @@ static void test_roughness(gconstpointer data)
    does not aim: at 0.06 its jump has a deviation of 1.7 % after 64 passes (six seeds), of
    0.1 after 256 (four). */
 static const sweep sweeps[] = {
-    {"integrator=auto spp=16 photons=20000 max_backward_bounces=-1", 8, 64, 0.04},
+    {"integrator=auto spp=16 photons=20000 max_backward_bounces=-1", 16, 64, 0.04},
     {"integrator=photonmap spp=8 photons=40000", 64, 64, 0.05},
     {"integrator=vcm spp=16 photons=4096", 8, 256, 0},
 };

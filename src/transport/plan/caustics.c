@@ -29,12 +29,12 @@ uint64_t caustics_most(const transport_plan *plan)
     return (uint64_t)(own > 0 ? own : MIN(settings_photons(how), most_of_all(samples)));
 }
 
-/* Rays that a camera sample costs more where photons are gathered, however few: a query
-   where there are hardly any takes as long as one. */
+/* Rays that a camera sample costs more where photons are gathered, however few: so many
+   queries, without what looks for edges. */
 static double gather_rays(const transport_plan *plan, const path_effort *paths)
 {
     double later = fmax(paths->surfaces - 1.0, 0.0) * (double)plan->p_blurred;
-    return fmin(paths->surfaces, 1.0) + later;
+    return PHOTON_RAYS * (fmin(paths->surfaces, 1.0) + later);
 }
 
 /* The photons of a pass: sending and storing one takes as long as a ray more. */
