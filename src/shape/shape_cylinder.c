@@ -12,11 +12,12 @@ typedef struct cylinder {
     double radius, z_min, z_max;
 } cylinder;
 
-static quadric_point at_angle(const cylinder *c, double x, double y, double z)
+/* @param turn the angle of (x, y) over phi_max */
+static quadric_point at_angle(const cylinder *c, double x, double y, double z,
+                              double turn)
 {
     quadric_point at = {.p = {x, y, z}, .n = {x / c->radius, y / c->radius, 0.0}};
-    at.uv = (vec2){(float)(quadric_phi(at.p) / c->q.phi_max),
-                   (float)((z - c->z_min) / (c->z_max - c->z_min))};
+    at.uv = (vec2){(float)turn, (float)((z - c->z_min) / (c->z_max - c->z_min))};
     return at;
 }
 
@@ -25,7 +26,7 @@ static quadric_point map_cylinder(const void *self, vec2 u)
     const cylinder *c = self;
     double phi = (double)u.y * c->q.phi_max;
     return at_angle(c, c->radius * cos(phi), c->radius * sin(phi),
-                    c->z_min + (double)u.x * (c->z_max - c->z_min));
+                    c->z_min + (double)u.x * (c->z_max - c->z_min), (double)u.y);
 }
 
 static void *create(const params *p, const shape_place *at, GError **error)
@@ -89,7 +90,8 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     for (int k = 0; k < 3; k++)
         p[k] = object.o[k] + (double)hit->t * object.d[k];
     double onto = c->radius / sqrt(p[0] * p[0] + p[1] * p[1]);
-    quadric_point at = at_angle(c, p[0] * onto, p[1] * onto, p[2]);
+    quadric_point at =
+        at_angle(c, p[0] * onto, p[1] * onto, p[2], quadric_phi(p) / c->q.phi_max);
     double dpdu[3] = {-c->q.phi_max * at.p[1], c->q.phi_max * at.p[0], 0.0};
     const double dpdv[3] = {0.0, 0.0, c->z_max - c->z_min};
     quadric_fill_hit(&c->q, &at, dpdu, dpdv, hit);

@@ -23,7 +23,8 @@ typedef struct sphere {
     double center[3], world_radius; /* used if is_whole and similar */
 } sphere;
 
-static quadric_point at_angles(const sphere *s, const double p[3])
+/* @param turn the angle around the axis, over phi_max */
+static quadric_point at_angles(const sphere *s, const double p[3], double turn)
 {
     quadric_point at;
     for (int i = 0; i < 3; i++) {
@@ -31,7 +32,7 @@ static quadric_point at_angles(const sphere *s, const double p[3])
         at.n[i] = p[i] / s->radius;
     }
     double theta = acos(CLAMP(at.n[2], -1.0, 1.0));
-    at.uv = (vec2){(float)(quadric_phi(p) / s->q.phi_max),
+    at.uv = (vec2){(float)turn,
                    (float)((theta - s->theta_min) / (s->theta_max - s->theta_min))};
     return at;
 }
@@ -40,9 +41,9 @@ static quadric_point map_sphere(const void *self, vec2 u)
 {
     const sphere *s = self;
     double z = s->z_min + (double)u.x * (s->z_max - s->z_min);
-    double r = sqrt(fmax(0.0, (s->radius - z) * (s->radius + z)));
+    double r = sqrt(MAX((s->radius - z) * (s->radius + z), 0.0));
     double phi = (double)u.y * s->q.phi_max;
-    return at_angles(s, (const double[3]){r * cos(phi), r * sin(phi), z});
+    return at_angles(s, (const double[3]){r * cos(phi), r * sin(phi), z}, (double)u.y);
 }
 
 static bool read_extent(sphere *s, const params *p, GError **error)
@@ -136,7 +137,7 @@ static void fill_hit(const void *self, const ray *r, float u, float v, surface_h
     double onto = s->radius / sqrt(length2);
     for (int i = 0; i < 3; i++)
         p[i] *= onto;
-    quadric_point at = at_angles(s, p);
+    quadric_point at = at_angles(s, p, quadric_phi(p) / s->q.phi_max);
     double dpdu[3] = {-s->q.phi_max * p[1], s->q.phi_max * p[0], 0.0};
     double rho = hypot(p[0], p[1]), along = s->theta_max - s->theta_min;
     double slope = rho > 0.0 ? along * p[2] / rho : 0.0;

@@ -124,8 +124,8 @@ float emission_guide_draw(const emission_guide *guide, sampler *random,
         node = first + (second ? 1 : 0);
     }
     for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
-        float below = nextafterf(node->high[a], 0.0f);
-        u[a] = minf(lerpf(node->low[a], node->high[a], u[a]), below);
+        float high = node->high[a], x = lerpf(node->low[a], high, u[a]);
+        u[a] = x < high ? x : nextafterf(high, 0.0f);
     }
     return (float)(node->mass / volume(node));
 }
