@@ -16,8 +16,7 @@ vec3 warp_sphere(vec2 u);
  * by rounding. Keeps all digits of small angles, where 1 - sqrt(1 - sine2) would be 0. */
 static inline double one_minus_cos_of_sine2(double sine2)
 {
-    double cosine2 = 1.0 - sine2;
-    return sine2 / (1.0 + sqrt(cosine2 > 0.0 ? cosine2 : 0.0));
+    return sine2 / (1.0 + sqrt(fmax(1.0 - sine2, 0.0)));
 }
 /** @brief 1 - cos of any angle (radians), with all digits of small ones. */
 static inline double one_minus_cos_of_angle(double angle)

@@ -41,7 +41,7 @@ static quadric_point map_sphere(const void *self, vec2 u)
 {
     const sphere *s = self;
     double z = s->z_min + (double)u.x * (s->z_max - s->z_min);
-    double r = sqrt(MAX((s->radius - z) * (s->radius + z), 0.0));
+    double r = sqrt(fmax(0.0, (s->radius - z) * (s->radius + z)));
     double phi = (double)u.y * s->q.phi_max;
     return at_angles(s, (const double[3]){r * cos(phi), r * sin(phi), z}, (double)u.y);
 }

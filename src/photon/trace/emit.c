@@ -124,7 +124,7 @@ static float cone_of_sphere(const caustic_casters *c, vec3 p)
 {
     double distance = (double)length3(c->center - p);
     double sine = (double)c->radius / distance + DIRECTION_ERROR;
-    return (float)one_minus_cos_of_sine2(MIN(sine * sine, 1.0));
+    return (float)one_minus_cos_of_sine2(fmin(sine * sine, 1.0));
 }
 
 float photon_cone_pdf(const caustic_casters *c, vec3 p)
