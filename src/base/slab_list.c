@@ -5,14 +5,15 @@
 #include <stdatomic.h>
 
 enum {
-    PIECE_BYTES = 4 << 10, /* size: so much a list leaves half of */
-    LINE = 64,             /* bytes: of the cache */
+    PIECE_BYTES = 4 << 10,  /* size: so much a list leaves half of */
+    FIRST_BYTES = 64 << 10, /* size: of a thread's first slab */
+    LINE = 64,              /* bytes: of the cache */
 };
 
 struct slab {
     _Alignas(LINE)
         atomic_size_t n_used; /* pieces that were cut, and one until it is closed */
-    size_t cut;               /* bytes */
+    size_t size, cut;         /* bytes, this among them */
 };
 
 struct slab_piece {
@@ -38,12 +39,14 @@ void slab_close(slab *s)
 static slab *slab_with_room(slab **from, const char *what, GError **error)
 {
     slab *s = *from;
-    if (s && s->cut + PIECE_BYTES <= SLAB_BYTES)
+    if (s && s->cut + PIECE_BYTES <= s->size)
         return s;
-    slab *next = big_alloc_uncounted(SLAB_BYTES, what, error);
+    size_t size = s ? MIN(2 * s->size, SLAB_BYTES) : FIRST_BYTES;
+    slab *next = big_alloc_uncounted(size, what, error);
     if (!next)
         return NULL;
     atomic_init(&next->n_used, 1);
+    next->size = size;
     next->cut = sizeof *next;
     slab_close(s);
     return *from = next;

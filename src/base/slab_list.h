@@ -6,10 +6,12 @@
  * from a slab of its own, one behind the other, and a slab goes back with the last of its
  * pieces:
  *
- *   slab  │ list a │ list b │ list a │ list a │ ..     one huge page
+ *   slab  │ list a │ list b │ list a │ list a │ ..     at most a huge page
  *
- * So what a loop takes is what it stores, to half a piece a list and a slab a thread, and
- * every loop takes and gives the same slabs: nothing is left in pieces that fit nothing.
+ * A thread's first slab is small, since one page of a huge one takes all of it, and the
+ * next is twice as large. So what a loop takes is what it stores, to half a piece a list
+ * and as much again or a slab a thread, whichever is less, and every loop takes and gives
+ * the same slabs: nothing is left in pieces that fit nothing.
  */
 #pragma once
 
@@ -18,7 +20,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { SLAB_BYTES = (2 << 20) - 128 }; /* size: with what stands before arrays */
+enum { SLAB_BYTES = (2 << 20) - 128 }; /* the largest, with what stands before arrays */
 
 typedef struct slab slab;
 typedef struct slab_piece slab_piece;

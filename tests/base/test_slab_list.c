@@ -129,6 +129,23 @@ static void test_counted(void)
         g_assert_cmpuint(memory_resident(), <, resident + N * 64 / 4);
 }
 
+/* Threads that store little take little, on huge pages or small ones. */
+static void test_few(void)
+{
+    enum { N_SLABS = 8, MOST = 1 << 20 };
+    slab_list lists[N_SLABS] = {0};
+    slab *from[N_SLABS] = {0};
+    size_t resident = memory_resident();
+    for (size_t i = 0; i < N_SLABS; i++)
+        memset(slab_list_add(&lists[i], 64, &from[i], "lines", NULL), 7, 64);
+    if (!MEMORY_IS_WATCHED)
+        g_assert_cmpuint(memory_resident() - resident, <, MOST);
+    for (size_t i = 0; i < N_SLABS; i++) {
+        slab_list_clear(&lists[i]);
+        slab_close(from[i]);
+    }
+}
+
 static void test_refused(void)
 {
     GError *error = NULL;
@@ -159,6 +176,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/slab-list/order", test_order);
     g_test_add_func("/slab-list/counted", test_counted);
+    g_test_add_func("/slab-list/few", test_few);
     g_test_add_func("/slab-list/refused", test_refused);
     return g_test_run();
 }
