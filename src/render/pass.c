@@ -7,6 +7,8 @@
 #include "render/render_state.h"
 #include "render/stop.h"
 
+#include <math.h>
+
 /* The caller hears of progress no more often than this, s. */
 #define PROGRESS_INTERVAL 0.1
 
@@ -18,8 +20,12 @@
    tenth two fifths, for 3 to 6 % of error where passes are few. */
 #define COARSE_SHARE 0.1
 
-/* Of the time given so much goes into finding out how long writing takes, each time. */
+/* Of the time given so much goes into finding out how long writing takes, each time, */
 #define WRITE_SHARE 0.01
+
+/* and of that since the last time so much at most into asking for all that comes after.
+ */
+#define TIMING_SHARE 0.05
 
 /* Nothing is done before it is. */
 #define LARGEST_FRACTION 0.99
@@ -106,27 +112,46 @@ static void add_counts(render_statistics *st, const transport_counts *counts)
     }
 }
 
-/* How long denoising will take, s: in fewer windows where time is short. */
-static double time_denoising(render *r)
+static double time_windows(render *r, bool coarse)
 {
-    settings *how = &r->plan.how;
-    double fine = film_denoise_seconds(&r->film, r->n_threads, r->is_dealt);
-    if (how->denoise_windows != WINDOWS_AUTO || fine <= COARSE_SHARE * how->time)
-        return fine;
-    how->denoise_windows = WINDOWS_COARSE;
-    r->film.coarse = true;
+    r->film.coarse = coarse;
     return film_denoise_seconds(&r->film, r->n_threads, r->is_dealt);
 }
 
-/* How long writing and denoising take is asked at the start, of the first pictures, and
-   again when half of the time is over: it depends on what the picture shows and what else
-   the machine does. */
+/* How long denoising will take, s: in fewer windows where time is short. Those are tried
+   first, for where even they take long all would. */
+static double time_denoising(render *r)
+{
+    settings *how = &r->plan.how;
+    if (how->denoise_windows != WINDOWS_AUTO)
+        return time_windows(r, r->film.coarse);
+    double most = COARSE_SHARE * how->time, coarse = time_windows(r, true);
+    double fine = coarse > most ? (double)INFINITY : time_windows(r, false);
+    if (fine <= most)
+        return fine;
+    how->denoise_windows = WINDOWS_COARSE;
+    r->film.coarse = true;
+    return coarse;
+}
+
+/* Whether how long writing and denoising take is to be asked: at the start, when there is
+   something to denoise, and, unless that would take much of the time, of the first
+   pictures and again when half of the time is over, since it depends on what the picture
+   shows and what else the machine does. */
+static bool timing_is_due(const render *r, double elapsed)
+{
+    double time = r->plan.how.time;
+    if (!(r->after > 0.0) || r->passes_done == 2)
+        return true;
+    if (elapsed - r->timed_at < r->timing / TIMING_SHARE)
+        return false;
+    return r->passes_done < 2 || (elapsed > 0.5 * time && r->timed_at < 0.5 * time);
+}
+
 void render_time_writing(render *r)
 {
     double time = r->plan.how.time, elapsed = clock_seconds() - r->start;
-    bool is_due = r->passes_done <= 2 || !(r->after > 0.0) ||
-                  (elapsed > 0.5 * time && r->timed_at < 0.5 * time);
-    if (!(time > 0.0) || !is_due)
+    if (!(time > 0.0) || !timing_is_due(r, elapsed))
         return;
     double denoising = time_denoising(r);
     r->film.no_time = r->film.no_time || denoising > DENOISE_SHARE * time;
@@ -135,6 +160,7 @@ void render_time_writing(render *r)
     if (!r->film.no_time)
         r->after += denoising;
     r->timed_at = elapsed;
+    r->timing = clock_seconds() - r->start - elapsed;
 }
 
 /* Nobody works on the film just now, and of the first pass there is a coarse picture. */

@@ -29,6 +29,7 @@ struct render {
     double after;         /* s that writing to these takes */
     double expected_pass; /* s that one takes, by a trial; 0: there was none */
     double timed_at;      /* s: when it was asked last */
+    double timing;        /* s that asking took */
     uint32_t passes_done;
     render_statistics statistics;
     cancel_flag cancel;
