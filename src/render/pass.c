@@ -12,12 +12,8 @@
 /* The caller hears of progress no more often than this, s. */
 #define PROGRESS_INTERVAL 0.1
 
-/* Of a time that is given no more than this goes into denoising: else there is nothing to
-   denoise. */
-#define DENOISE_SHARE 0.4
-
-/* Where it takes more of it than that, fewer windows save more error than they make: of a
-   tenth two fifths, for 3 to 6 % of error where passes are few. */
+/* Where denoising takes more of the time given than that, fewer windows save more error
+   than they make: of a tenth two fifths, for 3 to 6 % of error where passes are few. */
 #define COARSE_SHARE 0.1
 
 /* Of the time given so much goes into finding out how long writing takes, each time, */
@@ -148,17 +144,28 @@ static bool timing_is_due(const render *r, double elapsed)
     return r->passes_done < 2 || (elapsed > 0.5 * time && r->timed_at < 0.5 * time);
 }
 
+/* Noise is left where taking it out would end too late, by what is told first: as long as
+   it fits, it saves far more error than passes do in that time. */
+static void give_up_denoising(render *r, double seconds)
+{
+    stop_state now = render_state_now(r, 0.0);
+    if (!stop_at_once(&r->plan.how, &now))
+        return;
+    r->film.no_time = r->statistics.left_noisy = true;
+    r->after -= seconds;
+}
+
 void render_time_writing(render *r)
 {
     double time = r->plan.how.time, elapsed = clock_seconds() - r->start;
     if (!(time > 0.0) || !timing_is_due(r, elapsed))
         return;
-    double denoising = time_denoising(r);
-    r->film.no_time = r->film.no_time || denoising > DENOISE_SHARE * time;
-    r->statistics.left_noisy = r->film.no_time;
-    r->after = pace_write_seconds(&r->film, r->n_threads, r->paths, WRITE_SHARE * time);
-    if (!r->film.no_time)
-        r->after += denoising;
+    bool is_first = !(r->denoising > 0.0);
+    r->denoising = time_denoising(r);
+    r->after = r->denoising +
+               pace_write_seconds(&r->film, r->n_threads, r->paths, WRITE_SHARE * time);
+    if (is_first && r->denoising > 0.0)
+        give_up_denoising(r, r->denoising);
     r->timed_at = elapsed;
     r->timing = clock_seconds() - r->start - elapsed;
 }

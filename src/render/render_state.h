@@ -26,7 +26,8 @@ struct render {
     photon_supply supply; /* from there */
     void *kept_pass;      /* of a file of one pass: that of all; NULL: not made yet */
     char **paths;
-    double after;         /* s that writing to these takes */
+    double after;         /* s that denoising takes, and writing to these */
+    double denoising;     /* s of it for the first; 0: not known */
     double expected_pass; /* s that one takes, by a trial; 0: there was none */
     double timed_at;      /* s: when it was asked last */
     double timing;        /* s that asking took */

@@ -20,7 +20,7 @@ enum { LEAST_PASSES_FOR_NOISE = 4 };
 
 static double time_limit(const settings *how, const stop_state *now)
 {
-    return fmax(how->time - now->after, 0.0);
+    return how->time - now->after;
 }
 
 static double grace(const settings *how)
