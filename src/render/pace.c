@@ -97,7 +97,8 @@ static bool time_camera(trial_look *all, double budget, const cancel_flag *cance
     return ok;
 }
 
-/* The trial's plan: as few of all as tell what they cost. @return share of the photons */
+/* The trial's plan: as few of all as tell what they cost, and nothing gathered, for which
+   so few tell nothing. @return share of the photons */
 static double shrink(transport_plan *trial, double n_pixels)
 {
     settings *how = &trial->how;
@@ -105,6 +106,7 @@ static double shrink(transport_plan *trial, double n_pixels)
     double before = (double)settings_photons(how);
     how->spp = 1;
     how->planned_passes = TRIAL_PLANNED / n_pixels;
+    how->gather_indirect = false;
     photon_share_take(how, TRIAL_PHOTONS * threads / before);
     return (double)settings_photons(how) / before;
 }
