@@ -333,6 +333,7 @@ static bool gather_once(gather *g, const photon_map *map, estimate_scratch *scra
     else
         gather_within(g, map);
     flush(g);
+    scratch->n_weighed += g->n * (g->weigh == weigh_bsdf ? N_WAVELENGTHS : 1);
     return done;
 }
 

@@ -49,6 +49,8 @@ typedef struct estimate_scratch {
     point_hits hits;
     disc_crossings crossings;
     uint64_t n_queries, n_looks; /**< of maps so far, and short rays for edges */
+    uint64_t n_weighed;          /**< photons, once for each number that they were
+                                    weighed by: a kernel's, or a BSDF's wavelengths */
     looked_around looked;        /**< what queries that share their looks have seen */
     bool failed;      /**< memory was refused in a query, which then gave zero */
     spectrum *groups; /**< owned, big_alloc'ed; each query leaves there what the photons

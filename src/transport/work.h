@@ -32,12 +32,13 @@
  * and 1.0 in the other, where half of them gather. */
 #define PHOTON_RAYS 2.0
 
-/** What a short ray costs that looks for edges, in rays, with what is gathered again
- * where one is found: so the rays of passes that gather all, over those of passes by
- * paths, come closest to what both took of the processor (thirteen scenes, those of
- * bench/equal_time, 128 x 128: 0.77 to 1.29 times, 13 % in the mean square; 17 % with
- * 0.33 and 14 % with 0.15). */
-#define LOOK_RAYS 0.2
+/** What a short ray costs that looks for edges, in rays, and what as many photons do that
+ * are gathered as there are wavelengths, or one that a BSDF weighs at all of them: so the
+ * rays of passes that gather all, over those of passes by paths, come closest to what
+ * both took of the processor (seven scenes, those of bench/equal_time, 256 x 256, 1 to 16
+ * passes: 14 % in the mean square; 31 % by looks alone, of 0.2, which left wide discs
+ * of few passes at half their price). */
+#define LOOK_RAYS 0.1
 
 /** What is tried must be better than what is there by so much: variances are known within
  * a factor of two, and noise that is even disturbs least. With 1 in its place time x
