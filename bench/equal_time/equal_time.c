@@ -16,8 +16,13 @@
  * so many. One thread, its processor seconds, planning included. Errors are of R, G and B
  * cut at CUT, for single pixels of a lamp would outweigh the picture.
  *
- *   equal_time [--size WxH] [--seconds S] [--longest TIMES] [--seeds N] [--cache DIR]
- *              [--kind NAME]... SCENE...
+ * With `--by time` points are what one gets who gives the program so many seconds, half a
+ * one and then twice as many each time: the setting `time` and nothing else, all threads,
+ * seconds of the clock until the picture is there; as rendered is without denoising.
+ *
+ *   equal_time [--by passes|time] [--size WxH] [--seconds S] [--longest TIMES] [--seeds
+ * N]
+ *              [--cache DIR] [--kind NAME]... SCENE...
  */
 #include <math.h>
 #include <nephroid/nephroid.h>
@@ -40,6 +45,8 @@ enum { MOST_KINDS = 8, FIRST_SEED = 1 };
    second alone: with steps of 4 it promised pictures of three passes' time. */
 enum { FEW = 4, STEP = 2 };
 
+#define SHORTEST 0.5 /* s, by time */
+
 /* What is compared: a name, and the settings that make it, in their order. */
 typedef struct kind {
     const char *name, *settings;
@@ -59,15 +66,23 @@ typedef struct options {
     int width, height, seeds;
     double seconds; /* of a render, until which passes are added */
     double longest; /* of a reference, as many times that */
+    bool by_time;
     const char *cache;
     kind kinds[MOST_KINDS];
     int n_kinds; /* 0: all */
 } options;
 
-static double processor_seconds(void)
+/* How much is rendered: so many passes on one thread, or what all do in some time. */
+typedef struct amount {
+    int64_t passes;
+    double time; /* s; 0: passes */
+} amount;
+
+/* Of the processor, or of the clock where time is given. */
+static double seconds_so_far(const amount *of)
 {
     struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    clock_gettime(of->time > 0.0 ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
@@ -115,25 +130,36 @@ typedef struct seconds {
     double raw, shown;
 } seconds;
 
+static void set_amount(NephSettings *how, const NephScene *scene, const amount *of)
+{
+    char text[32];
+    if (of->time > 0.0) {
+        snprintf(text, sizeof text, "%.3f", of->time);
+        set(how, "time", text);
+        return;
+    }
+    set_number(how, "threads", 1);
+    set_number(how, "spp", 1);
+    set_number(how, "photons", n_pixels(scene) * 3 / 2);
+    set_number(how, "passes", of->passes);
+}
+
 /* One whole render. @return NULL: the algorithm refuses the scene */
-static NephImage *shot(const NephScene *scene, const kind *k, int64_t passes, int seed,
+static NephImage *shot(const NephScene *scene, const kind *k, amount of, int seed,
                        bool denoise, seconds *took)
 {
     GError *error = NULL;
     NephSettings *how = neph_settings_new();
-    set_number(how, "threads", 1);
-    set_number(how, "spp", 1);
-    set_number(how, "photons", n_pixels(scene) * 3 / 2);
-    set_number(how, "passes", passes);
+    set_amount(how, scene, &of);
     set_number(how, "seed", seed);
     set(how, "denoise", denoise ? "on" : "off");
     set_all(how, k->settings);
-    double start = processor_seconds();
+    double start = seconds_so_far(&of);
     NephRender *render = neph_render_new(scene, how, &error);
     bool done = render && neph_render_run(render, NULL, NULL, &error);
-    took->raw = processor_seconds() - start;
+    took->raw = seconds_so_far(&of) - start;
     NephImage *image = done ? neph_render_image(render, &error) : NULL;
-    took->shown = processor_seconds() - start;
+    took->shown = seconds_so_far(&of) - start;
     if (!image)
         fprintf(stderr, "equal_time: %s: %s\n", k->name, error->message);
     g_clear_error(&error);
@@ -225,7 +251,7 @@ static double caustic_error(const NephImage *image, const char *const names[3],
 static int64_t passes_for(const NephScene *scene, const kind *k, double wanted)
 {
     seconds few;
-    neph_image_free(shot(scene, k, FEW, 99, false, &few));
+    neph_image_free(shot(scene, k, (amount){FEW, 0.0}, 99, false, &few));
     return (int64_t)fmax(FEW * wanted / few.raw, 1.0);
 }
 
@@ -254,7 +280,8 @@ static NephImage *long_shot(const NephScene *scene, const char *name, const kind
     }
     fprintf(stderr, "equal_time: %s by %s for %.0f s\n", name, k->name, wanted);
     seconds spent;
-    NephImage *made = shot(scene, k, passes_for(scene, k, wanted), 4711, false, &spent);
+    const amount much = {passes_for(scene, k, wanted), 0.0};
+    NephImage *made = shot(scene, k, much, 4711, false, &spent);
     if (!made || !neph_image_write(made, path, 0.0f, &error))
         fail(path, error);
     return made;
@@ -271,34 +298,35 @@ static void print_point(const NephImage *image, const char *const names[3],
 }
 
 /* A point of a picture as rendered, or as it is shown. */
-static void print_one(const NephImage *image, const char *name, const kind *k,
-                      int64_t passes, int seed, const NephImage *reference, bool as_shown,
+static void print_one(const NephImage *image, const char *name, const kind *k, amount of,
+                      int seed, const NephImage *reference, bool as_shown,
                       const seconds *took)
 {
     bool denoised = as_shown && channel(image, shown[0]);
-    printf("%s\t%s%s\t%d\t%lld", name, k->name, as_shown ? "+" : "", seed,
-           (long long)passes);
+    long long much = of.time > 0.0 ? llrint(1e3 * of.time) : (long long)of.passes;
+    printf("%s\t%s%s\t%d\t%lld", name, k->name, as_shown ? "+" : "", seed, much);
     print_point(image, denoised ? shown : beauty, reference,
                 as_shown ? took->shown : took->raw);
 }
 
-/* Both points. @return seconds of the first; negative: the scene is refused */
-static double measure(const NephScene *scene, const char *name, const kind *k,
-                      int64_t passes, int seed, const NephImage *reference)
+/* Both points, of one render or of two that go another way.
+   @return seconds of the first; negative: the scene is refused */
+static double measure(const NephScene *scene, const char *name, const kind *k, amount of,
+                      int seed, const NephImage *reference)
 {
     seconds raw, shown_too;
-    bool plans = strstr(k->settings, "integrator=auto");
-    NephImage *image = shot(scene, k, passes, seed, !plans, &raw);
+    bool apart = of.time > 0.0 || strstr(k->settings, "integrator=auto");
+    NephImage *image = shot(scene, k, of, seed, !apart, &raw);
     if (!image)
         return -1.0;
-    print_one(image, name, k, passes, seed, reference, false, &raw);
-    if (plans) {
+    print_one(image, name, k, of, seed, reference, false, &raw);
+    if (apart) {
         neph_image_free(image);
-        image = shot(scene, k, passes, seed, true, &shown_too);
+        image = shot(scene, k, of, seed, true, &shown_too);
         if (!image)
             return -1.0;
     }
-    print_one(image, name, k, passes, seed, reference, true, plans ? &shown_too : &raw);
+    print_one(image, name, k, of, seed, reference, true, apart ? &shown_too : &raw);
     neph_image_free(image);
     return raw.raw;
 }
@@ -308,10 +336,13 @@ static void measure_kind(const NephScene *scene, const char *name, const kind *k
 {
     for (int seed = FIRST_SEED; seed < FIRST_SEED + o->seeds; seed++) {
         double took = 0.0;
-        for (int64_t passes = 1; took * STEP < 1.5 * o->seconds; passes *= STEP) {
-            took = measure(scene, name, k, passes, seed, reference);
+        amount of = {1, o->by_time ? SHORTEST : 0.0};
+        while (o->by_time ? of.time <= o->seconds : took * STEP < 1.5 * o->seconds) {
+            took = measure(scene, name, k, of, seed, reference);
             if (took < 0.0)
                 return;
+            of.passes *= STEP;
+            of.time *= STEP;
         }
     }
 }
@@ -356,7 +387,7 @@ static void measure_scene(const char *path, const options *o)
     if (!scene || !neph_scene_resize(scene, o->width, o->height, &error))
         fail(path, error);
     seconds spent;
-    NephImage *tried = shot(scene, &all_kinds[VCM], 1, 1, false, &spent);
+    NephImage *tried = shot(scene, &all_kinds[VCM], (amount){1, 0.0}, 1, false, &spent);
     bool media = !tried;
     neph_image_free(tried);
     /* vcm has the least noise where anything is hard; its bias goes with the passes. */
@@ -376,6 +407,10 @@ static void measure_scene(const char *path, const options *o)
 
 static bool read_option(const char *name, const char *value, options *o)
 {
+    if (strcmp(name, "--by") == 0) {
+        o->by_time = strcmp(value, "time") == 0;
+        return o->by_time || strcmp(value, "passes") == 0;
+    }
     if (strcmp(name, "--size") == 0)
         return sscanf(value, "%dx%d", &o->width, &o->height) == 2;
     if (strcmp(name, "--seconds") == 0)
@@ -402,9 +437,9 @@ int main(int argc, char **argv)
     int i = 1;
     for (; i + 1 < argc && strncmp(argv[i], "--", 2) == 0; i += 2)
         if (!read_option(argv[i], argv[i + 1], &o))
-            fail("usage: equal_time [--size WxH] [--seconds S] [--longest TIMES] "
-                 "[--seeds N] [--cache DIR] [--kind 'NAME [SETTING=VALUE...]']... "
-                 "SCENE...",
+            fail("usage: equal_time [--by passes|time] [--size WxH] [--seconds S] "
+                 "[--longest TIMES] [--seeds N] [--cache DIR] "
+                 "[--kind 'NAME [SETTING=VALUE...]']... SCENE...",
                  NULL);
     bool all = o.n_kinds == 0;
     for (size_t k = 0; all && k < G_N_ELEMENTS(all_kinds); k++)

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """What each algorithm needs to come as near to the truth, against the default's time.
 
-usage: bench/equal_time/equal_time.py [--quick | --small] [--build DIR] [--report] [SCENE...]
+usage: bench/equal_time/equal_time.py [--quick | --small | --time] [--build DIR] [--report]
+       [SCENE...]
 
 Runs equal_time (equal_time.c) on the scenes beside it and those of ../shared, and writes
 points.tsv, error.svg (error against processor seconds, log-log) and table.txt to
 DIR/equal_time, where references are kept too: `--quick` takes some minutes, `--small` (all scenes
 at 128 x 128, three seeds) three quarters of an hour of two processors, all some hours.
-`--report` puts table and curves into docs/report too, `--points FILE` reads what was measured
-before. Each algorithm stands there twice: as rendered, and without its noise.
+`--time` asks for what there is after half a second to four of the clock, all threads (three
+quarters of an hour of a quiet machine, and references). `--report` puts table and curves into
+docs/report too, `--points FILE` reads what was measured before. Each algorithm stands there twice: as rendered, and without its noise.
 """
 import argparse
 import collections
@@ -27,6 +29,7 @@ FLIPS = (0.2, 0.1, 0.06)
 QUICK = ["cornell", "cornell-glass", "ball", "window"]
 QUICKLY = "--size 64x64 --seconds 1.5 --longest 12 --seeds 3".split()
 SMALL_ONES = "--size 128x128 --seconds 3 --longest 12 --seeds 3".split()
+TIMED = "--by time --seconds 4 --longest 30 --seeds 3".split()
 ALL = QUICK + ["glossy", "textured", "lamps", "water", "prism", "fog"]
 ELSEWHERE = [ROOT / "scenes/ring/ring.pbrt", SHARED / "bitterli/coffee/scene-v4.pbrt",
              SHARED / "bitterli/veach-mis/scene-v4.pbrt"]
@@ -172,6 +175,7 @@ def main():
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     arguments.add_argument("--quick", action="store_true")
     arguments.add_argument("--small", action="store_true")
+    arguments.add_argument("--time", action="store_true")
     arguments.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
     arguments.add_argument("--report", action="store_true")
     arguments.add_argument("--points", type=pathlib.Path, help="measured before")
@@ -181,7 +185,8 @@ def main():
                               for s in (QUICK if asked.quick else ALL)]
     if not asked.scenes and not asked.quick:
         scenes += [s for s in ELSEWHERE if s.exists()]
-    options = QUICKLY if asked.quick else SMALL_ONES if asked.small else []
+    options = (QUICKLY if asked.quick else SMALL_ONES if asked.small else
+               TIMED if asked.time else [])
     if not asked.points:
         build(asked.build)
     points = asked.points or measure(asked.build, scenes, options)
@@ -191,8 +196,9 @@ def main():
     (points.parent / "table.txt").write_text(text + "\n")
     (points.parent / "error.svg").write_text(plot(curves))
     if asked.report:
-        (REPORT / "equal_time.txt").write_text(text + "\n")
-        (REPORT / "figures/equal_time.svg").write_text(plot(curves))
+        name = "equal_time_by_time" if asked.time else "equal_time"
+        (REPORT / f"{name}.txt").write_text(text + "\n")
+        (REPORT / f"figures/{name}.svg").write_text(plot(curves))
 
 
 if __name__ == "__main__":
