@@ -20,9 +20,8 @@
  * one and then twice as many each time: the setting `time` and nothing else, all threads,
  * seconds of the clock until the picture is there; as rendered is without denoising.
  *
- *   equal_time [--by passes|time] [--size WxH] [--seconds S] [--longest TIMES] [--seeds
- * N]
- *              [--cache DIR] [--kind NAME]... SCENE...
+ *   equal_time [--by passes|time] [--size WxH] [--seconds S] [--longest TIMES]
+ *              [--seeds N] [--cache DIR] [--kind NAME]... SCENE...
  */
 #include <math.h>
 #include <nephroid/nephroid.h>

@@ -5,12 +5,13 @@ usage: bench/equal_time/equal_time.py [--quick | --small | --time] [--build DIR]
        [SCENE...]
 
 Runs equal_time (equal_time.c) on the scenes beside it and those of ../shared, and writes
-points.tsv, error.svg (error against processor seconds, log-log) and table.txt to
-DIR/equal_time, where references are kept too: `--quick` takes some minutes, `--small` (all scenes
-at 128 x 128, three seeds) three quarters of an hour of two processors, all some hours.
-`--time` asks for what there is after half a second to four of the clock, all threads (three
-quarters of an hour of a quiet machine, and references). `--report` puts table and curves into
-docs/report too, `--points FILE` reads what was measured before. Each algorithm stands there twice: as rendered, and without its noise.
+points.tsv, error.svg (error against seconds, log-log) and table.txt to DIR/equal_time, where
+references are kept too: `--quick` takes some minutes, `--small` (all scenes at 128 x 128, three
+seeds) three quarters of an hour of two processors, all some hours. Seconds are the processor's;
+`--time` asks for what all threads have after half a second to four of the clock (three quarters
+of an hour of a quiet machine, and references). `--report` puts table and curves into docs/report
+too, `--points FILE` reads what was measured before. Each algorithm stands there twice: as
+rendered, and without its noise.
 """
 import argparse
 import collections

@@ -19,8 +19,7 @@
 /* Of the time given so much goes into finding out how long writing takes, each time, */
 #define WRITE_SHARE 0.01
 
-/* and of that since the last time so much at most into asking for all that comes after.
- */
+/* and of what has passed since so much at most into asking for all that comes after. */
 #define TIMING_SHARE 0.05
 
 /* Nothing is done before it is. */
