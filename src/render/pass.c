@@ -22,6 +22,9 @@
 /* and of what has passed since so much at most into asking for all that comes after. */
 #define TIMING_SHARE 0.05
 
+/* Denoising for which two passes left no time may end so much later than others do, s. */
+#define LATE_DENOISING 0.2
+
 /* Nothing is done before it is. */
 #define LARGEST_FRACTION 0.99
 
@@ -110,12 +113,13 @@ static void add_counts(render_statistics *st, const transport_counts *counts)
 static double time_windows(render *r, bool coarse)
 {
     r->film.coarse = coarse;
-    return film_denoise_seconds(&r->film, r->n_threads, r->is_dealt);
+    return r->prepared ? film_denoise_seconds(&r->film, r->n_threads, r->is_dealt)
+                       : film_denoise_seconds_ahead(&r->film, r->plan.view, r->n_threads);
 }
 
-/* How long denoising will take, s: in fewer windows where time is short. Those are tried
-   first, for where even they take long all would. */
-static double time_denoising(render *r)
+/* In fewer windows where time is short. Those are tried first, for where even they take
+   long all would. */
+double render_time_denoising(render *r)
 {
     settings *how = &r->plan.how;
     if (how->denoise_windows != WINDOWS_AUTO)
@@ -143,11 +147,12 @@ static bool timing_is_due(const render *r, double elapsed)
     return r->passes_done < 2 || (elapsed > 0.5 * time && r->timed_at < 0.5 * time);
 }
 
-/* Noise is left where taking it out would end too late, by what is told first: as long as
-   it fits, it saves far more error than passes do in that time. */
+/* Noise is left where taking it out would end far too late, by what is told first: it
+   saves far more error than passes do in that time, and this picture counted on it. */
 static void give_up_denoising(render *r, double seconds)
 {
     stop_state now = render_state_now(r, 0.0);
+    now.elapsed -= LATE_DENOISING;
     if (!stop_at_once(&r->plan.how, &now))
         return;
     r->film.no_time = r->statistics.left_noisy = true;
@@ -160,7 +165,7 @@ void render_time_writing(render *r)
     if (!(time > 0.0) || !timing_is_due(r, elapsed))
         return;
     bool is_first = !(r->denoising > 0.0);
-    r->denoising = time_denoising(r);
+    r->denoising = r->prepared ? render_time_denoising(r) : 0.0;
     r->after = r->denoising +
                pace_write_seconds(&r->film, r->n_threads, r->paths, WRITE_SHARE * time);
     if (is_first && r->denoising > 0.0)

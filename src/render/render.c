@@ -48,20 +48,35 @@ void render_cancel(render *r)
 
 /* ---- All passes ---- */
 
+/* Passes that fit into the time left beside denoising; where not even two do, the picture
+   is planned as one whose noise stays. */
+static void choose_pace(render *r, const pace_costs *costs)
+{
+    settings how = r->asked;
+    double n_pixels = (double)r->film.width * (double)r->film.height;
+    double denoising = render_time_denoising(r);
+    double left = how.time - r->after - (clock_seconds() - r->start);
+    r->plan.how = pace_choose(&how, costs, n_pixels, left - denoising);
+    r->expected_pass = pace_pass_seconds(costs, &how, &r->plan.how, n_pixels);
+    if (!how.denoise || left - denoising + stop_grace(how.time) >= 2.0 * r->expected_pass)
+        return;
+    how.denoise = false;
+    r->film.no_time = r->statistics.left_noisy = true;
+    r->plan.how = pace_choose(&how, costs, n_pixels, left);
+    r->expected_pass = pace_pass_seconds(costs, &how, &r->plan.how, n_pixels);
+}
+
 /* Where there is little time, passes are made small enough for it. */
 static bool set_pace(render *r, GError **error)
 {
     const settings *how = &r->asked;
     pace_costs costs;
-    double n_pixels = (double)r->film.width * (double)r->film.height;
     if (r->paced || !(how->time > 0.0) || how->passes > 0)
         return true;
     double left = how->time - r->after - (clock_seconds() - r->start);
     if (!pace_measure(&r->plan, &r->film, left, &r->cancel, &costs, error))
         return false;
-    left = how->time - r->after - (clock_seconds() - r->start);
-    r->plan.how = pace_choose(how, &costs, n_pixels, left);
-    r->expected_pass = pace_pass_seconds(&costs, how, &r->plan.how, n_pixels);
+    choose_pace(r, &costs);
     return r->paced = true;
 }
 

@@ -66,6 +66,9 @@ void render_tell(render *r, double pass_fraction);
 void render_on_progress(void *data);
 /** @brief Finds out how long writing takes, if that is due. */
 void render_time_writing(render *r);
+/** @brief How long denoising will take, s; before there are passes by what is made up. */
+double render_time_denoising(render *r);
+
 /* ---- kept/render_photons.c ---- */
 
 /** @brief Begins a pass: with its own photons, or those of the file. */

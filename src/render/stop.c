@@ -23,9 +23,9 @@ static double time_limit(const settings *how, const stop_state *now)
     return how->time - now->after;
 }
 
-static double grace(const settings *how)
+double stop_grace(double time)
 {
-    return LATE_SHARE * how->time + LATE_SECONDS;
+    return LATE_SHARE * time + LATE_SECONDS;
 }
 
 /* A pass that is expected to end too late is begun only if the time left is worth it, and
@@ -34,12 +34,13 @@ static bool time_is_up(const settings *how, const stop_state *now)
 {
     double left = time_limit(how, now) - now->elapsed;
     double some = now->last_photons + (now->last_pass - now->last_photons) / SOME_CELLS;
-    return left <= 0.0 || (left < now->last_pass && left < fmax(grace(how), some));
+    return left <= 0.0 ||
+           (left < now->last_pass && left < fmax(stop_grace(how->time), some));
 }
 
 bool stop_at_once(const settings *how, const stop_state *now)
 {
-    return how->time > 0.0 && now->elapsed > time_limit(how, now) + grace(how);
+    return how->time > 0.0 && now->elapsed > time_limit(how, now) + stop_grace(how->time);
 }
 
 render_stop stop_decide(const settings *how, const stop_state *now)

@@ -19,6 +19,7 @@ typedef struct stop_state {
 
 /** @brief Why to stop now, or RENDER_GOES_ON. One pass is always rendered. */
 render_stop stop_decide(const settings *how, const stop_state *now);
+
 /** @brief Where a pass is that is rendered cell by cell (film_cell). */
 typedef struct stop_part {
     int done, wanted; /**< cells */
@@ -31,5 +32,7 @@ typedef struct stop_part {
 int stop_next_cells(const settings *how, const stop_state *now, const stop_part *part);
 /** @brief Whether the time is over, so that a pass under way is to be given up. */
 bool stop_at_once(const settings *how, const stop_state *now);
+/** @brief How much later than asked for work under way may end, s. */
+double stop_grace(double time);
 /** @brief How much is done, 0..1, by the rule that will stop first. */
 double stop_fraction(const settings *how, const stop_state *now);

@@ -241,6 +241,46 @@ static void test_no_time(void)
     }
 }
 
+/* Where that is known before the first pass, all is planned for a picture whose noise
+   stays, and who repeats it is told so. */
+static void test_no_time_ahead(void)
+{
+    g_autoptr(view) v = view_of(HALL);
+    for (int late = 0; late <= 1; late++) {
+        g_autoptr(render) r = render_of(v, "denoise=on spp=1 time=9 photons=500");
+        render_start_clock(r);
+        r->start -= late ? 20.0 : 0.0;
+        g_assert_true(render_prepare(r, NULL));
+        g_assert_true(r->plan.how.denoise == !late);
+        g_assert_true(render_get_statistics(r).left_noisy == late);
+        g_assert_true(r->film.no_time == late);
+    }
+}
+
+/* The least of three, for other work may come between. */
+static double least_seconds(const film *f, const view *v)
+{
+    double least = (double)INFINITY;
+    for (int i = 0; i < 3; i++)
+        least = fmin(least, v ? film_denoise_seconds_ahead(f, v, 1)
+                              : film_denoise_seconds(f, 1, false));
+    return least;
+}
+
+/* How long it takes is told before there is a picture about as well as by one. */
+static void test_seconds(void)
+{
+    g_autoptr(view) v = view_of(HALL);
+    g_autoptr(render) r = render_of(v, "denoise=on spp=1 passes=2 photons=500");
+    double ahead = least_seconds(&r->film, v);
+    g_assert_cmpfloat(least_seconds(&r->film, NULL), ==, 0.0);
+    g_assert_true(render_run(r, NULL, NULL, NULL));
+    double told = least_seconds(&r->film, NULL);
+    g_test_message("%g s ahead, %g s by the picture", ahead, told);
+    g_assert_cmpfloat(ahead, >, told / 4.0);
+    g_assert_cmpfloat(ahead, <, told * 4.0);
+}
+
 /* A scene in millimetres, with a sensor that is less sensitive, looks the same. */
 static void test_units(void)
 {
@@ -340,6 +380,8 @@ int main(int argc, char **argv)
     g_test_add_func("/film-denoise/one-pass", test_one_pass);
     g_test_add_func("/film-denoise/part-of-a-pass", test_part_of_a_pass);
     g_test_add_func("/film-denoise/no-time", test_no_time);
+    g_test_add_func("/film-denoise/no-time-ahead", test_no_time_ahead);
+    g_test_add_func("/film-denoise/seconds", test_seconds);
     g_test_add_func("/film-denoise/units", test_units);
     g_test_add_func("/film-denoise/files", test_files);
     g_test_add_func("/film-denoise/edges-of-lights", test_edges_of_lights);

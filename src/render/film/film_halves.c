@@ -1,11 +1,10 @@
 #include "render/film/film_halves.h"
 
-#include "base/clock.h"
 #include "base/memory.h"
 #include "image/denoise/denoise.h"
 #include "render/film/film_lights.h"
 
-enum { LUMINANCE = 1 /* of X, Y, Z */, TRIAL_ROWS = 24 };
+enum { LUMINANCE = 1 /* of X, Y, Z */ };
 
 static size_t n_pixels(const film *f)
 {
@@ -454,31 +453,6 @@ float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
     float *out = denoise(f, &size, error);
     memory_count(f->denoise_size);
     return out;
-}
-
-/* Whether there is something to try it on, though it may all be one half. */
-static bool can_try(const film *f)
-{
-    return f->halves && f->n_passes > 0 && !f->no_time;
-}
-
-double film_denoise_seconds(const film *f, unsigned threads, bool gets_more)
-{
-    film part = *f;
-    if (!film_can_denoise(f) && !(gets_more && can_try(f)))
-        return 0.0;
-    part.height = MIN(TRIAL_ROWS, f->height);
-    part.denoise_size = 0;
-    part.n_cells = 0;
-    size_t first = (size_t)((f->height - part.height) / 2) * (size_t)f->width;
-    part.pixels += first;
-    part.halves += first;
-    double start = clock_seconds();
-    memory_release(f->denoise_size);
-    big_free(film_denoise(&part, 1, NULL, NULL));
-    memory_count(f->denoise_size);
-    double took = clock_seconds() - start;
-    return took * f->height / part.height / (double)threads;
 }
 
 size_t film_denoise_bytes(int width, int height)

@@ -67,6 +67,8 @@ float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
  * @param gets_more passes of other processes are to come, so that it will be possible
  * though it is not now */
 double film_denoise_seconds(const film *f, unsigned threads, bool gets_more);
+/** @brief The same before there is a picture, by noise that is made up. */
+double film_denoise_seconds_ahead(const film *f, const view *v, unsigned threads);
 /** @brief Bytes a pixel of what guides the denoiser in the pass under way. */
 size_t film_guide_bytes(void);
 

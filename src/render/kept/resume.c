@@ -95,6 +95,7 @@ static void take_statistics(render *r, const render_statistics *then)
     r->statistics = *then;
     r->statistics.passes_wanted = wanted;
     r->statistics.can_look = true;
+    r->statistics.left_noisy = false;
     r->passes_done = (uint32_t)then->passes;
     r->earlier = then->time_total;
 }

@@ -1,0 +1,84 @@
+/*
+ * How long it takes to denoise a film: tries a few rows.
+ */
+#include "base/clock.h"
+#include "base/memory.h"
+#include "render/film/film_halves.h"
+
+enum { TRIAL_ROWS = 24, TRIAL_COLUMNS = 128 };
+
+/* By what a part of it takes on one thread. */
+static double time_part(const film *f, const film *part, unsigned threads)
+{
+    double pixels = (double)f->width * (double)f->height;
+    double start = clock_seconds();
+    big_free(film_denoise(part, 1, NULL, NULL));
+    double took = clock_seconds() - start;
+    return took * pixels / ((double)part->width * (double)part->height) / (double)threads;
+}
+
+/* ---- Of a picture ---- */
+
+/* Whether there is something to try it on, though it may all be one half. */
+static bool can_try(const film *f)
+{
+    return f->halves && f->n_passes > 0 && !f->no_time;
+}
+
+double film_denoise_seconds(const film *f, unsigned threads, bool gets_more)
+{
+    film part = *f;
+    if (!film_can_denoise(f) && !(gets_more && can_try(f)))
+        return 0.0;
+    part.height = MIN(TRIAL_ROWS, f->height);
+    part.denoise_size = 0;
+    part.n_cells = 0;
+    size_t first = (size_t)((f->height - part.height) / 2) * (size_t)f->width;
+    part.pixels += first;
+    part.halves += first;
+    memory_release(f->denoise_size);
+    double took = time_part(f, &part, threads);
+    memory_count(f->denoise_size);
+    return took;
+}
+
+/* ---- Of none yet ---- */
+
+/* A pass over walls whose light is noise, direct and indirect, and not by mirrors. */
+static void put_noise(film *f)
+{
+    for (int i = 0; i < f->width * f->height; i++) {
+        sampler random = sampler_make((uint64_t)f->n_passes, (uint64_t)i);
+        film_sum sum = {.weight = 1.0, .surface_weight = 1.0};
+        guide_sum guides = {.weight = 1.0f};
+        for (int k = 0; k < 3; k++) {
+            sum.color[LAYER_DIRECT][k] = (double)sampler_1d(&random);
+            sum.color[LAYER_INDIRECT][k] = (double)sampler_1d(&random);
+            sum.color[N_LAYERS][k] = (double)(guides.albedo[k] = sampler_1d(&random));
+            sum.normal[k] = (double)(guides.normal[k] = sampler_1d(&random));
+        }
+        sum.depth = (double)(guides.depth = sampler_1d(&random));
+        film_put(f, i % f->width, i / f->width, &sum);
+        halves_put(f, i % f->width, i / f->width, &guides);
+    }
+    film_end_pass(f, 1);
+}
+
+double film_denoise_seconds_ahead(const film *f, const view *v, unsigned threads)
+{
+    view few = *v;
+    film noise = {0};
+    double took = 0.0;
+    few.film.width = MIN(TRIAL_COLUMNS, f->width);
+    few.film.height = MIN(TRIAL_ROWS, f->height);
+    few.film.crop[0] = few.film.crop[2] = 0.0f;
+    few.film.crop[1] = few.film.crop[3] = 1.0f;
+    if (f->halves && film_open(&noise, &few, true, NULL)) {
+        noise.coarse = f->coarse;
+        put_noise(&noise);
+        put_noise(&noise);
+        took = time_part(f, &noise, threads);
+    }
+    film_clear(&noise);
+    return took;
+}
