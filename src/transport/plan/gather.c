@@ -449,30 +449,34 @@ static double bias_of_passes(double alpha, double passes)
 }
 
 /* Noise is taken out of two passes or more. */
-static double weight_of_blotches(const transport_plan *plan)
+static bool is_filtered(const transport_plan *plan, double passes)
 {
-    bool filtered = plan->how.denoise && settings_planned_passes(&plan->how) >= 2.0;
-    return filtered ? BLOTCHES : 1.0;
+    return plan->how.denoise && passes >= 2.0;
 }
 
-/* Squared error of the picture times the samples of a pixel: comparable to the variance
-   of one of them. */
-static double error_of(const transport_plan *plan, const gather_errors *e)
+/* Squared error of the picture times the samples of a pixel, comparable to the variance
+   of one of them, where maps are left time for so many passes. */
+static double error_of(const transport_plan *plan, const gather_errors *e, double in_time)
 {
     double passes = settings_planned_passes(&plan->how), alpha = plan->how.alpha;
     double bias = bias_of_passes(alpha, passes);
     double alike =
         e->photons * variance_of_passes(alpha, passes) + e->bias2 * bias * bias;
-    return e->samples + weight_of_blotches(plan) * passes * (double)plan->how.spp * alike;
+    double all = e->samples + passes * (double)plan->how.spp * alike;
+    if (!is_filtered(plan, passes))
+        return all;
+    return is_filtered(plan, in_time) ? all + (BLOTCHES - 1.0) * (all - e->samples)
+                                      : BLOTCHES * all;
 }
 
 static bool gathering_pays(transport_plan *plan, const gather_trial *t)
 {
-    double per_sample = settings_planned_passes(&plan->how) / plan_samples(plan);
+    double passes = settings_planned_passes(&plan->how);
+    double per_sample = passes / plan_samples(plan);
     const gather_errors e = errors_of(t);
     plan_cost without = {e.path, t->path_rays + plan->photon_rays};
-    plan_cost with = {error_of(plan, &e),
-                      rays_of_sample(plan, t) + t->photon_rays * per_sample};
+    plan_cost with = {0.0, rays_of_sample(plan, t) + t->photon_rays * per_sample};
+    with.variance = error_of(plan, &e, passes * without.rays / with.rays);
     bool pays = with.variance * with.rays < without.variance * without.rays;
     plan_note(plan, "gathered indirect light", without, with, pays);
     return pays;
