@@ -48,22 +48,28 @@ void render_cancel(render *r)
 
 /* ---- All passes ---- */
 
+static void take_pace(render *r, const settings *how, const pace_costs *costs,
+                      double left)
+{
+    double n_pixels = (double)r->film.width * (double)r->film.height;
+    r->plan.how = pace_choose(how, costs, n_pixels, left);
+    r->expected_pass = pace_pass_seconds(costs, how, &r->plan.how, n_pixels);
+}
+
 /* Passes that fit into the time left beside denoising; where not even two do, the picture
    is planned as one whose noise stays. */
 static void choose_pace(render *r, const pace_costs *costs)
 {
     settings how = r->asked;
-    double n_pixels = (double)r->film.width * (double)r->film.height;
     double denoising = render_time_denoising(r);
     double left = how.time - r->after - (clock_seconds() - r->start);
-    r->plan.how = pace_choose(&how, costs, n_pixels, left - denoising);
-    r->expected_pass = pace_pass_seconds(costs, &how, &r->plan.how, n_pixels);
-    if (!how.denoise || left - denoising + stop_grace(how.time) >= 2.0 * r->expected_pass)
+    take_pace(r, &how, costs, left - denoising);
+    double late = 2.0 * r->expected_pass + denoising - left;
+    if (!how.denoise || late <= stop_grace(how.time))
         return;
     how.denoise = false;
     r->film.no_time = r->statistics.left_noisy = true;
-    r->plan.how = pace_choose(&how, costs, n_pixels, left);
-    r->expected_pass = pace_pass_seconds(costs, &how, &r->plan.how, n_pixels);
+    take_pace(r, &how, costs, left);
 }
 
 /* Where there is little time, passes are made small enough for it. */

@@ -63,13 +63,18 @@ static void plan_of(const view *v, const char *words, int seed, render_plan *out
     g_assert_true(render_get_plan(r, out, NULL));
 }
 
-/* Squared error of gathering, as its trial tells. */
-static double told_error(const render_plan *plan)
+static const plan_trial *trial_of(const render_plan *plan)
 {
     for (int i = 0; i < plan->n_trials; i++)
         if (strcmp(plan->trials[i].what, "gathered indirect light") == 0)
-            return plan->trials[i].with.variance;
+            return &plan->trials[i];
     g_assert_not_reached();
+}
+
+/* Squared error of gathering, as its trial tells. */
+static double told_error(const render_plan *plan)
+{
+    return trial_of(plan)->with.variance;
 }
 
 /* A lamp that its bulb mirrors is seen by one path of a pair: that says nothing of what
@@ -125,6 +130,29 @@ static void test_told(void)
         g_test_message("seed %d: told %g, noise %g", seed, told, noise);
         g_assert_cmpfloat(told, >, noise);
         g_assert_cmpfloat(told, <, 2.5 * noise);
+    }
+}
+
+/* Noise is taken out of two passes: where those of maps would take longer than all that
+   are planned by paths, it stays, and all of it counts as blotches do. */
+static void test_in_time(void)
+{
+    g_autoptr(view) v = view_of(ROOM_OF(128));
+    const double blotches = 24.0;
+    for (int i = 0; i < 2; i++) {
+        render_plan shown, raw;
+        g_autofree char *words =
+            g_strdup_printf("integrator=auto spp=1 passes=%d", i == 0 ? 2 : 64);
+        g_autofree char *denoised = g_strconcat(words, " denoise=on", NULL);
+        plan_of(v, words, 1, &raw);
+        plan_of(v, denoised, 1, &shown);
+        double weight = told_error(&shown) / told_error(&raw);
+        double cost = trial_of(&raw)->with.rays / trial_of(&raw)->without.rays;
+        g_test_message("%s: %g times the rays, %g times the error", words, cost, weight);
+        g_assert_cmpfloat(cost, >, 1.0);
+        g_assert_cmpfloat(cost, <, 32.0);
+        g_assert_true((fabs(weight - blotches) < 1e-6) == (i == 0));
+        g_assert_cmpfloat(weight, <, blotches + 1e-6);
     }
 }
 
@@ -224,6 +252,7 @@ int main(int argc, char **argv)
         g_test_add_data_func(path, &choices[i], test_chosen);
     }
     g_test_add_func("/gather/told", test_told);
+    g_test_add_func("/gather/in-time", test_in_time);
     g_test_add_func("/gather/bulb", test_bulb);
     g_test_add_func("/gather/behind-glass", test_behind_glass);
     g_test_add_data_func("/gather/pays/room", ROOM_OF(128), test_pays);

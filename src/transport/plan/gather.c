@@ -455,28 +455,34 @@ static bool is_filtered(const transport_plan *plan, double passes)
 }
 
 /* Squared error of the picture times the samples of a pixel, comparable to the variance
-   of one of them, where maps are left time for so many passes. */
+   of one of them. Where there is time to take noise out of so many passes of paths, but
+   not of those of maps, the grain of these stays, too. */
 static double error_of(const transport_plan *plan, const gather_errors *e, double in_time)
 {
     double passes = settings_planned_passes(&plan->how), alpha = plan->how.alpha;
     double bias = bias_of_passes(alpha, passes);
     double alike =
         e->photons * variance_of_passes(alpha, passes) + e->bias2 * bias * bias;
-    double all = e->samples + passes * (double)plan->how.spp * alike;
-    if (!is_filtered(plan, passes))
-        return all;
-    return is_filtered(plan, in_time) ? all + (BLOTCHES - 1.0) * (all - e->samples)
-                                      : BLOTCHES * all;
+    bool filtered = is_filtered(plan, passes);
+    double grain_weight = filtered && !is_filtered(plan, in_time) ? BLOTCHES : 1.0;
+    double weight = filtered ? BLOTCHES : 1.0;
+    return grain_weight * e->samples + weight * passes * (double)plan->how.spp * alike;
+}
+
+/* @return by maps; time is that of the passes planned, by paths */
+static plan_cost cost_of_gathering(const transport_plan *plan, const gather_trial *t,
+                                   const gather_errors *e, double path_rays)
+{
+    double passes = settings_planned_passes(&plan->how);
+    double rays = rays_of_sample(plan, t) + t->photon_rays * passes / plan_samples(plan);
+    return (plan_cost){error_of(plan, e, passes * path_rays / rays), rays};
 }
 
 static bool gathering_pays(transport_plan *plan, const gather_trial *t)
 {
-    double passes = settings_planned_passes(&plan->how);
-    double per_sample = passes / plan_samples(plan);
     const gather_errors e = errors_of(t);
     plan_cost without = {e.path, t->path_rays + plan->photon_rays};
-    plan_cost with = {0.0, rays_of_sample(plan, t) + t->photon_rays * per_sample};
-    with.variance = error_of(plan, &e, passes * without.rays / with.rays);
+    plan_cost with = cost_of_gathering(plan, t, &e, without.rays);
     bool pays = with.variance * with.rays < without.variance * without.rays;
     plan_note(plan, "gathered indirect light", without, with, pays);
     return pays;
