@@ -8,7 +8,7 @@
 #pragma once
 
 #include "math/vec.h"
-#include "photon/map/lanes.h"
+#include "math/lanes.h"
 
 /** Steps from the centre of the square to its edge; the L1 norm of the points. */
 enum { OCTAHEDRON_STEPS = 16383 }; /* math: what 15 bits of an axis hold */

@@ -14,7 +14,7 @@
  */
 #pragma once
 
-#include "photon/map/lanes.h"
+#include "math/lanes.h"
 #include "settings/settings.h"
 
 /** @brief A kernel with its parameter. */

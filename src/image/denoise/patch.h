@@ -11,7 +11,6 @@
  */
 #pragma once
 
-#include "image/denoise/lanes.h"
 #include "image/denoise/plane.h"
 
 enum { MOST_CHANNELS = 3, PATCH_PIXELS = (2 * PATCH + 1) * (2 * PATCH + 1) };
@@ -28,10 +27,14 @@ typedef struct patch_source {
 /** @brief d for BLOCK pixels from (x, y) on and those at (dx, dy) from them. */
 void patch_distances(const patch_source *s, int x, int y, int dx, int dy, float *d);
 
+/** @brief The same for n rows of such pixels from y on, at most ROWS_AT_ONCE. */
+void patch_distances_of_rows(const patch_source *s, int x, int y, int n, int dx, int dy,
+                             float (*d)[BLOCK]);
+
 /** @brief About exp(-d), zero from 8 on. */
-static inline floats8 patch_weight(floats8 d)
+static inline lane_floats patch_weight(lane_floats d)
 {
-    floats8 t = max8(fill8(1.0f) - d * 0.125f, fill8(0.0f));
+    lane_floats t = max_lanes(fill_lanes(1.0f) - d * 0.125f, fill_lanes(0.0f));
     t *= t;
     t *= t;
     return t * t;

@@ -18,9 +18,9 @@ float *plane_new(const grid *g, GError **error)
 /* Where in 0..n-1 the mirrored picture has what lies at i. */
 static int mirrored(int i, int n)
 {
-    int period = 2 * n;
-    int at = (i % period + period) % period;
-    return at < n ? at : period - 1 - at;
+    while (i < 0 || i >= n)
+        i = i < 0 ? -1 - i : 2 * n - 1 - i;
+    return i;
 }
 
 void plane_mirror(const grid *g, float *plane)
@@ -67,23 +67,28 @@ typedef struct box_loop {
     float *to;
 } box_loop;
 
+/* Of n vectors so far from one another. */
+static lane_floats sum_lanes(const float *first, int n, size_t step)
+{
+    lane_floats sum = {0};
+    for (int i = 0; i < n; i++)
+        sum += load_lanes(first + (size_t)i * step);
+    return sum;
+}
+
 static void box_row(int y, void *data)
 {
     const box_loop *loop = data;
     const grid *g = loop->g;
-    float columns[BLOCK + 2 * PATCH];
+    int across = 2 * loop->radius + 1;
+    float columns[ACROSS];
     for (int x0 = 0; x0 < g->width; x0 += BLOCK) {
-        for (int x = 0; x < BLOCK + 2 * loop->radius; x++) {
-            columns[x] = 0.0f;
-            for (int v = -loop->radius; v <= loop->radius; v++)
-                columns[x] += loop->from[plane_at(g, x0 + x - loop->radius, y + v)];
-        }
-        for (int x = 0; x < BLOCK; x++) {
-            float sum = 0.0f;
-            for (int u = 0; u <= 2 * loop->radius; u++)
-                sum += columns[x + u];
-            loop->to[plane_at(g, x0 + x, y)] = sum;
-        }
+        const float *from = loop->from + plane_at(g, x0 - loop->radius, y - loop->radius);
+        for (int i = 0; i < ACROSS; i += LANES)
+            store_lanes(columns + i, sum_lanes(from + i, across, g->stride));
+        for (int i = 0; i < BLOCK; i += LANES)
+            store_lanes(loop->to + plane_at(g, x0 + i, y),
+                        sum_lanes(columns + i, across, 1));
     }
 }
 

@@ -8,13 +8,16 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "math/lanes.h"
 
 #include <stddef.h>
 
 enum {
-    PATCH = 3,   /**< patches that are compared are squares of 2 PATCH + 1 pixels */
-    BLOCK = 32,  /**< pixels of a row that are worked on at once */
-    MARGIN = 24, /**< at least window, patch and a vector */
+    PATCH = 3,  /**< patches that are compared are squares of 2 PATCH + 1 pixels */
+    BLOCK = 32, /**< pixels of a row that are worked on at once */
+    /** Numbers of a row that patches of a block reach over, in whole vectors. */
+    ACROSS = (BLOCK + 2 * PATCH + LANES - 1) / LANES * LANES,
+    MARGIN = 32, /**< at least window, patch and a vector */
     ROWS_AT_ONCE = 16,
 };
 

@@ -58,52 +58,82 @@ static bool find_noise(const noisy_feature *f, float *noise[2], GError **error)
 
 /* ---- Smoothing ---- */
 
-static bool block_is_noisy(const float *noise)
+/* Some rows of a block. */
+typedef struct block_rows {
+    int x, y, n;
+} block_rows;
+
+static bool are_noisy(const grid *g, const float *noise, block_rows at)
 {
     float sum = 0.0f;
-    for (int i = 0; i < BLOCK; i++)
-        sum += noise[i];
+    for (int v = 0; v < at.n; v++)
+        for (int i = 0; i < BLOCK; i++)
+            sum += noise[plane_at(g, at.x + i, at.y + v)];
     return sum > 0.0f;
 }
 
-static void smooth_block(const feature_loop *loop, int h, int x, int y)
+/* Sums of the channels, and of the weights. */
+typedef float block_sums[MOST_CHANNELS + 1][ROWS_AT_ONCE][BLOCK];
+
+/* Adds what those pixels say that are so far away. */
+static void add_pixels(const feature_loop *loop, int h, block_rows at, int dx, int dy,
+                       block_sums sum)
 {
     const noisy_feature *f = loop->f;
-    float sum[MOST_CHANNELS + 1][BLOCK] = {{0}}, d[BLOCK];
-    for (int dy = -AROUND; dy <= AROUND; dy++) {
-        for (int dx = -AROUND; dx <= AROUND; dx++) {
-            size_t at = plane_at(f->g, x + dx, y + dy);
-            patch_distances(&loop->alike[h], x, y, dx, dy, d);
-            for (int i = 0; i < BLOCK; i += LANES) {
-                floats8 weight = patch_weight(SHARPNESS * load8(d + i));
-                float *all = sum[MOST_CHANNELS] + i;
-                store8(all, load8(all) + weight);
-                for (int c = 0; c < f->n_channels; c++)
-                    store8(sum[c] + i,
-                           load8(sum[c] + i) + weight * load8(f->half[h][c] + at + i));
+    float d[ROWS_AT_ONCE][BLOCK];
+    patch_distances_of_rows(&loop->alike[h], at.x, at.y, at.n, dx, dy, d);
+    for (int v = 0; v < at.n; v++) {
+        size_t there = plane_at(f->g, at.x + dx, at.y + v + dy);
+        for (int i = 0; i < BLOCK; i += LANES) {
+            lane_floats weight = patch_weight(SHARPNESS * load_lanes(d[v] + i));
+            float *all = sum[MOST_CHANNELS][v] + i;
+            store_lanes(all, load_lanes(all) + weight);
+            for (int c = 0; c < f->n_channels; c++) {
+                float *to = sum[c][v] + i;
+                store_lanes(to, load_lanes(to) +
+                                    weight * load_lanes(f->half[h][c] + there + i));
             }
         }
     }
-    for (int c = 0; c < f->n_channels; c++) {
-        float *out = loop->out[h][c] + plane_at(f->g, x, y);
-        for (int i = 0; i < BLOCK; i++)
-            out[i] = sum[c][i] / sum[MOST_CHANNELS][i];
+}
+
+static void smooth_rows(const feature_loop *loop, int h, block_rows at)
+{
+    const grid *g = loop->f->g;
+    block_sums sum = {{{0}}};
+    for (int dy = -AROUND; dy <= AROUND; dy++)
+        for (int dx = -AROUND; dx <= AROUND; dx++)
+            add_pixels(loop, h, at, dx, dy, sum);
+    for (int c = 0; c < loop->f->n_channels; c++) {
+        for (int v = 0; v < at.n; v++) {
+            float *out = loop->out[h][c] + plane_at(g, at.x, at.y + v);
+            for (int i = 0; i < BLOCK; i++)
+                out[i] = sum[c][v][i] / sum[MOST_CHANNELS][v][i];
+        }
     }
 }
 
-static void smooth_row(int y, void *data)
+static void copy_rows(const feature_loop *loop, int h, block_rows at)
 {
-    const feature_loop *loop = data;
     const noisy_feature *f = loop->f;
-    for (int x = 0; x < f->g->width && !cancelled(f->g->cancel); x += BLOCK) {
-        size_t at = plane_at(f->g, x, y);
-        bool noisy = block_is_noisy(loop->alike[0].noise + at);
-        for (int h = 0; h < 2; h++) {
-            if (noisy)
-                smooth_block(loop, h, x, y);
-            for (int c = 0; c < f->n_channels && !noisy; c++)
-                memcpy(loop->out[h][c] + at, f->half[h][c] + at, BLOCK * sizeof(float));
+    for (int c = 0; c < f->n_channels; c++) {
+        for (int v = 0; v < at.n; v++) {
+            size_t i = plane_at(f->g, at.x, at.y + v);
+            memcpy(loop->out[h][c] + i, f->half[h][c] + i, BLOCK * sizeof(float));
         }
+    }
+}
+
+static void smooth_some(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const feature_loop *loop = data;
+    const grid *g = loop->f->g;
+    block_rows at = {0, (int)begin, (int)(end - begin)};
+    for (; at.x < g->width && !cancelled(g->cancel); at.x += BLOCK) {
+        bool noisy = are_noisy(g, loop->alike[0].noise, at);
+        for (int h = 0; h < 2; h++)
+            (noisy ? smooth_rows : copy_rows)(loop, h, at);
     }
 }
 
@@ -137,7 +167,9 @@ static bool smooth(feature_loop *loop, float *const noise[2])
         for (int c = 0; c < f->n_channels; c++)
             loop->alike[h].value[c] = f->half[1 - h][c];
     }
-    if (!plane_rows(f->g, smooth_row, loop) || !plane_rows(f->g, join_row, loop))
+    if (!parallel_for((size_t)f->g->height, ROWS_AT_ONCE, f->g->threads, f->g->cancel,
+                      smooth_some, loop) ||
+        !plane_rows(f->g, join_row, loop))
         return false;
     for (int c = 0; c < f->n_channels; c++)
         plane_mirror(f->g, loop->out[1][c]);

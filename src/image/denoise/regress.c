@@ -31,12 +31,22 @@ typedef struct window {
     float column[MOST_COLUMNS][WINDOW];
     float color[N_HALVES][3][WINDOW];
     float doubt[MOST_COLUMNS]; /* squared error of the columns */
-    float weight[N_BANDS][WINDOW];
+    float weight[N_HALVES][N_BANDS][WINDOW];
 } window;
 
+/* Four systems are solved at once: both halves', with both bandwidths. */
+typedef floats4 systems;
+enum { N_SYSTEMS = N_HALVES * N_BANDS };
+_Static_assert(sizeof(systems) == N_SYSTEMS * sizeof(float), "each has a lane");
+
 /* What a window's pixels are by the features: a linear function a colour. */
-typedef float solution[3][MOST_COLUMNS];
-typedef float equations[MOST_ROWS][MOST_COLUMNS];
+typedef systems solution[3][MOST_COLUMNS];
+typedef systems equations[MOST_ROWS][MOST_COLUMNS];
+
+static int system_of(int half, int band)
+{
+    return half * N_BANDS + band;
+}
 
 /* Distances of a block's windows: [half][offset][centre]; and what a window's words weigh
    besides, which falls to its sides, so that no edge of one is seen. */
@@ -67,22 +77,23 @@ static place place_of(const regression *r, int x, int y)
 
 static void gather(const grid *g, const float *plane, place at, float *out)
 {
-    for (int v = 0; v < SIDE; v++)
-        memcpy(out + v * SIDE, plane + plane_at(g, at.x0, at.y0 + v),
-               SIDE * sizeof(float));
+    for (int i = 0; i < WINDOW; i += LANES) {
+        size_t from = plane_at(g, at.x0 + i % SIDE, at.y0 + i / SIDE);
+        store_lanes(out + i, load_lanes(plane + from));
+    }
 }
 
 /* Makes a feature one of the differences to the window's centre, in units of their
    scatter. @return false: it tells nothing */
 static bool scale_column(float *column, float centre, float least, float *doubt)
 {
-    floats8 sum2 = {0};
+    lane_floats sum2 = {0};
     for (int i = 0; i < WINDOW; i += LANES) {
-        floats8 difference = load8(column + i) - centre;
-        store8(column + i, difference);
+        lane_floats difference = load_lanes(column + i) - centre;
+        store_lanes(column + i, difference);
         sum2 += difference * difference;
     }
-    float scatter2 = sum8(sum2) / (float)WINDOW;
+    float scatter2 = sum_of_lanes(sum2) / (float)WINDOW;
     if (!(scatter2 > least * least + *doubt))
         return false;
     *doubt /= scatter2;
@@ -106,12 +117,13 @@ static void gather_features(const regression *r, place at, window *w)
     }
 }
 
-static bool is_black(const float *color)
+/* Whether any of n numbers, a multiple of LANES, is not zero. */
+static bool shine(const float *numbers, int n)
 {
-    float sum = 0.0f;
-    for (int i = 0; i < WINDOW; i++)
-        sum += fabsf(color[i]);
-    return !(sum > 0.0f);
+    lane_floats most = {0};
+    for (int i = 0; i < n; i += LANES)
+        most = max_lanes(abs_lanes(load_lanes(numbers + i)), most);
+    return bits_below(fill_lanes(0.0f), most) != 0;
 }
 
 /* @return false: all is black */
@@ -121,7 +133,7 @@ static bool gather_colors(const regression *r, place at, window *w)
     for (int h = 0; h < N_HALVES; h++) {
         for (int c = 0; c < 3; c++) {
             gather(&r->g, r->color[h][c], at, w->color[h][c]);
-            black = black && is_black(w->color[h][c]);
+            black = black && !shine(w->color[h][c], WINDOW);
         }
     }
     return !black;
@@ -140,7 +152,7 @@ static void cut_at_edges(const grid *g, place at, float *distance)
 }
 
 static void weigh(const grid *g, place at, const float (*distance)[BLOCK_CENTRES],
-                  window *w)
+                  int half, window *w)
 {
     static const float scale[N_BANDS] = {1.0f, 4.0f}; /* 1/k² */
     float d[WINDOW];
@@ -150,7 +162,8 @@ static void weigh(const grid *g, place at, const float (*distance)[BLOCK_CENTRES
         cut_at_edges(g, at, d);
     for (int k = 0; k < N_BANDS; k++) {
         for (int i = 0; i < WINDOW; i += LANES)
-            store8(w->weight[k] + i, patch_weight(scale[k] * load8(d + i)));
+            store_lanes(w->weight[half][k] + i,
+                        patch_weight(scale[k] * load_lanes(d + i)));
     }
 }
 
@@ -159,29 +172,30 @@ static void weigh(const grid *g, place at, const float (*distance)[BLOCK_CENTRES
 /* Scalar products with four columns, of one weighed with both bandwidths. */
 static void dot_4(float a[N_BANDS][WINDOW], const float *const b[4], floats4 out[N_BANDS])
 {
-    floats8 sum[N_BANDS][4] = {{{0}}};
+    lane_floats sum[N_BANDS][4] = {{{0}}};
     for (int i = 0; i < WINDOW; i += LANES) {
-        floats8 wide = load8(a[0] + i), narrow = load8(a[1] + i);
+        lane_floats wide = load_lanes(a[0] + i), narrow = load_lanes(a[1] + i);
         for (int k = 0; k < 4; k++) {
-            floats8 v = load8(b[k] + i);
+            lane_floats v = load_lanes(b[k] + i);
             sum[0][k] += wide * v;
             sum[1][k] += narrow * v;
         }
     }
     for (int k = 0; k < N_BANDS; k++)
-        out[k] = sums4(sum[k][0], sum[k][1], sum[k][2], sum[k][3]);
+        out[k] = sums_of_lanes(sum[k]);
 }
 
-/* The lower half of the normal equations; their right-hand sides in the last three rows.
- */
-static void make_equations(const window *w, int half, equations m[N_BANDS])
+/* The lower half of a half's normal equations; their right-hand sides in the last three
+   rows. */
+static void make_equations(const window *w, int half, equations m)
 {
-    int n = w->n_columns;
+    int n = w->n_columns, wide = system_of(half, 0), narrow = system_of(half, 1);
     float weighed[N_BANDS][WINDOW];
     for (int j = 0; j < n; j++) {
         for (int b = 0; b < N_BANDS; b++) {
             for (int i = 0; i < WINDOW; i += LANES)
-                store8(weighed[b] + i, load8(w->weight[b] + i) * load8(w->column[j] + i));
+                store_lanes(weighed[b] + i, load_lanes(w->weight[half][b] + i) *
+                                                load_lanes(w->column[j] + i));
         }
         for (int i = j; i < n + 3; i += 4) {
             const float *with[4];
@@ -192,24 +206,33 @@ static void make_equations(const window *w, int half, equations m[N_BANDS])
             }
             dot_4(weighed, with, product);
             for (int k = 0; k < 4 && i + k < n + 3; k++) {
-                m[0][i + k][j] = product[0][k];
-                m[1][i + k][j] = product[1][k];
+                m[i + k][j][wide] = product[0][k];
+                m[i + k][j][narrow] = product[1][k];
             }
         }
     }
+}
+
+/* 1 / sqrt(d); 0 where d is not positive */
+static systems inverse_root(systems d)
+{
+    systems out = {0};
+    for (int i = 0; i < N_SYSTEMS; i++)
+        if (d[i] > 0.0f)
+            out[i] = 1.0f / sqrtf(d[i]);
+    return out;
 }
 
 /* Cholesky's, in place; the right-hand sides become L⁻¹ b on the way. */
 static void factor(equations m, int n)
 {
     for (int j = 0; j < n; j++) {
-        float d = m[j][j];
+        systems d = m[j][j];
         for (int k = 0; k < j; k++)
             d -= m[j][k] * m[j][k];
-        float inverse = d > 0.0f ? 1.0f / sqrtf(d) : 0.0f;
-        m[j][j] = inverse;
+        systems inverse = m[j][j] = inverse_root(d);
         for (int i = j + 1; i < n + 3; i++) {
-            float sum = m[i][j];
+            systems sum = m[i][j];
             for (int k = 0; k < j; k++)
                 sum -= m[i][k] * m[j][k];
             m[i][j] = sum * inverse;
@@ -222,7 +245,7 @@ static void substitute(equations m, int n, solution s)
 {
     for (int c = 0; c < 3; c++) {
         for (int j = n - 1; j >= 0; j--) {
-            float sum = m[n + c][j];
+            systems sum = m[n + c][j];
             for (int k = j + 1; k < n; k++)
                 sum -= m[k][j] * s[c][k];
             s[c][j] = sum * m[j][j];
@@ -243,50 +266,54 @@ static void solve(const window *w, equations m, solution s)
 /* ---- What is said of the window's pixels ---- */
 
 /* Adds to the sums of LANES pixels. */
-static void say(const window *w, const float *taper, int band, solution s, int i,
+static void say(const window *w, lane_floats weight, float by[3][MOST_COLUMNS], int i,
                 float *const to[N_SUMS])
 {
-    floats8 weight = load8(w->weight[band] + i) * load8(taper + i);
-    floats8 red = {0}, green = {0}, blue = {0};
+    lane_floats red = {0}, green = {0}, blue = {0};
     for (int j = 0; j < w->n_columns; j++) {
-        floats8 x = load8(w->column[j] + i);
-        red += s[0][j] * x;
-        green += s[1][j] * x;
-        blue += s[2][j] * x;
+        lane_floats x = load_lanes(w->column[j] + i);
+        red += by[0][j] * x;
+        green += by[1][j] * x;
+        blue += by[2][j] * x;
     }
-    store8(to[0], load8(to[0]) + weight * red);
-    store8(to[1], load8(to[1]) + weight * green);
-    store8(to[2], load8(to[2]) + weight * blue);
-    store8(to[3], load8(to[3]) + weight);
+    store_lanes(to[0], load_lanes(to[0]) + weight * red);
+    store_lanes(to[1], load_lanes(to[1]) + weight * green);
+    store_lanes(to[2], load_lanes(to[2]) + weight * blue);
+    store_lanes(to[3], load_lanes(to[3]) + weight);
 }
 
 static void spread(const regression *r, place at, const window *w, const float *taper,
                    int half, int band, solution s)
 {
     float *const *sum = r->sum[band][half];
+    float by[3][MOST_COLUMNS];
+    for (int c = 0; c < 3; c++)
+        for (int j = 0; j < w->n_columns; j++)
+            by[c][j] = s[c][j][system_of(half, band)];
     for (int i = 0; i < WINDOW; i += LANES) {
         size_t p = plane_at(&r->g, at.x0 + i % SIDE, at.y0 + i / SIDE);
         float *const to[N_SUMS] = {sum[0] + p, sum[1] + p, sum[2] + p, sum[3] + p};
-        say(w, taper, band, s, i, to);
+        say(w, load_lanes(w->weight[half][band] + i) * load_lanes(taper + i), by, i, to);
     }
 }
 
 static void regress_at(const regression *r, place at, const block *b, int centre)
 {
     window w;
-    equations m[N_BANDS];
+    equations m;
     solution s;
     if (!gather_colors(r, at, &w))
         return;
     gather_features(r, at, &w);
     for (int h = 0; h < N_HALVES; h++) {
-        weigh(&r->g, at, (const float(*)[BLOCK_CENTRES]) & b->distance[h][0][centre], &w);
+        weigh(&r->g, at, (const float(*)[BLOCK_CENTRES]) & b->distance[h][0][centre], h,
+              &w);
         make_equations(&w, h, m);
-        for (int k = 0; k < N_BANDS; k++) {
-            solve(&w, m[k], s);
-            spread(r, at, &w, b->taper, h, k, s);
-        }
     }
+    solve(&w, m, s);
+    for (int h = 0; h < N_HALVES; h++)
+        for (int k = 0; k < N_BANDS; k++)
+            spread(r, at, &w, b->taper, h, k, s);
 }
 
 /* ---- Blocks and strips ---- */
@@ -294,19 +321,17 @@ static void regress_at(const regression *r, place at, const block *b, int centre
 /* Whether anything in reach of the block's windows shines. */
 static bool block_shines(const regression *r, int x0, int y)
 {
-    float sum = 0.0f;
     int before = pixels_before(r);
     for (int h = 0; h < N_HALVES; h++) {
         for (int c = 0; c < 3; c++) {
             for (int v = 0; v < SIDE; v++) {
                 size_t at = plane_at(&r->g, x0 - before, y - before + v);
-                const float *row = r->color[h][c] + at;
-                for (int u = 0; u < BLOCK + SIDE; u++)
-                    sum += fabsf(row[u]);
+                if (shine(r->color[h][c] + at, BLOCK + SIDE))
+                    return true;
             }
         }
     }
-    return sum > 0.0f;
+    return false;
 }
 
 /* Whole in the middle half of a row, and none beyond its ends. */

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/parallel.h"
-#include "photon/map/lanes.h"
+#include "math/lanes.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -28,6 +28,10 @@ enum { LANES = 8 << HAS_WIDE_LANES }; /* size: of a vector */
 typedef float lane_floats __attribute__((vector_size(4 * LANES)));
 typedef int32_t lane_ints __attribute__((vector_size(4 * LANES)));
 
+/** Where memory is aligned for one number. */
+typedef float lane_floats_stored
+    __attribute__((vector_size(4 * LANES), aligned(4), may_alias));
+
 typedef float floats8 __attribute__((vector_size(32)));
 typedef int32_t ints8 __attribute__((vector_size(32)));
 typedef float floats4 __attribute__((vector_size(16)));
@@ -65,6 +69,17 @@ static inline floats8 max8(floats8 a, floats8 b)
 #endif
 }
 
+/** @brief a where it is smaller, else b. */
+static inline floats8 min8(floats8 a, floats8 b)
+{
+#ifdef __AVX__
+    return (floats8)_mm256_min_ps((__m256)a, (__m256)b);
+#else
+    ints8 smaller = a < b;
+    return (floats8)(((ints8)a & smaller) | ((ints8)b & ~smaller));
+#endif
+}
+
 /** @brief One bit a lane of a mask, lane 0 lowest. A mask lane is 0 or -1. */
 static inline unsigned bits8(ints8 mask)
 {
@@ -87,9 +102,7 @@ static inline lane_floats fill_lanes(float x)
 
 static inline lane_floats load_lanes(const float *a)
 {
-    lane_floats v;
-    memcpy(&v, a, sizeof v);
-    return v;
+    return *(const lane_floats_stored *)a;
 }
 
 static inline lane_ints load_lane_ints(const void *a)
@@ -101,7 +114,7 @@ static inline lane_ints load_lane_ints(const void *a)
 
 static inline void store_lanes(float *a, lane_floats v)
 {
-    memcpy(a, &v, sizeof v);
+    *(lane_floats_stored *)a = v; /* a memcpy into an array is checked by a call */
 }
 
 /** @brief fused() in each lane, to the bit. */
@@ -135,6 +148,16 @@ static inline lane_floats max_lanes(lane_floats a, lane_floats b)
 #endif
 }
 
+/** @brief a where it is smaller, else b. */
+static inline lane_floats min_lanes(lane_floats a, lane_floats b)
+{
+#if HAS_WIDE_LANES
+    return (lane_floats)_mm512_min_ps((__m512)a, (__m512)b);
+#else
+    return min8(a, b);
+#endif
+}
+
 static inline lane_floats abs_lanes(lane_floats a)
 {
     return (lane_floats)((lane_ints)a & 0x7fffffff);
@@ -161,6 +184,37 @@ static inline float least_lane(lane_floats values, unsigned bits)
         least = (bits >> lane & 1u) && values[lane] < least ? values[lane] : least;
     return least;
 #endif
+}
+
+/** @brief Sums of each half's lanes, lane by lane. */
+static inline floats8 fold_lanes(lane_floats v)
+{
+#if HAS_WIDE_LANES
+    return __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7) +
+           __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15);
+#else
+    return v;
+#endif
+}
+
+/** @brief Each vector's sum of lanes. */
+static inline floats4 sums_of_lanes(const lane_floats v[4])
+{
+    floats8 a = fold_lanes(v[0]), b = fold_lanes(v[1]);
+    floats8 c = fold_lanes(v[2]), d = fold_lanes(v[3]);
+    floats8 ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) +
+                 __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+    floats8 cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14) +
+                 __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+    floats8 all = __builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13) +
+                  __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15);
+    return __builtin_shufflevector(all, all, 0, 1, 2, 3) +
+           __builtin_shufflevector(all, all, 4, 5, 6, 7);
+}
+
+static inline float sum_of_lanes(lane_floats v)
+{
+    return sums_of_lanes((const lane_floats[4]){v, v, v, v})[0];
 }
 
 /** @brief Bits of the first n lanes. */
