@@ -22,9 +22,6 @@
 /* and of what has passed since so much at most into asking for all that comes after. */
 #define TIMING_SHARE 0.05
 
-/* Denoising for which two passes left no time may end so much later than others do, s. */
-#define LATE_DENOISING 0.2
-
 /* Nothing is done before it is. */
 #define LARGEST_FRACTION 0.99
 

@@ -65,7 +65,7 @@ static void choose_pace(render *r, const pace_costs *costs)
     double left = how.time - r->after - (clock_seconds() - r->start);
     take_pace(r, &how, costs, left - denoising);
     double late = 2.0 * r->expected_pass + denoising - left;
-    if (!how.denoise || late <= stop_grace(how.time))
+    if (!how.denoise || late <= fmax(stop_grace(how.time), LATE_DENOISING))
         return;
     how.denoise = false;
     r->film.no_time = r->statistics.left_noisy = true;

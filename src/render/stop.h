@@ -34,5 +34,9 @@ int stop_next_cells(const settings *how, const stop_state *now, const stop_part 
 bool stop_at_once(const settings *how, const stop_state *now);
 /** @brief How much later than asked for work under way may end, s. */
 double stop_grace(double time);
+
+/** Denoising that a picture counted on may end so much later than asked for, s; and once
+ * its passes are rendered, so much later than other work. */
+#define LATE_DENOISING 0.2
 /** @brief How much is done, 0..1, by the rule that will stop first. */
 double stop_fraction(const settings *how, const stop_state *now);

@@ -156,6 +156,39 @@ static void test_in_time(void)
     }
 }
 
+/* A wall of squares about as large as pixels. */
+#define SQUARES                                                                          \
+    "Texture \"squares\" \"spectrum\" \"checkerboard\" \"float uscale\" 100 \"float "    \
+    "vscale\" "                                                                          \
+    "50 \"rgb tex1\" [0.9 0.9 0.9] \"rgb tex2\" [0 0 0]\n"                               \
+    "Material \"diffuse\" \"texture reflectance\" \"squares\" Shape \"trianglemesh\" "   \
+    "\"point3 P\" [-2 1.5 0  2 1.5 0  2 1.5 2  -2 1.5 2] \"point2 uv\" [0 0 1 0 1 1 0 "  \
+    "1] "                                                                                \
+    "\"integer indices\" [0 1 2 0 2 3]\n"
+
+/* Where paths give each pixel a sample and maps, in the time that they take, may not,
+   what the others show of these counts: little in a plain room, much before squares. */
+static void test_gaps(void)
+{
+    const char *rooms[2] = {ROOM_OF(256), ROOM_OF(256) SQUARES};
+    double told[2][2];
+    for (int i = 0; i < 2; i++) {
+        g_autoptr(view) v = view_of(rooms[i]);
+        for (int k = 0; k < 2; k++) {
+            render_plan plan;
+            plan_of(v,
+                    k == 0 ? "integrator=auto passes=2 denoise=off spp=1"
+                           : "integrator=auto passes=64 denoise=off spp=1",
+                    1, &plan);
+            told[i][k] = told_error(&plan);
+            g_assert_true(trial_of(&plan)->taken == (i == 0 || k == 1));
+        }
+        g_test_message("told %g, of many passes %g", told[i][0], told[i][1]);
+    }
+    g_assert_cmpfloat(told[0][0], <, 2.0 * told[0][1]);
+    g_assert_cmpfloat(told[1][0], >, 10.0 * told[1][1]);
+}
+
 /* A pane of almost no glass before the camera changes nothing that is seen, but all is
    seen by way of it: what caustic photons bring is as little a reason to gather as
    without. */
@@ -253,6 +286,7 @@ int main(int argc, char **argv)
     }
     g_test_add_func("/gather/told", test_told);
     g_test_add_func("/gather/in-time", test_in_time);
+    g_test_add_func("/gather/gaps", test_gaps);
     g_test_add_func("/gather/bulb", test_bulb);
     g_test_add_func("/gather/behind-glass", test_behind_glass);
     g_test_add_data_func("/gather/pays/room", ROOM_OF(128), test_pays);

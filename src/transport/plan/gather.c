@@ -28,6 +28,7 @@
 typedef struct gather_place {
     double path[2], smooth[2]; /* each with a sampler of its own */
     double near[2], twice[2];  /* all with the first one */
+    double beside;             /* as smooth[0], of the next pixel */
     double seen;               /* with the caustics that those leave out */
     double first_rays;         /* of a pixel's first sample */
     double later_rays;         /* of another one, which shares the first one's looks */
@@ -61,13 +62,14 @@ typedef struct gather_task {
     uint32_t first;
 } gather_task;
 
-/* Mean squared errors of a sample, relative to what is there; and of a whole picture. */
+/* Mean squared errors of a sample, relative to what is there; of a whole picture; and of
+   a pixel that shows the next one. */
 typedef struct gather_errors {
-    double path, samples, photons, bias2;
+    double path, samples, photons, bias2, contrast;
 } gather_errors;
 
 /* Samples of a place: by maps, and by paths. */
-enum { N_SAMPLES = 1 + 6 + 2 }; /* math: as many */
+enum { N_SAMPLES = 1 + 7 + 2 }; /* math: as many */
 
 /* ---- Trial passes ---- */
 
@@ -206,7 +208,7 @@ static double sample(radiance_function *radiance, const void *pass,
     return without_shared(plan, &found);
 }
 
-/* What the smooth map sees, by two samplers. */
+/* What the smooth map sees, by two samplers, and beside it. */
 static void see(const gather_task *all, vec2 raster, const sampler by[2],
                 transport_scratch *scratch, gather_place *at)
 {
@@ -217,6 +219,8 @@ static void see(const gather_task *all, vec2 raster, const sampler by[2],
         at->smooth[k] = without_shared(all->plan, &found);
         at->seen += 0.5 * found.all;
     }
+    vec2 beside = {raster.x + 1.0f, raster.y};
+    at->beside = sample(photonmap_radiance, smooth, all->plan, beside, by[0], scratch);
 }
 
 /* What gathering takes at a place, as if there were all photons. */
@@ -403,7 +407,7 @@ static double unseen_bias(const transport_plan *plan)
 typedef struct gather_sums {
     square_sum path, sample, photons;
     bias_sum bias;
-    double off;
+    double off, beside;
 } gather_sums;
 
 /* One of n places. */
@@ -417,6 +421,8 @@ static void add_place(gather_sums *to, const gather_place *at, double weight, do
     square_add(&to->photons, half * photons * photons);
     bias_add(&to->bias, w * (at->twice[0] - at->near[0]) * (at->twice[1] - at->near[1]));
     to->off += off_map(at) * sqrt(weight) / n;
+    double off = at->beside - 0.5 * (at->smooth[0] + at->smooth[1]);
+    to->beside += w * off * off;
 }
 
 /* Where neither path found the light that photons came from their difference tells
@@ -433,6 +439,8 @@ static gather_errors errors_of(const gather_trial *t)
         .samples = square_total(&sums.sample),
         .photons = square_total(&sums.photons) * t->area / t->fewer,
         .bias2 = seen_bias(&sums.bias) / t->area + unseen_bias(&t->plan),
+        /* Without the noise of one sample and of the mean of two. */
+        .contrast = fmax(sums.beside - (1.0 + 0.5) * sums.sample.sum, 0.0),
     };
 }
 
@@ -454,35 +462,40 @@ static bool is_filtered(const transport_plan *plan, double passes)
     return plan->how.denoise && passes >= 2.0;
 }
 
+/* Squared error of n samples a pixel times n, which are told within a factor of two: of
+   the pixels for which half as many do not suffice all may stay empty, and show the next.
+ */
+static double variance_of_samples(double variance, const gather_errors *e, double n)
+{
+    double empty = fmax(1.0 - 0.5 * n, 0.0);
+    return fmin(n, 1.0) * variance + n * empty * e->contrast;
+}
+
 /* Squared error of the picture times the samples of a pixel, comparable to the variance
-   of one of them. Where there is time to take noise out of so many passes of paths, but
-   not of those of maps, the grain of these stays, too. */
+   of one of them; there is time for so many passes by maps. Where noise can be taken out
+   of those planned by paths, but not of those of maps, the grain of these stays, too. */
 static double error_of(const transport_plan *plan, const gather_errors *e, double in_time)
 {
     double passes = settings_planned_passes(&plan->how), alpha = plan->how.alpha;
-    double bias = bias_of_passes(alpha, passes);
+    double spp = (double)plan->how.spp, bias = bias_of_passes(alpha, passes);
     double alike =
         e->photons * variance_of_passes(alpha, passes) + e->bias2 * bias * bias;
     bool filtered = is_filtered(plan, passes);
     double grain_weight = filtered && !is_filtered(plan, in_time) ? BLOTCHES : 1.0;
     double weight = filtered ? BLOTCHES : 1.0;
-    return grain_weight * e->samples + weight * passes * (double)plan->how.spp * alike;
-}
-
-/* @return by maps; time is that of the passes planned, by paths */
-static plan_cost cost_of_gathering(const transport_plan *plan, const gather_trial *t,
-                                   const gather_errors *e, double path_rays)
-{
-    double passes = settings_planned_passes(&plan->how);
-    double rays = rays_of_sample(plan, t) + t->photon_rays * passes / plan_samples(plan);
-    return (plan_cost){error_of(plan, e, passes * path_rays / rays), rays};
+    return grain_weight * variance_of_samples(e->samples, e, in_time * spp) +
+           weight * passes * spp * alike;
 }
 
 static bool gathering_pays(transport_plan *plan, const gather_trial *t)
 {
     const gather_errors e = errors_of(t);
-    plan_cost without = {e.path, t->path_rays + plan->photon_rays};
-    plan_cost with = cost_of_gathering(plan, t, &e, without.rays);
+    double passes = settings_planned_passes(&plan->how), spp = (double)plan->how.spp;
+    plan_cost without, with;
+    without.rays = t->path_rays + plan->photon_rays;
+    without.variance = variance_of_samples(e.path, &e, passes * spp);
+    with.rays = rays_of_sample(plan, t) + t->photon_rays * passes / plan_samples(plan);
+    with.variance = error_of(plan, &e, passes * without.rays / with.rays);
     bool pays = with.variance * with.rays < without.variance * without.rays;
     plan_note(plan, "gathered indirect light", without, with, pays);
     return pays;
