@@ -13,7 +13,7 @@
 #define PROGRESS_INTERVAL 0.1
 
 /* Where denoising takes more of the time given than that, fewer windows save more error
-   than they make: of a tenth two fifths, for 3 to 6 % of error where passes are few. */
+   than they make: of a tenth three fifths, for 3 to 6 % of error where passes are few. */
 #define COARSE_SHARE 0.1
 
 /* Of the time given so much goes into finding out how long writing takes, each time, */
