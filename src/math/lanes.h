@@ -1,7 +1,7 @@
 /*
  * Some floats at a time, written with the compilers' vector extensions: eight, or sixteen
  * where the processor has AVX-512. What is computed in a lane does not depend on how many
- * there are.
+ * there are, but the order in which lanes are summed does.
  *
  * What decides whether a point is found (distances, sides) is computed with fused() and
  * fused_lanes(), spelled out operation by operation: left to itself a compiler may

@@ -7,8 +7,8 @@
  */
 #pragma once
 
-#include "math/vec.h"
 #include "math/lanes.h"
+#include "math/vec.h"
 
 /** Steps from the centre of the square to its edge; the L1 norm of the points. */
 enum { OCTAHEDRON_STEPS = 16383 }; /* math: what 15 bits of an axis hold */

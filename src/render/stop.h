@@ -17,6 +17,10 @@ typedef struct stop_state {
     double last_photons; /**< s of it, before the camera looked */
 } stop_state;
 
+/** Denoising that a picture counted on may end so much later than asked for, s; and once
+ * its passes are rendered, so much later than other work. */
+#define LATE_DENOISING 0.2
+
 /** @brief Why to stop now, or RENDER_GOES_ON. One pass is always rendered. */
 render_stop stop_decide(const settings *how, const stop_state *now);
 
@@ -34,9 +38,5 @@ int stop_next_cells(const settings *how, const stop_state *now, const stop_part 
 bool stop_at_once(const settings *how, const stop_state *now);
 /** @brief How much later than asked for work under way may end, s. */
 double stop_grace(double time);
-
-/** Denoising that a picture counted on may end so much later than asked for, s; and once
- * its passes are rendered, so much later than other work. */
-#define LATE_DENOISING 0.2
 /** @brief How much is done, 0..1, by the rule that will stop first. */
 double stop_fraction(const settings *how, const stop_state *now);

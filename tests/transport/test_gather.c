@@ -158,12 +158,12 @@ static void test_in_time(void)
 
 /* A wall of squares about as large as pixels. */
 #define SQUARES                                                                          \
-    "Texture \"squares\" \"spectrum\" \"checkerboard\" \"float uscale\" 100 \"float "    \
-    "vscale\" "                                                                          \
-    "50 \"rgb tex1\" [0.9 0.9 0.9] \"rgb tex2\" [0 0 0]\n"                               \
-    "Material \"diffuse\" \"texture reflectance\" \"squares\" Shape \"trianglemesh\" "   \
-    "\"point3 P\" [-2 1.5 0  2 1.5 0  2 1.5 2  -2 1.5 2] \"point2 uv\" [0 0 1 0 1 1 0 "  \
-    "1] "                                                                                \
+    "Texture \"squares\" \"spectrum\" \"checkerboard\"\n"                                \
+    "\"float uscale\" 100 \"float vscale\" 50\n"                                         \
+    "\"rgb tex1\" [0.9 0.9 0.9] \"rgb tex2\" [0 0 0]\n"                                  \
+    "Material \"diffuse\" \"texture reflectance\" \"squares\"\n"                         \
+    "Shape \"trianglemesh\" \"point2 uv\" [0 0 1 0 1 1 0 1]\n"                           \
+    "\"point3 P\" [-2 1.5 0  2 1.5 0  2 1.5 2  -2 1.5 2]\n"                              \
     "\"integer indices\" [0 1 2 0 2 3]\n"
 
 /* Where paths give each pixel a sample and maps, in the time that they take, may not,
