@@ -6,9 +6,8 @@
  * floor ─► each algorithm, 1, 2, 4 ... passes, some seeds ─► seconds, relMSE, FLIP
  *
  * Each picture is measured as it was rendered, and under its algorithm's name with a "+"
- * as it is shown: without its noise, from two passes on, with the seconds that taking it
- * out took. The default plans for what is shown: as rendered it is asked with denoise
- * off.
+ * as it is shown: without its noise, with the seconds that taking it out took. The
+ * default plans for what is shown: as rendered it is asked with denoise off.
  *
  * Of the scene's own words on how to render none counts: all settings are the default's
  * but the algorithm and the passes: a sample a pixel and three photons for two, as a

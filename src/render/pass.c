@@ -2,6 +2,7 @@
  * One pass of a render, whole or in part, and how far it is.
  */
 #include "base/clock.h"
+#include "render/film/film_denoise.h"
 #include "render/film/film_halves.h"
 #include "render/pace.h"
 #include "render/render_state.h"
@@ -62,12 +63,20 @@ void render_tell(render *r, double pass_fraction)
         atomic_store(&r->cancel.set, true);
 }
 
-/* A pass that is not done when the time is over is given up, unless there was none: then
-   there must be a coarse picture at least. */
+/* Of the pass under way so many cells are rendered whatever the time: of the first one,
+   so that there is a coarse picture, and enough to be denoised. */
+static int least_cells(const render *r)
+{
+    if (r->passes_done > 0)
+        return 0;
+    return r->denoising > 0.0 ? HALVES_CELLS : 1;
+}
+
+/* A pass that is not done when the time is over is given up. */
 static void watch_time(render *r)
 {
     stop_state now = render_state_now(r, 0.0);
-    bool has_picture = r->passes_done > 0 || r->film.n_cells > 0;
+    bool has_picture = r->film.n_cells >= least_cells(r);
     if (r->prepared && has_picture && stop_at_once(&r->plan.how, &now)) {
         r->given_up = true;
         atomic_store(&r->cancel.set, true);
@@ -107,16 +116,18 @@ static void add_counts(render_statistics *st, const transport_counts *counts)
     }
 }
 
+/* Before there is a pass, by what is made up. */
 static double time_windows(render *r, bool coarse)
 {
     r->film.coarse = coarse;
-    return r->prepared ? film_denoise_seconds(&r->film, r->n_threads, r->is_dealt)
-                       : film_denoise_seconds_ahead(&r->film, r->plan.view, r->n_threads);
+    return r->passes_done > 0
+               ? film_denoise_seconds(&r->film, r->n_threads, r->is_dealt)
+               : film_denoise_seconds_ahead(&r->film, r->plan.view, r->n_threads);
 }
 
 /* In fewer windows where time is short. Those are tried first, for where even they take
    long all would. */
-double render_time_denoising(render *r)
+static double time_denoising(render *r)
 {
     settings *how = &r->plan.how;
     if (how->denoise_windows != WINDOWS_AUTO)
@@ -130,30 +141,49 @@ double render_time_denoising(render *r)
     return coarse;
 }
 
-/* Whether how long writing and denoising take is to be asked: at the start, when there is
-   something to denoise, and, unless that would take much of the time, of the first
-   pictures and again when half of the time is over, since it depends on what the picture
-   shows and what else the machine does. */
+/* Whether how long writing and denoising take is to be asked: at the start, when it is
+   seen which lights there are, of the first pass, and, unless that would take much of the
+   time, of the first pictures and again when half of the time is over, since it depends
+   on what the picture shows and what else the machine does. */
 static bool timing_is_due(const render *r, double elapsed)
 {
     double time = r->plan.how.time;
-    if (!(r->after > 0.0) || r->passes_done == 2)
+    if (!(r->after > 0.0) || r->film.n_cells == 1 || r->passes_done == 1)
         return true;
     if (elapsed - r->timed_at < r->timing / TIMING_SHARE)
         return false;
-    return r->passes_done < 2 || (elapsed > 0.5 * time && r->timed_at < 0.5 * time);
+    return r->passes_done < 1 || (elapsed > 0.5 * time && r->timed_at < 0.5 * time);
 }
 
-/* Noise is left where taking it out would end far too late, by what is told first: it
-   saves far more error than passes do in that time, and this picture counted on it. */
-static void give_up_denoising(render *r, double seconds)
+void render_leave_noise(render *r)
 {
-    stop_state now = render_state_now(r, 0.0);
-    now.elapsed -= LATE_DENOISING;
-    if (!stop_at_once(&r->plan.how, &now))
-        return;
     r->film.no_time = r->statistics.left_noisy = true;
-    r->after -= seconds;
+    r->after -= r->denoising;
+    r->denoising = 0.0;
+}
+
+/* How long it takes at least until there is enough to be denoised: as the cells so far,
+   of which a few may have been slow by chance. */
+static double seconds_to_halves(const render *r)
+{
+    int done = r->film.n_cells;
+    if (!r->look || done == 0)
+        return 0.0;
+    double sure = done < HALVES_CELLS / 2 ? 0.5 : 1.0;
+    return sure * MAX(HALVES_CELLS - done, 0) * look_seconds(r->look) / done;
+}
+
+/* Noise is left where taking it out would end far too late, by what the first pass tells:
+   it saves far more error than passes do in that time, and this picture counted on it. */
+static void give_up_denoising(render *r)
+{
+    bool is_first = r->passes_done == 1 || (r->passes_done == 0 && r->film.n_cells > 0);
+    if (!is_first || !(r->denoising > 0.0))
+        return;
+    stop_state now = render_state_now(r, 0.0);
+    now.elapsed += seconds_to_halves(r) - LATE_DENOISING;
+    if (stop_at_once(&r->plan.how, &now))
+        render_leave_noise(r);
 }
 
 void render_time_writing(render *r)
@@ -161,12 +191,10 @@ void render_time_writing(render *r)
     double time = r->plan.how.time, elapsed = clock_seconds() - r->start;
     if (!(time > 0.0) || !timing_is_due(r, elapsed))
         return;
-    bool is_first = !(r->denoising > 0.0);
-    r->denoising = r->prepared ? render_time_denoising(r) : 0.0;
+    r->denoising = time_denoising(r);
     r->after = r->denoising +
                pace_write_seconds(&r->film, r->n_threads, r->paths, WRITE_SHARE * time);
-    if (is_first && r->denoising > 0.0)
-        give_up_denoising(r, r->denoising);
+    give_up_denoising(r);
     r->timed_at = elapsed;
     r->timing = clock_seconds() - r->start - elapsed;
 }
@@ -189,7 +217,10 @@ static int next_cells(const render *r, int done, int wanted)
     if (r->is_dealt)
         return wanted - done;
     stop_state now = render_state_now(r, 0.0);
-    stop_part part = {.done = done, .wanted = wanted, .is_first = r->passes_done == 0};
+    stop_part part = {.done = done,
+                      .wanted = wanted,
+                      .least = least_cells(r),
+                      .is_first = r->passes_done == 0};
     part.cell = done > 0 ? look_seconds(r->look) / done
                          : (now.last_pass - now.last_photons) / FILM_CELLS;
     return stop_next_cells(&r->plan.how, &now, &part);

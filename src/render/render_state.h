@@ -27,7 +27,7 @@ struct render {
     void *kept_pass;      /* of a file of one pass: that of all; NULL: not made yet */
     char **paths;
     double after;         /* s that denoising takes, and writing to these */
-    double denoising;     /* s of it for the first; 0: not known */
+    double denoising;     /* s of it for the first; 0: there will be none */
     double expected_pass; /* s that one takes, by a trial; 0: there was none */
     double timed_at;      /* s: when it was asked last */
     double timing;        /* s that asking took */
@@ -64,10 +64,10 @@ void render_tell(render *r, double pass_fraction);
 /** @brief cancel_flag.progress: comes from all parallel work, on the thread that called.
  */
 void render_on_progress(void *data);
-/** @brief Finds out how long writing takes, if that is due. */
+/** @brief Finds out how long denoising and writing take, if that is due. */
 void render_time_writing(render *r);
-/** @brief How long denoising will take, s; before there are passes by what is made up. */
-double render_time_denoising(render *r);
+/** @brief Leaves the noise in the picture, since there is no time to take it out. */
+void render_leave_noise(render *r);
 
 /* ---- kept/render_photons.c ---- */
 

@@ -81,8 +81,10 @@ int stop_next_cells(const settings *how, const stop_state *now, const stop_part 
     int n = part->wanted - part->done;
     if (part->is_first)
         n = MIN(n, next_level(part->done) - part->done);
-    bool must = part->is_first && part->done == 0;
-    return how->time > 0.0 && !must ? MIN(n, cells_in_time(how, now, part)) : n;
+    if (!(how->time > 0.0))
+        return n;
+    int missing = part->least - part->done;
+    return MIN(n, missing > 0 ? missing : cells_in_time(how, now, part));
 }
 
 double stop_fraction(const settings *how, const stop_state *now)

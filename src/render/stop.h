@@ -27,12 +27,12 @@ render_stop stop_decide(const settings *how, const stop_state *now);
 /** @brief Where a pass is that is rendered cell by cell (film_cell). */
 typedef struct stop_part {
     int done, wanted; /**< cells */
+    int least;        /**< that are rendered whatever the time */
     double cell;      /**< s that one will take, 0: unknown */
     bool is_first;    /**< pass: the whole picture is to be seen soon */
 } stop_part;
 
-/** @brief How many cells come next. 0: all wanted are done, or the time is over; but
- * there will be at least one of the first pass. */
+/** @brief How many cells come next. 0: all wanted are done, or the time is over. */
 int stop_next_cells(const settings *how, const stop_state *now, const stop_part *part);
 /** @brief Whether the time is over, so that a pass under way is to be given up. */
 bool stop_at_once(const settings *how, const stop_state *now);

@@ -208,10 +208,9 @@ static const setting_row table[] = {
      "How slowly the radius shrinks from pass to pass; 1: not at all (Knaus & Zwicker "
      "2011)."},
     {"denoise", SETTING_BOOL, AT(denoise), "", 0, 1, 1, NULL, "", "all",
-     "Takes the noise out of what files of eight bits and the window show, from two "
-     "passes "
-     "on; EXR files keep the picture as it is, and have this beside it as denoised.R, G "
-     "and B. Auto plans for what is shown: grain that is taken out weighs less than "
+     "Takes the noise out of what files of eight bits and the window show; EXR "
+     "files keep the picture as it is, and have this beside it as denoised.R, G and "
+     "B. Auto plans for what is shown: grain that is taken out weighs less than "
      "errors of photons, which are smooth."},
     {"denoise_windows", SETTING_CHOICE, AT(denoise_windows), "", 0, WINDOWS_COARSE,
      WINDOWS_AUTO, window_words, "", "all",

@@ -107,7 +107,7 @@ static bool clocked_pass(clocked *c)
                       : 1.0;
     double cell = size * c->costs.sample * c->n_pixels * (double)c->how.spp / FILM_CELLS;
     double start = c->now.elapsed, last_cell = c->now.last_pass - c->now.last_photons;
-    stop_part part = {0, FILM_CELLS, last_cell / FILM_CELLS, is_first};
+    stop_part part = {0, FILM_CELLS, is_first, last_cell / FILM_CELLS, is_first};
     spend(c, c->costs.pass + size * c->photons * c->costs.photons);
     double looked = c->now.elapsed, photons = looked - start;
     for (int n; (n = stop_next_cells(&c->how, &c->now, &part)) > 0;) {

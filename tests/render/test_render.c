@@ -67,19 +67,20 @@ static void test_cells(void)
         stop_part part;
         int least, most;
     } cases[] = {
-        {&four, &over, {0, 64, 0.1, false}, 64, 64},
-        {&four, &over, {0, 64, 0, true}, 1, 1},
-        {&four, &over, {4, 64, 0.1, true}, 12, 12},
-        {&four, &over, {16, 40, 0.1, true}, 24, 24},
-        {&four, &over, {40, 40, 0.1, true}, 0, 0},
-        {&second, &early, {0, 64, 0.001, false}, 64, 64},
-        {&second, &early, {0, 64, 0.1, false}, 1, 8},
-        {&second, &late, {0, 64, 0.02, false}, 1, 4},
-        {&second, &late, {60, 64, 0.02, false}, 1, 4},
-        {&second, &late, {9, 64, 0.2, false}, 0, 0},
-        {&second, &over, {9, 64, 0.001, false}, 0, 0},
-        {&second, &over, {0, 64, 0.1, true}, 1, 1},
-        {&second, &over, {1, 64, 0.1, true}, 0, 0},
+        {&four, &over, {0, 64, 0, 0.1, false}, 64, 64},
+        {&four, &over, {0, 64, 1, 0, true}, 1, 1},
+        {&four, &over, {4, 64, 1, 0.1, true}, 12, 12},
+        {&four, &over, {16, 40, 1, 0.1, true}, 24, 24},
+        {&four, &over, {40, 40, 1, 0.1, true}, 0, 0},
+        {&second, &early, {0, 64, 0, 0.001, false}, 64, 64},
+        {&second, &early, {0, 64, 0, 0.1, false}, 1, 8},
+        {&second, &late, {0, 64, 0, 0.02, false}, 1, 4},
+        {&second, &late, {60, 64, 0, 0.02, false}, 1, 4},
+        {&second, &late, {9, 64, 0, 0.2, false}, 0, 0},
+        {&second, &over, {9, 64, 0, 0.001, false}, 0, 0},
+        {&second, &over, {0, 64, 1, 0.1, true}, 1, 1},
+        {&second, &over, {1, 64, 1, 0.1, true}, 0, 0},
+        {&second, &over, {16, 64, 32, 0.1, true}, 16, 16},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         int n = stop_next_cells(cases[i].how, cases[i].now, &cases[i].part);

@@ -2,11 +2,10 @@
 
 #include "base/memory.h"
 #include "color/balance.h"
+#include "render/film/film_denoise.h"
 #include "render/film/film_halves.h"
 #include "render/film/film_lights.h"
 #include "render/film/gbuffer.h"
-
-enum { LUMINANCE = 1 /* of X, Y, Z */ };
 
 /* Pixels darker than this share of the mean count as if they were that bright. */
 #define DARK_SHARE 0.1
@@ -46,6 +45,15 @@ static bool reserve_image(film *f, GError **error)
     return f->image_size > 0;
 }
 
+/* Nor is what denoising takes. */
+static bool open_denoising(film *f, GError **error)
+{
+    size_t size = film_denoise_bytes(f->width, f->height);
+    if (halves_open(f, error) && memory_reserve(size, "denoising", error))
+        f->denoise_size = size;
+    return f->denoise_size > 0;
+}
+
 bool film_open(film *f, const view *v, bool denoise, GError **error)
 {
     const film_settings *how = &v->film;
@@ -72,7 +80,7 @@ bool film_open(film *f, const view *v, bool denoise, GError **error)
     if (f->pass)
         f->pixels = big_alloc(n_pixels(f), sizeof *f->pixels, "the film", error);
     return f->pixels && open_groups(f, v->scene, error) && gbuffer_open(f, how, error) &&
-           (!denoise || halves_open(f, error)) && reserve_image(f, error);
+           (!denoise || open_denoising(f, error)) && reserve_image(f, error);
 }
 
 void film_clear(film *f)
@@ -84,6 +92,7 @@ void film_clear(film *f)
     big_free(f->pass_surfaces);
     big_free(f->surfaces);
     halves_clear(f);
+    memory_release(f->denoise_size);
     memory_release(f->image_size);
     *f = (film){0};
 }
@@ -172,7 +181,7 @@ static double luminance(const film_sum *sum)
 {
     double y = 0.0;
     for (int i = 0; i < N_LAYERS; i++)
-        y += sum->color[i][LUMINANCE];
+        y += sum->color[i][FILM_Y];
     return y;
 }
 
@@ -326,23 +335,10 @@ static void write_groups(const film *f, size_t i, double weight, float *out)
     }
 }
 
-/* The pixel itself if it has been put in the first pass, or the nearest on a coarser grid
-   of its tile that has. */
-static size_t pixel_put(const film *f, size_t i)
-{
-    size_t width = (size_t)f->width, x = i % width, y = i / width;
-    for (size_t step = 1; step <= FILM_COARSE; step *= 2) {
-        size_t at = (y - y % step) * width + x - x % step;
-        if (film_pass_counts(f, at))
-            return at;
-    }
-    return i;
-}
-
 static void write_pixel(const film *f, size_t i, float *out)
 {
     if (f->n_passes == 0)
-        i = pixel_put(f, i);
+        i = film_pixel_put(f, i);
     film_sum sum = f->pixels[i].sum;
     surface_sum surface = f->surfaces ? f->surfaces[i] : (surface_sum){0};
     if (film_pass_counts(f, i)) {

@@ -20,6 +20,7 @@
 
 enum {
     FILM_COLORS = N_LAYERS + 1 /* albedo */,
+    FILM_Y = 1,      /**< of X, Y, Z: luminance */
     FILM_TILE = 16,  /**< pixels are rendered in squares of this size */
     FILM_COARSE = 8, /**< and may come in an order in which every so manieth in both
                         directions is first, then the half, and so on */
@@ -77,7 +78,7 @@ typedef struct film {
     surface_sum *surfaces;         /**< of the passes done */
     struct guide_sum *pass_guides; /**< of the pass; NULL: the film has no halves */
     struct half_pixel *halves;     /**< of the passes done: film_halves.h */
-    size_t denoise_size;           /**< bytes reserved for film_denoise */
+    size_t denoise_size;           /**< bytes reserved for film_denoise.h */
     bool coarse;                   /**< windows of film_denoise: denoise_size.coarse */
     bool no_time;      /**< there is none to denoise: film_can_denoise is false */
     size_t image_size; /**< bytes reserved for film_image */
@@ -116,6 +117,9 @@ void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
  * 0..FILM_CELLS - 1: after 1, 4, 16 and 64 cells a grid of every 8th, 4th, 2nd and every
  * pixel is whole, and in between what there is lies evenly. */
 int film_cell(const film *f, int x, int y);
+/** @brief A pixel itself if the pass under way is part of the picture there, or the
+ * nearest on a coarser grid of its tile where it is. */
+size_t film_pixel_put(const film *f, size_t pixel);
 /** @brief Adds what a pass made of a pixel. */
 void film_add_pass(film_sum *sum, const pass_pixel *pass);
 /** @brief Whether the pass under way is part of the picture at a pixel of the film. */

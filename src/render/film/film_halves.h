@@ -4,11 +4,16 @@
  * of light scatters over passes; and guides, which is what is known of a pixel beside its
  * light.
  *
+ * Of a pixel that has one pass only, that pass is one half of it, and the other half is
+ * the pass of the pixel below or above: of two rows, the first has even halves and the
+ * second odd ones. So one pass has halves, half of one has them, and as the second comes
+ * each pixel gets its own.
+ *
  *   sample ─► guide_sum (of one pixel in one pass) ─► pass[] ── halves_end_pass ─►
  * pixels[]
  *
  * Guides are of the surface that a sample sees by way of mirrors and glass; they are
- * listed once, in film_halves.c: one more is a field of light_guide and a row there.
+ * listed once, in film_denoise.c: one more is a field of light_guide and a row there.
  */
 #pragma once
 
@@ -57,20 +62,34 @@ void halves_put(film *f, int x, int y, const guide_sum *sum);
 /** @brief Of pixels [begin, end). */
 void halves_end_pass(const film *f, size_t begin, size_t end);
 
-/** @brief Whether there is enough for film_denoise: two passes. */
-bool film_can_denoise(const film *f);
-/** @brief The picture without noise, [pixel][3], in the film's colours.
- * @param cancel may be NULL @return the caller's (big_free) */
-float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
-                    GError **error);
-/** @brief About how long it takes, s: tries some rows. 0 where it can not be done.
- * @param gets_more passes of other processes are to come, so that it will be possible
- * though it is not now */
-double film_denoise_seconds(const film *f, unsigned threads, bool gets_more);
-/** @brief The same before there is a picture, by noise that is made up. */
-double film_denoise_seconds_ahead(const film *f, const view *v, unsigned threads);
+/** Of a first pass so many cells are in both halves. */
+enum { HALVES_CELLS = FILM_CELLS / 2 };
+
+/** @brief Whether there is enough to be halved. */
+bool halves_have(const film *f);
+
+/** @brief Where a half of a pixel is: of which one, and of it the even or the odd passes.
+ */
+typedef struct half_place {
+    size_t i;
+    bool odd;
+} half_place;
+
+/** @brief Where half 0 or 1 of a pixel is, if the film halves_have. */
+half_place half_place_of(const film *f, size_t i, int half);
+
+/** Numbers of film_sum, where they begin. */
+#define HALF_AT(field) (offsetof(film_sum, field) / sizeof(double))
+
+/** @brief So many numbers of a half of a pixel's film_sum, from one on. */
+void half_get(const film *f, half_place at, size_t first, int n, double *out);
+/** @brief One of them. */
+double half_number(const film *f, half_place place, size_t at);
+guide_sum half_guides(const film *f, half_place at);
+
+/** @brief Variance of the luminance of a layer's mean, by the scatter of a pixel's
+ * passes; NAN where there is one only. */
+float halves_variance(const film *f, size_t i, int layer);
+
 /** @brief Bytes a pixel of what guides the denoiser in the pass under way. */
 size_t film_guide_bytes(void);
-
-/** @brief Bytes while a picture of that size is denoised. */
-size_t film_denoise_bytes(int width, int height);

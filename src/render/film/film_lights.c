@@ -4,6 +4,8 @@
 
 float film_lights_in_sight(const film *f, size_t pixel, float rgb[3])
 {
+    if (f->n_passes == 0)
+        pixel = film_pixel_put(f, pixel);
     film_sum sum = f->pixels[pixel].sum;
     const guide_sum *guides = &f->halves[pixel].guides;
     double lit = (double)guides->lit, mirrored[3];

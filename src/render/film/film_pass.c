@@ -20,6 +20,17 @@ bool film_pass_counts(const film *f, size_t pixel)
     return film_cell(f, f->x0 + x, f->y0 + y) < f->n_cells;
 }
 
+size_t film_pixel_put(const film *f, size_t i)
+{
+    size_t width = (size_t)f->width, x = i % width, y = i / width;
+    for (size_t step = 1; step <= FILM_COARSE; step *= 2) {
+        size_t at = (y - y % step) * width + x - x % step;
+        if (film_pass_counts(f, at))
+            return at;
+    }
+    return i;
+}
+
 void film_add_pass(film_sum *sum, const pass_pixel *pass)
 {
     double *number = (double *)sum;

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "image/exr.h"
+#include "render/film/film_denoise.h"
 #include "render/film/film_halves.h"
 
 #include <math.h>

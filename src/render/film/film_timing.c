@@ -3,6 +3,7 @@
  */
 #include "base/clock.h"
 #include "base/memory.h"
+#include "render/film/film_denoise.h"
 #include "render/film/film_halves.h"
 
 enum { TRIAL_ROWS = 24, TRIAL_COLUMNS = 128 };
@@ -22,13 +23,13 @@ static double time_part(const film *f, const film *part, unsigned threads)
 /* Whether there is something to try it on, though it may all be one half. */
 static bool can_try(const film *f)
 {
-    return f->halves && f->n_passes > 0 && !f->no_time;
+    return f->halves && !f->no_time;
 }
 
 double film_denoise_seconds(const film *f, unsigned threads, bool gets_more)
 {
     film part = *f;
-    if (!film_can_denoise(f) && !(gets_more && can_try(f)))
+    if (f->n_passes == 0 || !(gets_more ? can_try(f) : film_can_denoise(f)))
         return 0.0;
     part.height = MIN(TRIAL_ROWS, f->height);
     part.denoise_size = 0;
@@ -44,16 +45,27 @@ double film_denoise_seconds(const film *f, unsigned threads, bool gets_more)
 
 /* ---- Of none yet ---- */
 
-/* A pass over walls whose light is noise, direct and indirect, and not by mirrors. */
-static void put_noise(film *f)
+/* Lights of which the pass under way has shown any, or those that most pictures have. */
+static void find_lights(const film *f, bool lit[N_LIGHTS])
+{
+    lit[LAYER_DIRECT] = lit[LAYER_INDIRECT] = f->n_cells == 0;
+    for (size_t i = 0; i < (size_t)f->width * (size_t)f->height; i++) {
+        const float *color = f->pass[i].number + HALF_AT(color);
+        for (int l = 0; l < N_LIGHTS && film_pass_counts(f, i); l++)
+            lit[l] |= color[3 * l + FILM_Y] != 0.0f;
+    }
+}
+
+/* A pass over walls whose light is noise. */
+static void put_noise(film *f, const bool lit[N_LIGHTS])
 {
     for (int i = 0; i < f->width * f->height; i++) {
         sampler random = sampler_make((uint64_t)f->n_passes, (uint64_t)i);
         film_sum sum = {.weight = 1.0, .surface_weight = 1.0};
         guide_sum guides = {.weight = 1.0f};
         for (int k = 0; k < 3; k++) {
-            sum.color[LAYER_DIRECT][k] = (double)sampler_1d(&random);
-            sum.color[LAYER_INDIRECT][k] = (double)sampler_1d(&random);
+            for (int l = 0; l < N_LIGHTS; l++)
+                sum.color[l][k] = lit[l] ? (double)sampler_1d(&random) : 0.0;
             sum.color[N_LAYERS][k] = (double)(guides.albedo[k] = sampler_1d(&random));
             sum.normal[k] = (double)(guides.normal[k] = sampler_1d(&random));
         }
@@ -68,15 +80,17 @@ double film_denoise_seconds_ahead(const film *f, const view *v, unsigned threads
 {
     view few = *v;
     film noise = {0};
+    bool lit[N_LIGHTS] = {false};
     double took = 0.0;
     few.film.width = MIN(TRIAL_COLUMNS, f->width);
     few.film.height = MIN(TRIAL_ROWS, f->height);
     few.film.crop[0] = few.film.crop[2] = 0.0f;
     few.film.crop[1] = few.film.crop[3] = 1.0f;
-    if (f->halves && film_open(&noise, &few, true, NULL)) {
+    if (f->halves && !f->no_time && film_open(&noise, &few, true, NULL)) {
         noise.coarse = f->coarse;
-        put_noise(&noise);
-        put_noise(&noise);
+        find_lights(f, lit);
+        put_noise(&noise, lit);
+        put_noise(&noise, lit);
         took = time_part(f, &noise, threads);
     }
     film_clear(&noise);

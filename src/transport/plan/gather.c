@@ -456,10 +456,10 @@ static double bias_of_passes(double alpha, double passes)
     return pow(passes, alpha - 1.0) / tgamma(1.0 + alpha);
 }
 
-/* Noise is taken out of two passes or more. */
+/* Noise is taken out of half a pass or more. */
 static bool is_filtered(const transport_plan *plan, double passes)
 {
-    return plan->how.denoise && passes >= 2.0;
+    return plan->how.denoise && passes >= 0.5;
 }
 
 /* Squared error of n samples a pixel times n, which are told within a factor of two: of

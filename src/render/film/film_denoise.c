@@ -1,0 +1,318 @@
+#include "render/film/film_denoise.h"
+
+#include "base/memory.h"
+#include "image/denoise/denoise.h"
+#include "render/film/film_halves.h"
+#include "render/film/film_lights.h"
+
+static size_t n_pixels(const film *f)
+{
+    return (size_t)f->width * (size_t)f->height;
+}
+
+/* ---- Features ---- */
+
+/* Differences of less than this part of a feature are none. */
+#define NO_DIFFERENCE 1e-5f
+
+static void mean_of(const double *sum, double weight, int n, float *out)
+{
+    for (int i = 0; i < n; i++)
+        out[i] = fabs(weight) > 0.0 ? (float)(sum[i] / weight) : 0.0f;
+}
+
+static void first_albedo(const film *f, half_place at, float *out)
+{
+    double sum[3];
+    half_get(f, at, HALF_AT(color[N_LAYERS]), 3, sum);
+    film_to_rgb(f, sum, half_number(f, at, HALF_AT(surface_weight)), out);
+}
+
+static void first_normal(const film *f, half_place at, float *out)
+{
+    double sum[3];
+    half_get(f, at, HALF_AT(normal), 3, sum);
+    mean_of(sum, half_number(f, at, HALF_AT(surface_weight)), 3, out);
+}
+
+static void first_depth(const film *f, half_place at, float *out)
+{
+    double sum = half_number(f, at, HALF_AT(depth));
+    mean_of(&sum, half_number(f, at, HALF_AT(surface_weight)), 1, out);
+}
+
+static void guide_color(const film *f, const float xyz[3], float weight, float *out)
+{
+    double sum[3] = {(double)xyz[0], (double)xyz[1], (double)xyz[2]};
+    film_to_rgb(f, sum, (double)weight, out);
+}
+
+/* Of what is seen in a mirror only how it differs from the mirror counts: elsewhere it
+   says nothing new. */
+static void less_first(float *out, const float *first, int n)
+{
+    for (int i = 0; i < n; i++) {
+        float d = out[i] - first[i];
+        out[i] = fabsf(d) > NO_DIFFERENCE * fabsf(out[i]) ? d : 0.0f;
+    }
+}
+
+static void seen_albedo(const film *f, half_place at, float *out)
+{
+    float first[3];
+    guide_sum sum = half_guides(f, at);
+    guide_color(f, sum.albedo, sum.weight, out);
+    first_albedo(f, at, first);
+    less_first(out, first, 3);
+}
+
+static void seen_normal(const film *f, half_place at, float *out)
+{
+    float first[3];
+    guide_sum sum = half_guides(f, at);
+    for (int k = 0; k < 3; k++)
+        out[k] = sum.weight > 0.0f ? sum.normal[k] / sum.weight : 0.0f;
+    first_normal(f, at, first);
+    less_first(out, first, 3);
+}
+
+static void seen_depth(const film *f, half_place at, float *out)
+{
+    float first;
+    guide_sum sum = half_guides(f, at);
+    *out = sum.weight > 0.0f ? sum.depth / sum.weight : 0.0f;
+    first_depth(f, at, &first);
+    less_first(out, &first, 1);
+}
+
+typedef struct feature {
+    int n_channels;
+    void (*read)(const film *f, half_place at, float *out);
+} feature;
+
+enum { ALBEDO = 0 }; /* by which light is divided that comes from the first surface */
+
+static const feature features[] = {
+    [ALBEDO] = {3, first_albedo},
+    {3, first_normal},
+    {1, first_depth},
+    {3, seen_albedo},
+    {3, seen_normal},
+    {1, seen_depth},
+};
+
+/* ---- The picture ---- */
+
+/* Memory while a layer is read. */
+typedef struct layer_room {
+    float *half[2], *variance, *out;
+} layer_room;
+
+/* What is filtered of a layer. */
+static void light_of(const film *f, half_place at, int layer, float *rgb)
+{
+    double sum[3];
+    half_get(f, at, HALF_AT(color) + 3 * (size_t)layer, 3, sum);
+    if (layer == LAYER_SPECULAR) {
+        guide_sum guides = half_guides(f, at);
+        for (int c = 0; c < 3; c++)
+            sum[c] -= (double)guides.lights[c];
+    }
+    film_to_rgb(f, sum, half_number(f, at, HALF_AT(weight)), rgb);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= f->scale;
+}
+
+typedef struct read_loop {
+    const film *f;
+    layer_room *room;
+    const feature *feature; /* NULL: light */
+    int layer;
+} read_loop;
+
+static void read_pixels(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const read_loop *loop = data;
+    const film *f = loop->f;
+    for (size_t i = begin; i < end; i++) {
+        for (int h = 0; h < 2; h++) {
+            half_place at = half_place_of(f, i, h);
+            if (loop->feature) {
+                size_t to = i * (size_t)loop->feature->n_channels;
+                loop->feature->read(f, at, loop->room->half[h] + to);
+                continue;
+            }
+            light_of(f, at, loop->layer, loop->room->half[h] + 3 * i);
+        }
+        if (!loop->feature)
+            loop->room->variance[i] = halves_variance(f, i, loop->layer);
+    }
+}
+
+static void read_all(read_loop *loop, unsigned threads)
+{
+    parallel_for(n_pixels(loop->f), 1 << 12, threads, NULL, read_pixels, loop);
+}
+
+static bool add_features(const film *f, denoiser *d, layer_room *room, unsigned threads,
+                         GError **error)
+{
+    for (size_t k = 0; k < G_N_ELEMENTS(features); k++) {
+        read_loop loop = {f, room, &features[k], 0};
+        const denoise_layer layer = {
+            features[k].n_channels, {room->half[0], room->half[1]}, NULL};
+        read_all(&loop, threads);
+        if (denoiser_add(d, &layer, error) < 0)
+            return false;
+    }
+    return true;
+}
+
+/* The result. */
+typedef struct out_loop {
+    const film *f;
+    const float *light; /* a filtered layer */
+    float *out;
+} out_loop;
+
+/* These are not filtered. */
+static void put_lights(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const out_loop *loop = data;
+    for (size_t i = begin; i < end; i++)
+        film_lights_in_sight(loop->f, i, loop->out + 3 * i);
+}
+
+static void add_light(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const out_loop *loop = data;
+    for (size_t i = 3 * begin; i < 3 * end; i++)
+        loop->out[i] += loop->light[i];
+}
+
+static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
+                          unsigned threads, float *out, GError **error)
+{
+    out_loop all = {f, room->out, out};
+    parallel_for(n_pixels(f), ITEMS_AT_ONCE, threads, NULL, put_lights, &all);
+    for (int l = 0; l < N_LIGHTS; l++) {
+        read_loop loop = {f, room, NULL, l};
+        const denoise_layer layer = {3, {room->half[0], room->half[1]}, room->variance};
+        read_all(&loop, threads);
+        if (!denoiser_filter(d, &layer, l == LAYER_SPECULAR ? -1 : ALBEDO, room->out,
+                             error))
+            return false;
+        parallel_for(n_pixels(f), ITEMS_AT_ONCE, threads, NULL, add_light, &all);
+    }
+    return true;
+}
+
+/* Of all samples, those of the even half. */
+static float share_of_even(const film *f)
+{
+    double sum[2] = {0.0};
+    for (size_t i = 0; i < n_pixels(f); i++) {
+        for (int h = 0; h < 2; h++) {
+            half_place at = half_place_of(f, i, h);
+            sum[h] += at.i == i ? half_number(f, at, HALF_AT(weight)) : 0.0;
+        }
+    }
+    return (float)(sum[0] / (sum[0] + sum[1]));
+}
+
+/* Of all lights that are filtered, not yet divided by the weight. */
+static double filtered_luminance(const film *f, half_place at)
+{
+    double y = -(double)half_guides(f, at).lights[FILM_Y];
+    for (size_t l = 0; l < N_LIGHTS; l++)
+        y += half_number(f, at, HALF_AT(color) + 3 * l + FILM_Y);
+    return y;
+}
+
+static float mean_luminance(const film *f)
+{
+    double y = 0.0, weight = 0.0;
+    for (size_t i = 0; i < n_pixels(f); i++) {
+        for (int h = 0; h < 2; h++) {
+            half_place at = half_place_of(f, i, h);
+            y += filtered_luminance(f, at);
+            weight += half_number(f, at, HALF_AT(weight));
+        }
+    }
+    return y > 0.0 && weight > 0.0 ? (float)(y / weight) * f->scale : 0.0f;
+}
+
+/* Processes that deal passes out may have given all to one half. */
+#define LEAST_SHARE 0.05f
+
+bool film_can_denoise(const film *f)
+{
+    if (!f->halves || !halves_have(f) || f->no_time)
+        return false;
+    float share = share_of_even(f);
+    return share > LEAST_SHARE && share < 1.0f - LEAST_SHARE;
+}
+
+static bool open_room(const film *f, layer_room *room, GError **error)
+{
+    size_t n = n_pixels(f), size = 3 * sizeof(float);
+    room->half[0] = big_alloc(n, size, "denoising", error);
+    room->half[1] = room->half[0] ? big_alloc(n, size, "denoising", error) : NULL;
+    room->out = room->half[1] ? big_alloc(n, size, "denoising", error) : NULL;
+    room->variance = room->out ? big_alloc(n, sizeof(float), "denoising", error) : NULL;
+    return room->variance != NULL;
+}
+
+static void close_room(layer_room *room)
+{
+    big_free(room->half[0]);
+    big_free(room->half[1]);
+    big_free(room->out);
+    big_free(room->variance);
+}
+
+static float *denoise(const film *f, const denoise_size *size, GError **error)
+{
+    layer_room room = {0};
+    float *out = NULL;
+    g_autoptr(denoiser) d = denoiser_new(size, error);
+    bool done = d && open_room(f, &room, error) &&
+                add_features(f, d, &room, size->threads, error) &&
+                (out = big_alloc(n_pixels(f), 3 * sizeof *out, "denoising", error)) &&
+                filter_lights(f, d, &room, size->threads, out, error);
+    close_room(&room);
+    if (!done)
+        g_clear_pointer(&out, big_free);
+    return out;
+}
+
+float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
+                    GError **error)
+{
+    float even = clampf(share_of_even(f), LEAST_SHARE, 1.0f - LEAST_SHARE);
+    const denoise_size size = {.width = f->width,
+                               .height = f->height,
+                               .share = even,
+                               .brightness = mean_luminance(f),
+                               .threads = threads,
+                               .cancel = cancel,
+                               .coarse = f->coarse};
+    memory_release(f->denoise_size);
+    float *out = denoise(f, &size, error);
+    memory_count(f->denoise_size);
+    return out;
+}
+
+size_t film_denoise_bytes(int width, int height)
+{
+    const int n_features = G_N_ELEMENTS(features);
+    size_t pixel = sizeof(float) * (size_t)(4 * 3 + 1); /* layer_room, and the result */
+    int n = 0;
+    for (int k = 0; k < n_features; k++)
+        n += features[k].n_channels;
+    return (size_t)width * (size_t)height * pixel +
+           denoise_bytes(width, height, n_features, n);
+}
