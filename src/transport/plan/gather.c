@@ -456,10 +456,11 @@ static double bias_of_passes(double alpha, double passes)
     return pow(passes, alpha - 1.0) / tgamma(1.0 + alpha);
 }
 
-/* Noise is taken out of half a pass or more. */
+/* Noise is taken out of one pass or more; of half a one, too, but that is worth less than
+   the other half. */
 static bool is_filtered(const transport_plan *plan, double passes)
 {
-    return plan->how.denoise && passes >= 0.5;
+    return plan->how.denoise && passes >= 1.0;
 }
 
 /* Squared error of n samples a pixel times n, which are told within a factor of two: of
