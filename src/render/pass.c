@@ -173,15 +173,17 @@ static double seconds_to_halves(const render *r)
     return sure * MAX(HALVES_CELLS - done, 0) * look_seconds(r->look) / done;
 }
 
-/* Noise is left where taking it out would end far too late, by what the first pass tells:
-   it saves far more error than passes do in that time, and this picture counted on it. */
-static void give_up_denoising(render *r)
+/* Noise is left where taking it out would end far too late, by what the first pass tells,
+   or was told before that if it is less: it saves far more error than passes do in that
+   time, and this picture counted on it. */
+static void give_up_denoising(render *r, double told)
 {
     bool is_first = r->passes_done == 1 || (r->passes_done == 0 && r->film.n_cells > 0);
     if (!is_first || !(r->denoising > 0.0))
         return;
     stop_state now = render_state_now(r, 0.0);
     now.elapsed += seconds_to_halves(r) - LATE_DENOISING;
+    now.after -= fmax(r->denoising - told, 0.0);
     if (stop_at_once(&r->plan.how, &now))
         render_leave_noise(r);
 }
@@ -191,10 +193,11 @@ void render_time_writing(render *r)
     double time = r->plan.how.time, elapsed = clock_seconds() - r->start;
     if (!(time > 0.0) || !timing_is_due(r, elapsed))
         return;
+    double told = r->denoising;
     r->denoising = time_denoising(r);
     r->after = r->denoising +
                pace_write_seconds(&r->film, r->n_threads, r->paths, WRITE_SHARE * time);
-    give_up_denoising(r);
+    give_up_denoising(r, told);
     r->timed_at = elapsed;
     r->timing = clock_seconds() - r->start - elapsed;
 }

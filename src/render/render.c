@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "render/film/film_halves.h"
 #include "render/film/film_planes.h"
 #include "render/footprint.h"
 #include "render/pace.h"
@@ -56,14 +57,14 @@ static void take_pace(render *r, const settings *how, const pace_costs *costs,
     r->expected_pass = pace_pass_seconds(costs, how, &r->plan.how, n_pixels);
 }
 
-/* Passes that fit into the time left beside denoising; where not even one does, which has
-   less error with its noise than half of one without, noise is planned to stay. */
+/* Passes that fit into the time left beside denoising; where not even so much of one does
+   as has halves, the picture is planned as one whose noise stays. */
 static void choose_pace(render *r, const pace_costs *costs)
 {
     settings how = r->asked;
     double left = how.time - r->after - (clock_seconds() - r->start);
     take_pace(r, &how, costs, left);
-    double late = r->expected_pass - left;
+    double late = HALVES_CELLS * r->expected_pass / FILM_CELLS - left;
     if (!how.denoise || late <= fmax(stop_grace(how.time), LATE_DENOISING))
         return;
     how.denoise = false;

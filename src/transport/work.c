@@ -13,8 +13,7 @@ double plan_rays_of(const transport_scratch *scratch)
     const estimate_scratch *maps = &scratch->estimate;
     double weighed = (double)maps->n_weighed / N_WAVELENGTHS;
     return (double)(scratch->camera_rays + scratch->shadow_rays) +
-           PHOTON_RAYS * (double)maps->n_queries +
-           LOOK_RAYS * ((double)maps->n_looks + weighed);
+           (double)maps->n_queries + LOOK_RAYS * ((double)maps->n_looks + 0.5 * weighed);
 }
 
 void plan_note_photons(transport_plan *plan, double n, double rays)

@@ -26,19 +26,21 @@
  * scenes/glass-ball, and 7 in a closed room. */
 #define SAMPLE_RAYS ((double)ROULETTE_BOUNCES)
 
-/** What a photon costs, in rays, and what a query of a map does. Counted were 0.9 to 1.1
- * where photons start uniformly in scenes/ring and scenes/glass-ball, 1.4 and 2.9 where
- * they start guided; by the clock gathers took 1.7 rays for each surface met in the first
- * and 1.0 in the other, where half of them gather. */
+/** What a photon costs, in rays, and what a query of a map does with all that it looks
+ * at. Counted were 0.9 to 1.1 where photons start uniformly in scenes/ring and
+ * scenes/glass-ball, 1.4 and 2.9 where they start guided; by the clock gathers took 1.7
+ * rays for each surface met in the first and 1.0 in the other, where half of them gather.
+ */
 #define PHOTON_RAYS 2.0
 
-/** What a short ray costs that looks for edges, in rays, and what as many photons do that
- * are gathered as there are wavelengths, or one that a BSDF weighs at all of them: so the
- * rays of passes that gather all, over those of passes by paths, come closest to what
- * both took of the processor (seven scenes, those of bench/equal_time, 256 x 256, 1 to 16
- * passes: 14 % in the mean square; 31 % by looks alone, of 0.2, which left wide discs
- * of few passes at half their price). */
-#define LOOK_RAYS 0.1
+/** What a short ray costs that looks for edges, in rays. A query whose looks are counted
+ * costs one ray, and as many photons as there are wavelengths, or one that a BSDF weighs
+ * at all of them, half of a look: so the rays of passes that gather all, over those of
+ * passes by paths, come close to what both took of the processor (fourteen scenes, 192 x
+ * 192, 1, 4 and 16 passes by photon mapping: 17 % in the mean square, from .6 to 1.4;
+ * with 0.4, half a ray for a query and a quarter of a look 13 %; with 0.1, two rays and
+ * as much 35 %, from .6 to 2.2, with twice the cost in Sponza and on a laid table). */
+#define LOOK_RAYS 0.3
 
 /** What is tried must be better than what is there by so much: variances are known within
  * a factor of two, and noise that is even disturbs least. With 1 in its place time x

@@ -456,11 +456,10 @@ static double bias_of_passes(double alpha, double passes)
     return pow(passes, alpha - 1.0) / tgamma(1.0 + alpha);
 }
 
-/* Noise is taken out of one pass or more; of half a one, too, but that is worth less than
-   the other half. */
-static bool is_filtered(const transport_plan *plan, double passes)
+/* Noise is taken out of half a pass or more. */
+static bool is_filtered(const transport_plan *plan)
 {
-    return plan->how.denoise && passes >= 1.0;
+    return plan->how.denoise && settings_planned_passes(&plan->how) >= 0.5;
 }
 
 /* Squared error of n samples a pixel times n, which are told within a factor of two: of
@@ -473,16 +472,16 @@ static double variance_of_samples(double variance, const gather_errors *e, doubl
 }
 
 /* Squared error of the picture times the samples of a pixel, comparable to the variance
-   of one of them; there is time for so many passes by maps. Where noise can be taken out
-   of those planned by paths, but not of those of maps, the grain of these stays, too. */
+   of one of them; there is time for so many passes by maps. Noise that is taken out of
+   less than one pass, where paths have one, or less than theirs, stays as well as not. */
 static double error_of(const transport_plan *plan, const gather_errors *e, double in_time)
 {
     double passes = settings_planned_passes(&plan->how), alpha = plan->how.alpha;
     double spp = (double)plan->how.spp, bias = bias_of_passes(alpha, passes);
     double alike =
         e->photons * variance_of_passes(alpha, passes) + e->bias2 * bias * bias;
-    bool filtered = is_filtered(plan, passes);
-    double grain_weight = filtered && !is_filtered(plan, in_time) ? BLOTCHES : 1.0;
+    bool filtered = is_filtered(plan), short_of_time = in_time < fmin(passes, 1.0);
+    double grain_weight = filtered && short_of_time ? BLOTCHES : 1.0;
     double weight = filtered ? BLOTCHES : 1.0;
     return grain_weight * variance_of_samples(e->samples, e, in_time * spp) +
            weight * passes * spp * alike;
