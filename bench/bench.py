@@ -191,7 +191,7 @@ def photon_rows(bench):
         n = 10 ** decade
         kept = bench.folder / "statistics.json"
         command = bench.render(CORNELL, "-j1", "--integrator", "photonmap", "--passes", 1,
-                               "--spp", 1, "--size", "32x32", "-s",
+                               "--spp", 1, "--size", "32x32", "--denoise", "off", "-s",
                                f"photons={n}", "--stats", kept)
         took, = bench.turns(command)
         said = json.loads(kept.read_text())
@@ -206,8 +206,9 @@ def photon_rows(bench):
 
 
 def first_rows(bench):
-    """The first picture, from the start of the process to the file."""
-    command = bench.render(CORNELL, "--passes", 1, "-s", "first_spp=1", "--size", "256x256")
+    """The first picture, as rendered, from the start of the process to the file."""
+    command = bench.render(CORNELL, "--passes", 1, "-s", "first_spp=1", "--size", "256x256",
+                           "--denoise", "off")
     took, = bench.turns(command, clock=True)
     worked, = bench.turns(command)
     yield Row("first picture of the Cornell box, 256 × 256", "the clock", "s", took, 0.3,

@@ -24,6 +24,7 @@ NephSettings *preview_settings(const NephSettings *wanted, double extent)
         {"caustic_nearest", "0"},
         {"indirect_nearest", "0"},
         {"edges", "false"},
+        {"denoise", "false"},
         {"caustic_emission", "specular-area"},
     };
     NephSettings *s = neph_settings_copy(wanted);

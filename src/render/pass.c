@@ -69,7 +69,7 @@ static int least_cells(const render *r)
 {
     if (r->passes_done > 0)
         return 0;
-    return r->denoising > 0.0 ? HALVES_CELLS : 1;
+    return r->film.lends && r->denoising > 0.0 ? HALVES_CELLS : 1;
 }
 
 /* A pass that is not done when the time is over is given up. */
@@ -141,6 +141,12 @@ static double time_denoising(render *r)
     return coarse;
 }
 
+/* Whole passes that there must be to be denoised. */
+static uint32_t passes_halved(const render *r)
+{
+    return r->film.lends ? 1 : 2;
+}
+
 /* Whether how long writing and denoising take is to be asked: at the start, when it is
    seen which lights there are, of the first pass, and, unless that would take much of the
    time, of the first pictures and again when half of the time is over, since it depends
@@ -148,7 +154,7 @@ static double time_denoising(render *r)
 static bool timing_is_due(const render *r, double elapsed)
 {
     double time = r->plan.how.time;
-    if (!(r->after > 0.0) || r->film.n_cells == 1 || r->passes_done == 1)
+    if (!(r->after > 0.0) || r->film.n_cells == 1 || r->passes_done == passes_halved(r))
         return true;
     if (elapsed - r->timed_at < r->timing / TIMING_SHARE)
         return false;
@@ -167,7 +173,7 @@ void render_leave_noise(render *r)
 static double seconds_to_halves(const render *r)
 {
     int done = r->film.n_cells;
-    if (!r->look || done == 0)
+    if (!r->film.lends || !r->look || done == 0)
         return 0.0;
     double sure = done < HALVES_CELLS / 2 ? 0.5 : 1.0;
     return sure * MAX(HALVES_CELLS - done, 0) * look_seconds(r->look) / done;
@@ -178,8 +184,8 @@ static double seconds_to_halves(const render *r)
    time, and this picture counted on it. */
 static void give_up_denoising(render *r, double told)
 {
-    bool is_first = r->passes_done == 1 || (r->passes_done == 0 && r->film.n_cells > 0);
-    if (!is_first || !(r->denoising > 0.0))
+    bool has_some = r->passes_done > 0 || r->film.n_cells > 0;
+    if (!has_some || r->passes_done > passes_halved(r) || !(r->denoising > 0.0))
         return;
     stop_state now = render_state_now(r, 0.0);
     now.elapsed += seconds_to_halves(r) - LATE_DENOISING;

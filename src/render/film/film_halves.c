@@ -76,14 +76,13 @@ static double lights_luminance(const guide_sum *guides, int layer)
 
 void halves_end_pass(const film *f, size_t begin, size_t end)
 {
-    const size_t color = offsetof(film_sum, color) / sizeof(double);
     for (size_t i = begin; i < end && f->halves; i++) {
         half_pixel *pixel = &f->halves[i];
         const float *number = f->pass[i].number;
-        double w = fabs((double)number[offsetof(film_sum, weight) / sizeof(double)]);
+        double w = fabs((double)number[HALF_AT(weight)]);
         add_floats(&pixel->guides, &f->pass_guides[i], GUIDE_NUMBERS);
         for (size_t l = 0; l < N_LIGHTS; l++) {
-            double y = (double)number[color + 3 * l + FILM_Y];
+            double y = (double)number[HALF_AT(color) + 3 * l + FILM_Y];
             y -= lights_luminance(&f->pass_guides[i], (int)l);
             pixel->y2[l] += w > 0.0 ? y * y / w : 0.0;
         }
@@ -121,7 +120,8 @@ static half_place place_in_part(const film *f, size_t x, size_t row)
 bool halves_have(const film *f)
 {
     bool has_pairs = f->width > 1 && f->height > 1;
-    return has_pairs && (f->n_passes > 0 || f->n_cells >= HALVES_CELLS);
+    bool has_some = f->n_passes > 0 || f->n_cells >= HALVES_CELLS;
+    return f->n_passes > 1 || (f->lends && has_pairs && has_some);
 }
 
 half_place half_place_of(const film *f, size_t i, int half)

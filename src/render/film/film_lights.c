@@ -4,7 +4,7 @@
 
 float film_lights_in_sight(const film *f, size_t pixel, float rgb[3])
 {
-    if (f->n_passes == 0)
+    if (f->n_passes == 0) /* it may be still to come */
         pixel = film_pixel_put(f, pixel);
     film_sum sum = f->pixels[pixel].sum;
     const guide_sum *guides = &f->halves[pixel].guides;

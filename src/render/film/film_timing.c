@@ -51,7 +51,8 @@ static void find_lights(const film *f, bool lit[N_LIGHTS])
     lit[LAYER_DIRECT] = lit[LAYER_INDIRECT] = f->n_cells == 0;
     for (size_t i = 0; i < (size_t)f->width * (size_t)f->height; i++) {
         const float *color = f->pass[i].number + HALF_AT(color);
-        for (int l = 0; l < N_LIGHTS && film_pass_counts(f, i); l++)
+        int n = film_pass_counts(f, i) ? N_LIGHTS : 0;
+        for (int l = 0; l < n; l++)
             lit[l] |= color[3 * l + FILM_Y] != 0.0f;
     }
 }
