@@ -2,7 +2,6 @@
 
 #include "base/memory.h"
 #include "base/slab_list.h"
-#include "render/film/film_halves.h"
 #include "render/film/film_planes.h"
 #include "render/photon_share.h"
 
@@ -70,8 +69,8 @@ size_t footprint_of(const view *v, const settings *how)
     size_t now = memory_resident(), before = memory_peak();
     film_size size = film_size_for(v, how->denoise);
     bool several = settings_most_passes(how) > 1.0;
-    bool halved = several || how->spp <= HALVES_SAMPLES;
-    size_t denoising = halved ? size.denoising : 0;
+    bool denoises = settings_takes_noise_out(how, settings_most_passes(how));
+    size_t denoising = denoises ? size.denoising : 0;
     size_t written = size.sums + MAX(denoising, size.image + size.writing);
     size_t rendered = (several ? size.sums : size.pass) + plan_bytes(v, how);
     return MAX(before, now + MAX(written, rendered));

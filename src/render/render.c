@@ -144,7 +144,7 @@ bool render_prepare(render *r, GError **error)
         r->prepared = false;
     }
     r->first_plan = render_first_plan(&r->plan);
-    r->film.lends = r->first_plan.how.spp <= HALVES_SAMPLES;
+    r->film.lends = r->first_plan.how.spp <= MOST_LENT_SAMPLES;
     r->statistics.time_prepare += clock_seconds() - start;
     note_photons(r);
     return r->prepared;

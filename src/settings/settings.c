@@ -101,6 +101,12 @@ double settings_planned_passes(const settings *s)
                                    : USUAL_PASSES;
 }
 
+bool settings_takes_noise_out(const settings *s, double passes)
+{
+    return s->denoise &&
+           (passes >= 2.0 || (passes >= 0.5 && s->spp <= MOST_LENT_SAMPLES));
+}
+
 bool settings_one_map(const settings *s)
 {
     return s->one_map && !s->final_gather;

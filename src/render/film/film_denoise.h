@@ -6,7 +6,7 @@
 
 #include "render/film/film.h"
 
-/** @brief Whether there is enough for film_denoise: half a pass. */
+/** @brief Whether there is enough for film_denoise: halves_have. */
 bool film_can_denoise(const film *f);
 /** @brief The picture without noise, [pixel][3], in the film's colours.
  * @param cancel may be NULL @return the caller's (big_free) */

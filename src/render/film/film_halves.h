@@ -62,14 +62,8 @@ void halves_put(film *f, int x, int y, const guide_sum *sum);
 /** @brief Of pixels [begin, end). */
 void halves_end_pass(const film *f, size_t begin, size_t end);
 
-enum {
-    /** Of a first pass so many cells are in both halves. */
-    HALVES_CELLS = FILM_CELLS / 2,
-    /** Pixels lend in passes of so many samples at most. One pass of 1, 4, 8 and 16 has
-     * relMSE .24 .029 .013 .0053 and shown .082 .018 .015 .012 of print under a
-     * magnifier, .17 .032 .015 .0069 and .022 .0097 .0088 .0085 of papered walls. */
-    HALVES_SAMPLES = 4,
-};
+/** Of a first pass so many cells are in both halves. */
+enum { HALVES_CELLS = FILM_CELLS / 2 };
 
 /** @brief Whether there is enough to be halved. */
 bool halves_have(const film *f);

@@ -456,12 +456,6 @@ static double bias_of_passes(double alpha, double passes)
     return pow(passes, alpha - 1.0) / tgamma(1.0 + alpha);
 }
 
-/* Noise is taken out of half a pass or more. */
-static bool is_filtered(const transport_plan *plan)
-{
-    return plan->how.denoise && settings_planned_passes(&plan->how) >= 0.5;
-}
-
 /* Squared error of n samples a pixel times n, which are told within a factor of two: of
    the pixels for which half as many do not suffice all may stay empty, and show the next.
  */
@@ -480,7 +474,8 @@ static double error_of(const transport_plan *plan, const gather_errors *e, doubl
     double spp = (double)plan->how.spp, bias = bias_of_passes(alpha, passes);
     double alike =
         e->photons * variance_of_passes(alpha, passes) + e->bias2 * bias * bias;
-    bool filtered = is_filtered(plan), short_of_time = in_time < fmin(passes, 1.0);
+    bool filtered = settings_takes_noise_out(&plan->how, passes);
+    bool short_of_time = in_time < fmin(passes, 1.0);
     double grain_weight = filtered && short_of_time ? BLOTCHES : 1.0;
     double weight = filtered ? BLOTCHES : 1.0;
     return grain_weight * variance_of_samples(e->samples, e, in_time * spp) +
