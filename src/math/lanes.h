@@ -283,19 +283,54 @@ static inline size_t pack_numbers(unsigned bits, uint32_t first, uint32_t *numbe
 #endif
 }
 
+#if HAS_WIDE_LANES
+/** Gathers take places as signed: they are counted from the middle. */
+#define GATHER_MIDDLE (1u << 31)
+
+static inline __m512i gather_places(const uint32_t *index)
+{
+    return _mm512_xor_epi32(_mm512_loadu_si512(index),
+                            _mm512_set1_epi32((int32_t)GATHER_MIDDLE));
+}
+#endif
+
 /** @brief Words from the places that index names. */
 static inline lane_ints gather_lanes(const uint32_t *words, const uint32_t *index)
 {
 #if HAS_WIDE_LANES
-    /* The instruction takes places as signed: they are counted from the middle. */
-    const uint32_t middle = 1u << 31;
-    __m512i numbers =
-        _mm512_xor_epi32(_mm512_loadu_si512(index), _mm512_set1_epi32((int32_t)middle));
-    return (lane_ints)_mm512_i32gather_epi32(numbers, words + middle, 4);
+    return (lane_ints)_mm512_i32gather_epi32(gather_places(index), words + GATHER_MIDDLE,
+                                             4);
 #else
     lane_ints v;
     for (int lane = 0; lane < LANES; lane++)
         v[lane] = (int32_t)words[index[lane]];
+    return v;
+#endif
+}
+
+/** @brief Floats from the places that index names. */
+static inline lane_floats gather_float_lanes(const float *values, const uint32_t *index)
+{
+#if HAS_WIDE_LANES
+    return (lane_floats)_mm512_i32gather_ps(gather_places(index), values + GATHER_MIDDLE,
+                                            4);
+#else
+    lane_floats v;
+    for (int lane = 0; lane < LANES; lane++)
+        v[lane] = values[index[lane]];
+    return v;
+#endif
+}
+
+/** @brief Of sixteen values those that number names. */
+static inline lane_floats pick_lanes(const float values[16], lane_ints number)
+{
+#if HAS_WIDE_LANES
+    return (lane_floats)_mm512_permutexvar_ps((__m512i)number, _mm512_loadu_ps(values));
+#else
+    lane_floats v;
+    for (int lane = 0; lane < LANES; lane++)
+        v[lane] = values[number[lane]];
     return v;
 #endif
 }

@@ -7,8 +7,7 @@
  */
 #pragma once
 
-#include "math/lanes.h"
-#include "math/vec.h"
+#include "math/vec_lanes.h"
 
 /** Steps from the centre of the square to its edge; the L1 norm of the points. */
 enum { OCTAHEDRON_STEPS = 16383 }; /* math: what 15 bits of an axis hold */
@@ -26,8 +25,7 @@ static inline vec3 direction_octahedron(uint32_t packed)
 /** @brief Dot product of n with the octahedron's point: same sign as wi·n. */
 static inline float direction_dot(uint32_t packed, vec3 n)
 {
-    vec3 o = direction_octahedron(packed);
-    return fused(o[2], n[2], fused(o[1], n[1], o[0] * n[0]));
+    return fused_dot3(direction_octahedron(packed), n);
 }
 
 /** @brief The flags of a packed direction. */
@@ -37,11 +35,7 @@ static inline unsigned direction_flags(uint32_t packed)
 }
 
 /** @brief A lane each: points on the octahedron. */
-typedef struct lane_directions {
-    lane_floats x, y, z;
-} lane_directions;
-
-static inline lane_directions lane_directions_of(lane_ints w)
+static inline lane_vec3 lane_directions_of(lane_ints w)
 {
     const float steps = (float)OCTAHEDRON_STEPS;
     lane_floats u = __builtin_convertvector((w & 0x7fff) - OCTAHEDRON_STEPS, lane_floats);
@@ -49,22 +43,15 @@ static inline lane_directions lane_directions_of(lane_ints w)
         __builtin_convertvector((w >> 15 & 0x7fff) - OCTAHEDRON_STEPS, lane_floats);
     lane_floats norm = abs_lanes(u) + abs_lanes(v);
     lane_ints fold = (lane_ints)max_lanes(norm - steps, fill_lanes(0.0f));
-    return (lane_directions){
+    return (lane_vec3){
         .x = u - (lane_floats)(fold | ((lane_ints)u & INT32_MIN)),
         .y = v - (lane_floats)(fold | ((lane_ints)v & INT32_MIN)),
         .z = steps - norm,
     };
 }
 
-static inline lane_floats lane_directions_dot(lane_directions d, vec3 n)
-{
-    lane_floats nx = fill_lanes(n[0]), ny = fill_lanes(n[1]), nz = fill_lanes(n[2]);
-    return fused_lanes(d.z, nz, fused_lanes(d.y, ny, d.x * nx));
-}
-
 /** @brief Bits of packed directions on the side of n. */
 static inline unsigned directions_on_side(lane_ints packed, vec3 n)
 {
-    return bits_below(fill_lanes(0.0f),
-                      lane_directions_dot(lane_directions_of(packed), n));
+    return bits_below(fill_lanes(0.0f), dot3_lanes(lane_directions_of(packed), n));
 }

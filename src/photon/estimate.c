@@ -39,7 +39,11 @@ struct gather {
     spectrum sum;
     spectrum *groups; /* the sum, apart by tags */
     size_t n_groups;
-    size_t n;                  /* weighed */
+    size_t n;   /* weighed */
+    bool looks; /* around the disc, once a photon is found */
+    estimate_scratch *scratch;
+    const looked_disc *around; /* what was seen; NULL: nothing yet */
+    looked_disc own;           /* seen by this one */
     const neighbourhood *hood; /* if set, photons out of its sight are left out */
 };
 
@@ -117,25 +121,47 @@ static void weigh_by_tag(gather *g)
     }
 }
 
-/* Takes photons out of the block that the centre does not see. */
-static void leave_out_unseen(gather *g)
+/* The root of r2, or next to it, whose square is not above r2: what lies at r2 is out of
+   reach, as the k-th of the nearest is. */
+static float root_within(float r2)
 {
-    const photon_store *s = g->query.store;
-    size_t kept = 0;
-    for (size_t i = 0; i < g->n_block; i++) {
-        size_t k = g->index[i];
-        if (!neighbourhood_sees(g->hood, vec3_make(s->x[k], s->y[k], s->z[k])))
-            continue;
-        g->index[kept] = k;
-        g->weight[kept++] = g->weight[i];
-    }
-    g->n_block = kept;
+    float r = sqrtf(r2);
+    return r * r > r2 ? nextafterf(r, 0.0f) : r;
+}
+
+static const looked_disc *look_around(gather *g)
+{
+    const estimate_options *options = g->options;
+    looked_around *looked = options->shares_looks ? &g->scratch->looked : NULL;
+    float share = options->looked_share > 0.0f ? options->looked_share : 1.0f;
+    const neighbourhood hood = {.scene = options->scene,
+                                .p = g->query.at.p,
+                                .n = g->query.at.n,
+                                .radius = root_within(g->r2) * share,
+                                .time = options->time};
+    const looked_disc *seen =
+        looked ? looked_around_find(looked, &hood, &options->kernel) : NULL;
+    if (seen)
+        return seen;
+    g->own = disc_look(&hood, &options->kernel);
+    g->scratch->n_looks += g->own.hood.n_looks;
+    if (looked)
+        looked_around_put(looked, &g->own);
+    return &g->own;
+}
+
+/* Of a disc that is not whole photons are found again, of the part that is in sight. */
+static bool is_found_again(const gather *g)
+{
+    return g->around && !g->around->whole && !g->hood;
 }
 
 static void flush(gather *g)
 {
-    if (g->hood)
-        leave_out_unseen(g);
+    if (g->looks && !g->around && g->n_block > 0)
+        g->around = look_around(g);
+    if (is_found_again(g))
+        g->n_block = 0;
     if (g->n_groups)
         weigh_by_tag(g);
     else
@@ -154,6 +180,7 @@ static inline __attribute__((always_inline)) void weigh_block(gather *g,
     const kernel kappa = g->options->kernel;
     const float inv_r2 = g->inv_r2;
     const bool selects = photon_query_selects(query);
+    const neighbourhood *hood = g->hood;
     size_t n = g->n_block, kept = 0;
     for (size_t i = 0; i < n; i++)
         __builtin_prefetch(query->store->packed + g->index[i]);
@@ -163,6 +190,8 @@ static inline __attribute__((always_inline)) void weigh_block(gather *g,
         lane_floats weight = kernel_eval_lanes(&kappa, load_lanes(g->weight + i), inv_r2);
         if (selects)
             bits = photon_query_accepted_of(query, g->index + i, bits);
+        if (hood)
+            bits = neighbourhood_sees_of(hood, &query->points, g->index + i, bits);
         kept += pack_lane_pairs(weight, g->index + i, bits, g->weight + kept,
                                 g->index + kept);
     }
@@ -189,6 +218,8 @@ gather_by(gather *g, photon_query query, const point_run *runs, size_t n)
                 g->n_block = n_block;
                 weigh_block(g, &query);
                 n_block = 0;
+                if (is_found_again(g))
+                    return;
             }
         }
     }
@@ -288,10 +319,10 @@ static bool search_radius(const gather *g, const photon_map *map, size_t k,
     return true;
 }
 
-static bool gather_nearest(gather *g, const photon_map *map, estimate_scratch *scratch)
+static bool gather_nearest(gather *g, const photon_map *map)
 {
     const estimate_options *options = g->options;
-    point_hits *hits = &scratch->hits;
+    point_hits *hits = &g->scratch->hits;
     float radius = options->radius;
     hits->n = 0;
     size_t k = MIN(options->nearest, g->query.store->n);
@@ -313,15 +344,7 @@ static bool gather_nearest(gather *g, const photon_map *map, estimate_scratch *s
 
 /* ---- The estimate ---- */
 
-/* The root of r2, or next to it, whose square is not above r2: what lies at r2 is out of
-   reach, as the k-th of the nearest is. */
-static float root_within(float r2)
-{
-    float r = sqrtf(r2);
-    return r * r > r2 ? nextafterf(r, 0.0f) : r;
-}
-
-static bool gather_once(gather *g, const photon_map *map, estimate_scratch *scratch)
+static bool gather_once(gather *g, const photon_map *map)
 {
     g->n_block = g->n = 0;
     g->sum = (spectrum){0};
@@ -329,51 +352,29 @@ static bool gather_once(gather *g, const photon_map *map, estimate_scratch *scra
         g->groups[i] = (spectrum){0};
     bool done = true;
     if (g->options->nearest)
-        done = gather_nearest(g, map, scratch);
+        done = gather_nearest(g, map);
     else
         gather_within(g, map);
     flush(g);
-    scratch->n_weighed += g->n * (g->weigh == weigh_bsdf ? N_WAVELENGTHS : 1);
+    g->scratch->n_weighed += g->n * (g->weigh == weigh_bsdf ? N_WAVELENGTHS : 1);
     return done;
 }
 
 /* The photons again, of the part of the disc that is surface in sight. */
-static bool gather_part(gather *g, const photon_map *map, const neighbourhood *hood,
-                        estimate_scratch *scratch)
+static bool gather_part(gather *g, const photon_map *map)
 {
     const estimate_options *options = g->options;
     estimate_options within = *options;
+    g->hood = &g->around->hood;
     within.nearest = 0;
-    within.radius = hood->radius;
+    within.radius = g->hood->radius;
     g->options = &within;
-    g->hood = hood;
     g->query.at.flat = true;
     g->query.at.inv_flatten = 1.0f / NEIGHBOURHOOD_FLATTEN;
-    bool done = gather_once(g, map, scratch);
+    bool done = gather_once(g, map);
     g->options = options;
     g->hood = NULL;
     return done;
-}
-
-/* The share of the disc's area that is surface in sight; of less than all of it, the
-   photons again. */
-static float gather_in_sight(gather *g, const photon_map *map, const neighbourhood *hood,
-                             estimate_scratch *scratch, bool *done)
-{
-    const kernel *k = &g->options->kernel;
-    looked_disc own;
-    const looked_disc *seen =
-        g->options->shares_looks ? looked_around_find(&scratch->looked, hood, k) : NULL;
-    if (!seen) {
-        own = disc_look(hood, k);
-        seen = &own;
-        scratch->n_looks += own.hood.n_looks;
-        if (g->options->shares_looks)
-            looked_around_put(&scratch->looked, &own);
-    }
-    if (!seen->whole)
-        *done = gather_part(g, map, &seen->hood, scratch) && *done;
-    return seen->coverage;
 }
 
 static void scale_groups(estimate_scratch *scratch, spectrum factor)
@@ -383,31 +384,27 @@ static void scale_groups(estimate_scratch *scratch, spectrum factor)
 }
 
 /* Σ over the photons around the point; zero when there are none or memory is refused. */
-static spectrum estimate(gather *g, const photon_map *map, estimate_scratch *scratch,
-                         estimate_info *info)
+static spectrum estimate(gather *g, const photon_map *map, estimate_info *info)
 {
     const estimate_options *options = g->options;
+    estimate_scratch *scratch = g->scratch;
     g->groups = scratch->groups;
     g->n_groups = scratch->n_groups;
+    g->looks = options->scene && !options->curve;
+    g->around = NULL;
     g->hood = NULL;
-    bool done = gather_once(g, map, scratch);
-    float area = kernel_area(&options->kernel, g->r2);
-    float share = options->looked_share > 0.0f ? options->looked_share : 1.0f;
-    const neighbourhood hood = {.scene = options->scene,
-                                .p = g->query.at.p,
-                                .n = g->query.at.n,
-                                .radius = root_within(g->r2) * share,
-                                .time = options->time};
-    bool bounded = g->n > 0 && isfinite(hood.radius);
-    if (options->curve && bounded)
-        area =
-            flat_curve_area(options->curve, g->query.at.p, hood.radius, &options->kernel);
-    else if (options->scene && bounded)
-        area *= gather_in_sight(g, map, &hood, scratch, &done);
+    bool done = gather_once(g, map);
+    float radius = root_within(g->r2), area = kernel_area(&options->kernel, g->r2);
+    if (options->curve && g->n > 0 && isfinite(radius))
+        area = flat_curve_area(options->curve, g->query.at.p, radius, &options->kernel);
+    if (g->around)
+        area *= g->around->coverage;
+    if (is_found_again(g))
+        done = gather_part(g, map) && done;
     scratch->n_queries++;
     scratch->failed |= !done;
     if (info)
-        *info = (estimate_info){.n_photons = g->n, .radius = hood.radius};
+        *info = (estimate_info){.n_photons = g->n, .radius = radius};
     bool usable = done && g->n > 0 && area > 0.0f;
     scale_groups(scratch, spectrum_fill(usable ? 1.0f / area : 0.0f));
     return usable ? g->sum / area : (spectrum){0};
@@ -446,10 +443,11 @@ spectrum photon_estimate(const photon_map *map, vec3 p, const bsdf *b, vec3 wo,
     gather g;
     g.query = photon_query_of(photon_map_store(map), p, &filter);
     g.options = options;
+    g.scratch = scratch;
     g.b = b;
     g.wo = wo;
     g.weigh = lambertian ? bent ? weigh_bent : weigh_plain : weigh_bsdf;
-    spectrum sum = estimate(&g, map, scratch, info);
+    spectrum sum = estimate(&g, map, info);
     if (!lambertian)
         return sum;
     scale_groups(scratch, b->rho * INV_PI_F);
@@ -464,8 +462,9 @@ spectrum photon_irradiance(const photon_map *map, vec3 p, vec3 n_geom,
     gather g;
     g.query = photon_query_of(photon_map_store(map), p, &filter);
     g.options = options;
+    g.scratch = scratch;
     g.weigh = weigh_plain;
-    return estimate(&g, map, scratch, info);
+    return estimate(&g, map, info);
 }
 
 bool estimate_scratch_init(estimate_scratch *scratch, size_t n_groups, GError **error)

@@ -191,7 +191,9 @@ static void find_horizon(neighbourhood *hood)
     }
     for (int i = 0; i < NEIGHBOURHOOD_SECTORS; i++) {
         vec2 p = corner[i], q = corner[(i + 1) % NEIGHBOURHOOD_SECTORS];
-        hood->side[i] = (horizon_side){p.y - q.y, q.x - p.x, p.y * q.x - p.x * q.y};
+        hood->horizon.nx[i] = p.y - q.y;
+        hood->horizon.ny[i] = q.x - p.x;
+        hood->horizon.c[i] = p.y * q.x - p.x * q.y;
     }
 }
 

@@ -24,16 +24,17 @@
 #pragma once
 
 #include "photon/kernel.h"
+#include "photon/map/query.h"
 #include "scene/scene.h"
 
 /** Of a circle, two an octant, which signs and tangents tell apart
  * (neighbourhood_sector). */
 enum { NEIGHBOURHOOD_SECTORS = 16 };
 
-/** @brief A side of the horizon: points with x nx + y ny > c lie within. */
-typedef struct horizon_side {
-    float nx, ny, c;
-} horizon_side;
+/** @brief The sides of a horizon: points of a sector with x nx + y ny > c lie within. */
+typedef struct horizon {
+    float nx[NEIGHBOURHOOD_SECTORS], ny[NEIGHBOURHOOD_SECTORS], c[NEIGHBOURHOOD_SECTORS];
+} horizon;
 
 /** @brief A disc to be looked at. Those before frame are the caller's; thread-safe. */
 typedef struct neighbourhood {
@@ -44,9 +45,9 @@ typedef struct neighbourhood {
     uint32_t n_looks; /**< rays sent so far; the caller's zero */
     frame frame;      /**< turned by an angle of its own for every place */
     float offset;     /**< of the places looked at, 0..1, of its own for every place */
-    /** How far one sees along the surface, in the frame's plane: the sides of a polygon
-     * around the centre, one a sector. */
-    horizon_side side[NEIGHBOURHOOD_SECTORS];
+    /** How far one sees along the surface, in the frame's plane: a polygon around the
+     * centre, a side each sector. */
+    horizon horizon;
 } neighbourhood;
 
 /** Height over radius within which a surface counts as the disc's. In bench/edges relMSE
@@ -68,22 +69,54 @@ bool neighbourhood_is_whole(neighbourhood *hood);
  * sight, in (0, 1]. After it neighbourhood_sees may be asked. */
 float neighbourhood_coverage(neighbourhood *hood, const kernel *k);
 
+/** Of a sixteenth of the circle. */
+#define SECTOR_TANGENT ((float)(M_SQRT2 - 1.0))
+
 /** @brief The sector, a sixteenth of the circle, that (x, y) lies in: its quadrant, and
  * there between the tangents of the sectors. */
 static inline int neighbourhood_sector(float x, float y)
 {
-    const float tangent = (float)(M_SQRT2 - 1.0); /* of a sixteenth */
     int left = x < 0.0f, below = y < 0.0f, odd = left ^ below;
     float across = odd ? fabsf(y) : fabsf(x), up = odd ? fabsf(x) : fabsf(y);
-    int within = (up > tangent * across) + (up > across) + (tangent * up > across);
+    int within =
+        (up > SECTOR_TANGENT * across) + (up > across) + (SECTOR_TANGENT * up > across);
     return 8 * below + 4 * odd + within;
+}
+
+/** @brief The same of some points. */
+static inline lane_ints neighbourhood_sectors(lane_floats x, lane_floats y)
+{
+    const lane_ints left = x < 0.0f, below = y < 0.0f, odd = left ^ below;
+    const lane_ints flat = (lane_ints)abs_lanes(x), steep = (lane_ints)abs_lanes(y);
+    lane_floats across = (lane_floats)((odd & steep) | (~odd & flat));
+    lane_floats up = (lane_floats)((odd & flat) | (~odd & steep));
+    lane_ints within =
+        (up > SECTOR_TANGENT * across) + (up > across) + (SECTOR_TANGENT * up > across);
+    return -(8 * below + 4 * odd + within); /* true is -1 */
 }
 
 /** @brief True if q, a point near the plane, lies within the horizon. */
 static inline bool neighbourhood_sees(const neighbourhood *hood, vec3 q)
 {
     vec3 d = q - hood->p;
-    float x = dot3(d, hood->frame.s), y = dot3(d, hood->frame.t);
-    const horizon_side *side = &hood->side[neighbourhood_sector(x, y)];
-    return x * side->nx + y * side->ny > side->c;
+    float x = fused_dot3(d, hood->frame.s), y = fused_dot3(d, hood->frame.t);
+    int i = neighbourhood_sector(x, y);
+    return fused(y, hood->horizon.ny[i], x * hood->horizon.nx[i]) > hood->horizon.c[i];
+}
+
+/** @brief Of those points in bits, the bits of those that lie within the horizon; the
+ * point of a lane is index[lane], also where its bit is not set. The same bits as
+ * neighbourhood_sees. */
+static inline unsigned neighbourhood_sees_of(const neighbourhood *hood,
+                                             const point_arrays *points,
+                                             const uint32_t *index, unsigned bits)
+{
+    const lane_vec3 d = {gather_float_lanes(points->x, index) - hood->p[0],
+                         gather_float_lanes(points->y, index) - hood->p[1],
+                         gather_float_lanes(points->z, index) - hood->p[2]};
+    lane_floats x = dot3_lanes(d, hood->frame.s), y = dot3_lanes(d, hood->frame.t);
+    lane_ints i = neighbourhood_sectors(x, y);
+    lane_floats reach = fused_lanes(y, pick_lanes(hood->horizon.ny, i),
+                                    x * pick_lanes(hood->horizon.nx, i));
+    return bits & bits_below(pick_lanes(hood->horizon.c, i), reach);
 }

@@ -78,7 +78,7 @@ static inline bool photon_is_alike(const photon_query *query, size_t i)
 {
     vec3 o = direction_octahedron(query->normal[i]);
     float dot = direction_dot(query->normal[i], query->at.n);
-    return dot * dot > SAME_SURFACE * fused(o[2], o[2], fused(o[1], o[1], o[0] * o[0]));
+    return dot * dot > SAME_SURFACE * fused_dot3(o, o);
 }
 
 /** @brief True if some photons are not accepted. */
@@ -101,8 +101,8 @@ static inline bool photon_query_accepts(const photon_query *query, size_t i)
 /** @brief photon_is_alike by packed normals. */
 static inline unsigned photons_alike(const photon_query *query, lane_ints normal)
 {
-    lane_directions n = lane_directions_of(normal);
-    lane_floats dot = lane_directions_dot(n, query->at.n);
+    lane_vec3 n = lane_directions_of(normal);
+    lane_floats dot = dot3_lanes(n, query->at.n);
     lane_floats length2 = fused_lanes(n.z, n.z, fused_lanes(n.y, n.y, n.x * n.x));
     return bits_below(SAME_SURFACE * length2, dot * dot);
 }

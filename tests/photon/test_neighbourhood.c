@@ -294,6 +294,44 @@ static void test_what_bends_is_whole(void)
     }
 }
 
+/* Some points at a time are seen as each is alone: around a corner of walls, and in
+ * sectors of all directions. */
+static void test_some_are_seen_as_each(void)
+{
+    enum { N = 4096 };
+    g_autoptr(scene) s = scene_of(CAMERA "WorldBegin\n" LAMP FLOOR WALL);
+    point_arrays points;
+    g_assert_true(point_arrays_make(&points, N, "points", NULL));
+    for (uint32_t i = 0; i < N; i++) {
+        sampler random = sampler_make(5, i);
+        vec2 u = sampler_2d(&random);
+        points.x[i] = 0.15f + 0.24f * (u.x - 0.5f);
+        points.y[i] = 0.24f * (u.y - 0.5f);
+        points.z[i] = 0.02f * (sampler_1d(&random) - 0.5f);
+    }
+    neighbourhood hood = {
+        .scene = s, .p = {0.15f, 0, 0}, .n = {0, 0, 1}, .radius = radius};
+    g_assert_false(neighbourhood_is_whole(&hood));
+    neighbourhood_coverage(&hood, &(kernel){KERNEL_CONSTANT, 1});
+    size_t seen = 0;
+    for (uint32_t i = 0; i < N; i += LANES) {
+        uint32_t index[LANES];
+        unsigned expected = 0, asked = 0x5fffu & bits_first(LANES);
+        for (uint32_t k = 0; k < LANES; k++) {
+            uint32_t n = index[k] = N - 1 - (i + k);
+            vec3 q = vec3_make(points.x[n], points.y[n], points.z[n]);
+            expected |= (unsigned)neighbourhood_sees(&hood, q) << k;
+        }
+        unsigned bits = neighbourhood_sees_of(&hood, &points, index, asked);
+        g_assert_cmphex(bits, ==, expected & asked);
+        seen += (size_t)__builtin_popcount(bits);
+    }
+    g_test_message("%zu of %d seen", seen, N);
+    g_assert_cmpuint(seen, >, N / 4);
+    g_assert_cmpuint(seen, <, 3 * N / 4);
+    point_arrays_clear(&points);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -307,6 +345,7 @@ int main(int argc, char **argv)
                     test_bright_wall_does_not_light_the_floor);
     g_test_add_func("/neighbourhood/ball", test_ball_is_as_bright_as_a_plane);
     g_test_add_func("/neighbourhood/size", test_any_size);
+    g_test_add_func("/neighbourhood/some", test_some_are_seen_as_each);
     g_test_add_func("/neighbourhood/bent", test_what_bends_is_whole);
     return g_test_run();
 }

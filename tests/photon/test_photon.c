@@ -69,8 +69,8 @@ static void test_direction_lanes(void)
         uint32_t packed[LANES];
         for (uint32_t lane = 0; lane < LANES; lane++)
             packed[lane] = direction_pack(random_direction(&s), lane % 4);
-        lane_directions d = lane_directions_of(load_lane_ints(packed));
-        lane_floats dot = lane_directions_dot(d, n);
+        lane_vec3 d = lane_directions_of(load_lane_ints(packed));
+        lane_floats dot = dot3_lanes(d, n);
         for (int lane = 0; lane < LANES; lane++) {
             vec3 one = direction_octahedron(packed[lane]);
             float expected = direction_dot(packed[lane], n), found = dot[lane];

@@ -12,7 +12,7 @@
  */
 #pragma once
 
-#include "math/vec.h"
+#include "math/vec_lanes.h"
 #include "photon/map/points.h"
 
 /** @brief What an owner of points says of those at places of the sorted arrays. */
@@ -50,13 +50,11 @@ static inline bool query_accepts(const point_query *query, size_t place)
 static inline float query_distance2(const point_query *query, const point_arrays *points,
                                     size_t i)
 {
-    float x = points->x[i] - query->p[0], y = points->y[i] - query->p[1],
-          z = points->z[i] - query->p[2];
-    float d2 = fused(z, z, fused(y, y, x * x));
+    vec3 d = vec3_make(points->x[i], points->y[i], points->z[i]) - query->p;
+    float d2 = fused_dot3(d, d);
     if (!query->flat)
         return d2;
-    float dot = fused(z, query->n[2], fused(y, query->n[1], x * query->n[0]));
-    float height = dot * query->inv_flatten;
+    float height = fused_dot3(d, query->n) * query->inv_flatten;
     float height2 = height * height;
     return height2 > d2 ? height2 : d2;
 }
@@ -71,10 +69,7 @@ static inline lane_floats query_distance2_lanes(const point_query *query,
     lane_floats d2 = fused_lanes(z, z, fused_lanes(y, y, x * x));
     if (!query->flat)
         return d2;
-    lane_floats nx = fill_lanes(query->n[0]), ny = fill_lanes(query->n[1]),
-                nz = fill_lanes(query->n[2]);
-    lane_floats height =
-        fused_lanes(z, nz, fused_lanes(y, ny, x * nx)) * query->inv_flatten;
+    lane_floats height = dot3_lanes((lane_vec3){x, y, z}, query->n) * query->inv_flatten;
     return max_lanes(height * height, d2);
 }
 
