@@ -9,6 +9,10 @@
  * sum while they are warm. On a Lambertian surface, the common case, what is left for
  * each is one multiplication of eight wavelengths; f and the normalisation come after the
  * sum.
+ *
+ * What is around the disc (neighbourhood.h) is looked at when the first photons are in
+ * the block: where there are none nobody looks, and where only a part of the disc is
+ * surface in sight the photons are found again, of that part, before any is weighed.
  */
 #include "photon/estimate.h"
 

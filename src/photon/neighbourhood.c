@@ -6,13 +6,18 @@
 
 #include <string.h>
 
-/* How often the disc is looked at for what of it is surface. With 16 the squared error of
-   bench/edges is 1.9 and 1.06 times as much, at the widest radius and at half of it, in
-   .87 and .95 of the time. */
-enum { AREA_LOOKS = 24 };
+/* How often the disc is looked at for what of it is surface: as many rays as go to Embree
+   together. */
+enum { AREA_LOOKS = RAY_PACKET };
 
 /* math: even where no look finds any, the centre itself is surface. */
 #define LEAST_COVERAGE (0.5f / AREA_LOOKS)
+
+/* How much denser they lie where the kernel is high: from 0, even in area, to 1, as dense
+   as Epanechnikov's is high. With 0 the squared error of bench/edges is 1.8 and 1.15
+   times as much, at the widest radius and at half of it (indirect light, as many
+   samples); with 24 that are even 1.09 and 1.01. */
+#define CLOSENESS 0.75f
 
 /* Two numbers in [0, 1) of its own for every place, so that looks make no pattern in the
  * picture. */
@@ -197,21 +202,46 @@ static void find_horizon(neighbourhood *hood)
     }
 }
 
-/* Places on a sunflower spiral are even in area. The kernel weighs them as it does
- * photons: what bends off the plane counts as further away (photon_filter). */
+/* Where they lie, of a disc of radius 1: so dense at t = d² as 1 + m (1 - 2 t). */
+typedef struct look_spread {
+    float m;
+} look_spread;
+
+/* As the kernel falls, they lie denser inside. */
+static look_spread spread_for(const kernel *k)
+{
+    float inner = kernel_eval(k, 0.0f, 1.0f), outer = kernel_eval(k, 1.0f, 1.0f);
+    return (look_spread){CLOSENESS * (inner - outer) / (inner + outer)};
+}
+
+/* d² within which a share of the places lies. */
+static float spread_within(look_spread spread, float share)
+{
+    float half = 0.5f * (1.0f + spread.m);
+    return share / (half + sqrtf(half * half - spread.m * share));
+}
+
+static float spread_density(look_spread spread, float d2)
+{
+    return 1.0f + spread.m * (1.0f - 2.0f * d2);
+}
+
+/* Places on a sunflower spiral. The kernel weighs them as it does photons: what bends off
+   the plane counts as further away (photon_filter). */
 float neighbourhood_coverage(neighbourhood *hood, const kernel *k)
 {
     const turn golden = turn_by(PI_F * (3.0f - sqrtf(5.0f))); /* math: its angle */
+    const look_spread spread = spread_for(k);
     turn a = {1.0f, 0.0f};
-    float whole = 0.0f, found = 0.0f, r2[AREA_LOOKS];
+    float whole = 0.0f, found = 0.0f, d2[AREA_LOOKS];
     ray down[AREA_LOOKS];
     surface_hit hit[AREA_LOOKS];
     int n = 0;
     find_horizon(hood);
     for (int i = 0; i < AREA_LOOKS; i++, a = turn_further(a, golden)) {
-        r2[n] = ((float)i + hood->offset) / AREA_LOOKS;
-        vec3 q = hood->p + hood->radius * sqrtf(r2[n]) * direction_at(hood, a);
-        whole += kernel_eval(k, r2[n], 1.0f);
+        d2[n] = spread_within(spread, ((float)i + hood->offset) / AREA_LOOKS);
+        vec3 q = hood->p + hood->radius * sqrtf(d2[n]) * direction_at(hood, a);
+        whole += kernel_eval(k, d2[n], 1.0f) / spread_density(spread, d2[n]);
         if (neighbourhood_sees(hood, q))
             down[n++] = down_to(hood, q);
     }
@@ -219,7 +249,8 @@ float neighbourhood_coverage(neighbourhood *hood, const kernel *k)
     for (int i = 0; i < n; i++) {
         float height = surface_height(hood, &hit[i]);
         if (height < 1.0f)
-            found += kernel_eval(k, maxf(r2[i], height * height), 1.0f);
+            found += kernel_eval(k, maxf(d2[i], height * height), 1.0f) /
+                     spread_density(spread, d2[i]);
     }
     return maxf(found / whole, LEAST_COVERAGE);
 }

@@ -294,6 +294,53 @@ static void test_what_bends_is_whole(void)
     }
 }
 
+/* The share of a kernel's area that lies on this side of a line, so many radii away. */
+static double share_before(const kernel *k, double line)
+{
+    enum { N = 400 };
+    double all = 0, before = 0;
+    for (int i = 0; i < N * N; i++) {
+        double x = 2 * (i % N + 0.5) / N - 1, y = 2 * (i / N + 0.5) / N - 1;
+        double d2 = x * x + y * y, weight = 0;
+        if (d2 < 1)
+            weight = (double)kernel_eval(k, (float)d2, 1.0f);
+        all += weight;
+        before += x < line ? weight : 0;
+    }
+    return before / all;
+}
+
+/* What is found beside a straight edge is what the kernel weighs there, by its looks on
+   average, whichever kernel. */
+static void test_coverage_is_the_share_of_the_kernel(void)
+{
+    static const kernel kernels[] = {{KERNEL_CONSTANT, 1},
+                                     {KERNEL_CONE, 1.1f},
+                                     {KERNEL_GAUSSIAN, 1},
+                                     {KERNEL_EPANECHNIKOV, 1}};
+    static const double line[] = {0.05, 0.3, 0.6};
+    enum { PLACES = 2000 };
+    g_autoptr(scene) s = scene_of(CAMERA "WorldBegin\n" LAMP FLOOR);
+    for (size_t i = 0; i < G_N_ELEMENTS(kernels) * G_N_ELEMENTS(line); i++) {
+        const kernel *k = &kernels[i % G_N_ELEMENTS(kernels)];
+        double off = line[i / G_N_ELEMENTS(kernels)], sum = 0;
+        for (int place = 0; place < PLACES; place++) {
+            float y = 1.6f * (float)place / PLACES - 0.8f;
+            neighbourhood hood = {.scene = s,
+                                  .p = {1.0f - (float)off * radius, y, 0},
+                                  .n = {0, 0, 1},
+                                  .radius = radius};
+            sum += neighbourhood_is_whole(&hood)
+                       ? 1.0
+                       : (double)neighbourhood_coverage(&hood, k);
+        }
+        double expected = share_before(k, off);
+        g_test_message("kernel %d, %g radii before the edge: %g, expected %g",
+                       (int)k->choice, off, sum / PLACES, expected);
+        g_assert_cmpfloat(fabs(sum / PLACES - expected), <, 0.006);
+    }
+}
+
 /* Some points at a time are seen as each is alone: around a corner of walls, and in
  * sectors of all directions. */
 static void test_some_are_seen_as_each(void)
@@ -345,6 +392,7 @@ int main(int argc, char **argv)
                     test_bright_wall_does_not_light_the_floor);
     g_test_add_func("/neighbourhood/ball", test_ball_is_as_bright_as_a_plane);
     g_test_add_func("/neighbourhood/size", test_any_size);
+    g_test_add_func("/neighbourhood/coverage", test_coverage_is_the_share_of_the_kernel);
     g_test_add_func("/neighbourhood/some", test_some_are_seen_as_each);
     g_test_add_func("/neighbourhood/bent", test_what_bends_is_whole);
     return g_test_run();
