@@ -132,6 +132,7 @@ static bool measure(transport_plan *trial, trial_look *look, double budget,
     double share = shrink(trial, n_pixels);
     if (!transport_plan_prepare(trial, cancel, error))
         return false;
+    trial->looked_share = (float)sqrt(share); /* as narrow as the discs of all photons */
     *out = (pace_costs){(double)INFINITY, (double)INFINITY, (double)INFINITY};
     for (uint32_t i = 0; i < TRIAL_PASSES; i++) {
         void *pass = begin_trial(trial, look, i, cancel, out, error);

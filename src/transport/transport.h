@@ -194,6 +194,7 @@ typedef struct transport_plan {
     const photon_supply *supply; /**< borrowed; NULL: photons are traced */
     lit_place *lit; /**< that light sampling found (path_effort_measure); owned */
     size_t n_lit;
+    float looked_share; /**< estimate_options.looked_share, of a trial of few photons */
     float p_spots;      /**< path_pass.p_spots */
     bool gathers;       /**< auto: photons carry indirect light too (plan/gather.h) */
     double sample_rays; /**< that a sample costs, photons apart ... */

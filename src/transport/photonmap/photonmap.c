@@ -259,9 +259,12 @@ static void *open_pass(const transport_plan *plan, uint32_t index)
     pass->n_slices = time_slices_of(plan->scene, &plan->how);
     pass->followed = photon_followed_lobes(&plan->how);
     pass->gathered = photon_gathered_lobes(&plan->how);
-    for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        pass->estimates[c] = photonmap_estimate_options(
-            &plan->how, (photon_class)c, radius_of(plan, (photon_class)c, index));
+    for (int c = 0; c < N_PHOTON_CLASSES; c++) {
+        estimate_options *options = &pass->estimates[c];
+        *options = photonmap_estimate_options(&plan->how, (photon_class)c,
+                                              radius_of(plan, (photon_class)c, index));
+        options->looked_share = plan->looked_share;
+    }
     pass->mis = plan->mis;
     pass->mis.discs = caustic_discs(plan, radius_of(plan, PHOTON_CAUSTIC, index));
     return pass;
