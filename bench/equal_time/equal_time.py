@@ -8,8 +8,8 @@ Runs equal_time (equal_time.c) on the scenes beside it and those of ../shared, a
 points.tsv, error.svg (error against seconds, log-log) and table.txt to DIR/equal_time, where
 references are kept too: `--quick` takes some minutes, `--small` (all scenes at 128 x 128, three
 seeds) three quarters of an hour of two processors, all some hours. Seconds are the processor's;
-`--time` asks for what all threads have after half a second to four of the clock (three quarters
-of an hour of a quiet machine, and references). `--report` puts table and curves into docs/report
+`--time` asks for what all threads have after half a second to four of the clock, by five seeds (an
+hour of a quiet machine, and references). `--report` puts table and curves into docs/report
 too, `--points FILE` reads what was measured before. Each algorithm stands there twice: as
 rendered, and without its noise.
 """
@@ -30,7 +30,7 @@ FLIPS = (0.2, 0.1, 0.06)
 QUICK = ["cornell", "cornell-glass", "ball", "window"]
 QUICKLY = "--size 64x64 --seconds 1.5 --longest 12 --seeds 3".split()
 SMALL_ONES = "--size 128x128 --seconds 3 --longest 12 --seeds 3".split()
-TIMED = "--by time --seconds 4 --longest 30 --seeds 3".split()
+TIMED = "--by time --seconds 4 --longest 30 --seeds 5".split()
 ALL = QUICK + ["glossy", "textured", "lamps", "water", "prism", "fog"]
 ELSEWHERE = [ROOT / "scenes/ring/ring.pbrt", SHARED / "bitterli/coffee/scene-v4.pbrt",
              SHARED / "bitterli/veach-mis/scene-v4.pbrt"]
