@@ -335,7 +335,7 @@ static inline lane_floats pick_lanes(const float values[16], lane_ints number)
 #endif
 }
 
-/** @brief The same of values that have an index each. The arrays may be those that the
+/** @brief pack_lanes of values that have an index each. The arrays may be those that the
  * values and indices come from, or begin further ahead. */
 static inline size_t pack_lane_pairs(lane_floats values, const uint32_t *from,
                                      unsigned bits, float *value, uint32_t *index)
