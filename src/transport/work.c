@@ -53,6 +53,12 @@ uint32_t plan_trials_for(const transport_plan *plan, double shares, double rays_
     return (uint32_t)CLAMP(n, (double)LEAST_TRIALS, shares * (double)most);
 }
 
+double plan_weight_alike(const transport_plan *plan)
+{
+    double passes = settings_planned_passes(&plan->how);
+    return settings_takes_noise_out(&plan->how, passes) ? BLOTCHES : 1.0;
+}
+
 bool plan_is_tiny(const transport_plan *plan)
 {
     return plan_grant(plan, 1.0) < LEAST_TRIALS * 2.0 * SAMPLE_RAYS;

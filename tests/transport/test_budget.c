@@ -7,6 +7,7 @@
 #define _GNU_SOURCE /* RTLD_NEXT */
 #include "ray_count.h"
 #include "rooms.h"
+#include "transport/plan/caustics.h"
 
 #define AT " Shape \"sphere\" \"float radius\" "
 #define BALL "Translate 0 0 0.6" AT "0.5\n"
@@ -167,6 +168,41 @@ static void test_told(void)
     g_assert_cmpfloat(told, <, 1.4 * noise);
 }
 
+/* ---- Grain and blotches ---- */
+
+/* What is decided where paths have ten times the noise with which photons leave them, in
+   twice the rays: a picture of four passes, with its noise or without. */
+static uint64_t sent(const char *words, double left, double alike)
+{
+    g_autoptr(view) v = view_of(STUDIO SMALL_LAMP "Material \"dielectric\" " BALL);
+    const settings how = settings_with(v->scene, words);
+    transport_plan plan = transport_plan_of(v, &how);
+    const path_effort paths = {.noise = 0.2, .rays = 6.0, .surfaces = 3.0};
+    aim_result found = {.noise = 1.8, .rays = 1.0};
+    for (int i = 0; i < N_SHARES; i++) {
+        found.left[i] = left;
+        found.alike[i] = alike / plan_share(i);
+    }
+    plan.n_photons[PHOTON_CAUSTIC] = 100;
+    caustics_decide(&plan, &found, &paths);
+    uint64_t n = plan.n_photons[PHOTON_CAUSTIC];
+    transport_plan_clear(&plan);
+    return n;
+}
+
+/* Grain that photons take away is worth their grain, but not their blotches, unless noise
+   stays as it is. */
+static void test_blotches(void)
+{
+    const char *shown = "integrator=auto passes=4 spp=1 denoise=true";
+    const char *raw = "integrator=auto passes=4 spp=1 denoise=false";
+    g_assert_cmpuint(sent(raw, 0.1, 0.0), >, 0);
+    g_assert_cmpuint(sent(shown, 0.1, 0.0), >, 0);
+    g_assert_cmpuint(sent(raw, 0.0, 0.1), ==, 100);
+    g_assert_cmpuint(sent(shown, 0.0, 0.1), ==, 0);
+    g_assert_cmpuint(sent(shown, 0.0, 0.01), >, 0);
+}
+
 static void add(const char *what, const subject *of, GTestDataFunc test)
 {
     g_autofree char *path = g_strdup_printf("/budget/%s/%s", what, of->name);
@@ -183,5 +219,6 @@ int main(int argc, char **argv)
     for (size_t i = 0; i < G_N_ELEMENTS(bright); i++)
         add("sends-photons", &bright[i], test_sends_photons);
     g_test_add_func("/budget/told", test_told);
+    g_test_add_func("/budget/blotches", test_blotches);
     return g_test_run();
 }

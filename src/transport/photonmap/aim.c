@@ -7,10 +7,10 @@
 
 #include <float.h>
 
-/* What a trial photon adds to the noise that paths would have, and to what is left of it
-   with shares of all photons. */
+/* What a trial photon adds to the noise that paths would have, and to what they and the
+   photons have of it with shares of all photons. */
 typedef struct trial_noise {
-    double of_paths, left[N_SHARES];
+    double of_paths, left[N_SHARES], alike[N_SHARES];
     double seen, unseen; /* flux that landed in the camera's sight, and out of it */
     uint32_t rays;
 } trial_noise;
@@ -118,7 +118,8 @@ typedef struct trial {
    a density of (1 - w) / w of that of merging with it. So in a pixel of area a its square
    adds Φ² w / (1 - w) / a, up to factors that are the same for all. The w-th part of
    photons survives with all of Φ, and each stands for 1 / w of them. Where photons help,
-   with m times the density, all of them together leave the 1 / (1 + m)-th part. */
+   with m times the density, all of them together leave the 1 / (1 + m)-th part: of that
+   another 1 / (1 + m)-th to paths. */
 static void add_noise(trial_noise *sum, const photon_event *event, const landing *at,
                       double weight)
 {
@@ -127,8 +128,11 @@ static void add_noise(trial_noise *sum, const photon_event *event, const landing
     double noise =
         weight * seen * seen / (fmax(1.0 - w, (double)FLT_EPSILON) * (double)at->area);
     sum->of_paths += noise;
-    for (int i = 0; i < N_SHARES; i++)
-        sum->left[i] += noise / (1.0 + plan_share(i) * odds);
+    for (int i = 0; i < N_SHARES; i++) {
+        double m = plan_share(i) * odds, left = noise / (1.0 + m);
+        sum->left[i] += left / (1.0 + m);
+        sum->alike[i] += left * m / (1.0 + m);
+    }
 }
 
 static void note_arrival(const photon_event *event, void *data)
@@ -216,28 +220,30 @@ static void hush_loudest(trial_noise *noise, size_t n)
         return;
     double by = second / noise[loudest].of_paths;
     noise[loudest].of_paths = second;
-    for (int k = 0; k < N_SHARES; k++)
+    for (int k = 0; k < N_SHARES; k++) {
         noise[loudest].left[k] *= by;
+        noise[loudest].alike[k] *= by;
+    }
 }
 
 static void sum_noise(const trials *all)
 {
     aim_result *out = all->result;
-    double scale = noise_scale(all);
-    trial_noise sum = {0}, *noise = all->noise + all->n_known;
-    hush_loudest(noise, all->n_arrived);
+    double scale = noise_scale(all), seen = 0.0, unseen = 0.0;
+    const trial_noise *noise = all->noise + all->n_known;
+    hush_loudest(all->noise + all->n_known, all->n_arrived);
+    *out = (aim_result){.boost = out->boost};
     for (size_t i = 0; i < all->n_arrived; i++) {
-        sum.of_paths += noise[i].of_paths;
-        sum.seen += noise[i].seen;
-        sum.unseen += noise[i].unseen;
-        for (int k = 0; k < N_SHARES; k++)
-            sum.left[k] += noise[i].left[k];
+        out->noise += noise[i].of_paths * scale;
+        seen += noise[i].seen;
+        unseen += noise[i].unseen;
+        for (int k = 0; k < N_SHARES; k++) {
+            out->left[k] += noise[i].left[k] * scale;
+            out->alike[k] += noise[i].alike[k] * scale;
+        }
     }
-    out->noise = sum.of_paths * scale;
     out->rays = all->round.rays / fmax(all->round.n, 1.0);
-    out->unseen = sum.unseen > 0.0 ? sum.unseen / (sum.seen + sum.unseen) : 0.0;
-    for (int k = 0; k < N_SHARES; k++)
-        out->left[k] = sum.left[k] * scale;
+    out->unseen = unseen > 0.0 ? unseen / (seen + unseen) : 0.0;
 }
 
 /* What the trials of a round brought, and how much denser than uniform ones they

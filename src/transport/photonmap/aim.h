@@ -15,8 +15,9 @@ typedef struct aim_result {
     double unseen; /**< share of what photons bring that lands out of the camera's sight:
                       it is in the picture by way of other surfaces only, and not in
                       noise */
-    double left[N_SHARES]; /**< what is left of it where so many photons help */
-    double rays;           /**< of a photon */
+    double left[N_SHARES];  /**< what paths keep of it where so many photons help */
+    double alike[N_SHARES]; /**< and what those bring, alike in neighbouring pixels */
+    double rays;            /**< of a photon */
     float *boost; /**< by light: how much denser than by the light's own emission useful
                      photons are sent; the caller frees it with g_free */
 } aim_result;

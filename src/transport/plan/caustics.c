@@ -48,12 +48,13 @@ static double samples_a_pass(const transport_plan *plan)
     return plan_samples(plan) / settings_planned_passes(&plan->how);
 }
 
-/* A camera sample of a pass with a share of all photons. */
+/* A camera sample of a pass with a share of all photons; what is alike in neighbouring
+   pixels weighs so much. */
 static plan_cost cost_with(const transport_plan *plan, const aim_result *found,
-                           const path_effort *paths, int i)
+                           const path_effort *paths, int i, double weight)
 {
     double photons = plan_share(i) * (double)plan->n_photons[PHOTON_CAUSTIC];
-    return (plan_cost){paths->noise + found->left[i],
+    return (plan_cost){paths->noise + found->left[i] + weight * found->alike[i],
                        paths->rays + gather_rays(plan, paths) +
                            photon_rays(found, photons) / samples_a_pass(plan)};
 }
@@ -63,23 +64,26 @@ static double product(plan_cost cost)
     return cost.variance * cost.rays;
 }
 
-/* The share of all photons with which variance times work is least; 0: none. */
+/* The share of all photons with which variance times work is least, if it is clearly so,
+   and less than without photons in the picture that is shown, too; 0: none. */
 static double best_share(transport_plan *plan, const aim_result *found,
                          const path_effort *paths)
 {
     const plan_cost without = {paths->noise + found->noise, paths->rays};
-    plan_cost best = cost_with(plan, found, paths, 0);
-    double share = 1.0;
+    plan_cost best = cost_with(plan, found, paths, 0, 1.0);
+    int share = 0;
     for (int i = 1; i < N_SHARES; i++) {
-        plan_cost with = cost_with(plan, found, paths, i);
+        plan_cost with = cost_with(plan, found, paths, i, 1.0);
         if (product(with) < product(best)) {
             best = with;
-            share = plan_share(i);
+            share = i;
         }
     }
-    bool taken = product(best) < CLEARLY_BETTER * product(without);
-    plan_note(plan, "caustic photons", without, best, taken);
-    return taken ? share : 0.0;
+    plan_cost shown = cost_with(plan, found, paths, share, plan_weight_alike(plan));
+    bool taken = product(best) < CLEARLY_BETTER * product(without) &&
+                 product(shown) < product(without);
+    plan_note(plan, "caustic photons", without, shown, taken);
+    return taken ? plan_share(share) : 0.0;
 }
 
 /* Gathers that are seen by way of a diffuse bounce are made as often as keeps their noise

@@ -4,9 +4,10 @@
  * Photons are there to take away the noise that paths from the eye would have if they had
  * to find caustics by themselves. That noise is known from trial photons, since each
  * knows how likely a path was to find what it brings; so is what fewer photons would
- * leave of it. The noise of all other light, and how many rays it takes, is measured with
- * paths. Of several numbers of photons, and none, the one is taken with which variance
- * times work is least. Without photons a pass is one of path tracing, and costs as much.
+ * leave of it, and how much of that would be alike in neighbouring pixels. The noise of
+ * all other light, and how many rays it takes, is measured with paths. Of several numbers
+ * of photons, and none, the one is taken with which variance times work is least. Without
+ * photons a pass is one of path tracing, and costs as much.
  */
 #pragma once
 

@@ -7,17 +7,6 @@
 
 #include <math.h>
 
-/* Squared error that is alike in neighbouring pixels weighs as much as so many times that
-   of grain where noise is taken out, which leaves the maps' as it is: of paths' it left a
-   17th, 12th and 8th in a Cornell box, a 5th, 4th and 3rd in one with glass, a 15th, 11th
-   and 8th in a glossy one, a 7th in a papered one, a 7th to 9th by 24 lamps, a 15th to
-   7th by a glass ball, a 17th and 10th behind a prism, a 4th in water, a 3rd to 2nd
-   through a window and in a bulb of glass (128 x 128, 2, 4 and 16 passes). With 16
-   maps are chosen in 2 and 17 of 30 trials in the papered one and by the lamps, where
-   they take 2 to 4 times as long as paths, with 24 in none and 8; in fog, where they
-   are worth about as much as paths, in 15 and 11. */
-#define BLOTCHES 24.0
-
 /* What maps blur below the size of their discs no map shows, and paths only when their
    noise is gone. So much at least is its relative square, over that of the radius in
    radii of the scene: .04 to .26 in five rooms (Cornell boxes without and with glass,
@@ -474,11 +463,10 @@ static double error_of(const transport_plan *plan, const gather_errors *e, doubl
     double spp = (double)plan->how.spp, bias = bias_of_passes(alpha, passes);
     double alike =
         e->photons * variance_of_passes(alpha, passes) + e->bias2 * bias * bias;
-    bool filtered = settings_takes_noise_out(&plan->how, passes);
     bool short_of_time = in_time < fmin(passes, 1.0);
-    double grain_weight = filtered && short_of_time ? BLOTCHES : 1.0;
-    double weight = filtered ? BLOTCHES : 1.0;
-    return grain_weight * variance_of_samples(e->samples, e, in_time * spp) +
+    double weight = plan_weight_alike(plan);
+    double weight_of_grain = short_of_time ? weight : 1.0;
+    return weight_of_grain * variance_of_samples(e->samples, e, in_time * spp) +
            weight * passes * spp * alike;
 }
 
