@@ -170,8 +170,9 @@ static void test_told(void)
 
 /* ---- Grain and blotches ---- */
 
-/* What is decided where paths have ten times the noise with which photons leave them, in
-   twice the rays: a picture of four passes, with its noise or without. */
+/* What is decided where photons leave paths so much of a noise of 1.8, beside .2 of
+   other light, and bring so much that is alike, in twice the rays: a picture of four
+   passes, with its noise or without. */
 static uint64_t sent(const char *words, double left, double alike)
 {
     g_autoptr(view) v = view_of(STUDIO SMALL_LAMP "Material \"dielectric\" " BALL);

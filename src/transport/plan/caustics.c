@@ -65,7 +65,9 @@ static double product(plan_cost cost)
 }
 
 /* The share of all photons with which variance times work is least, if it is clearly so,
-   and less than without photons in the picture that is shown, too; 0: none. */
+   and less than without photons in the picture that is shown, too; 0: none. Chosen by
+   what is shown the share was all in place of half, for 1.0 to 1.4 times the error with
+   glass, by a ball and in fog (256 x 256, 1 and 2 s, five seeds). */
 static double best_share(transport_plan *plan, const aim_result *found,
                          const path_effort *paths)
 {

@@ -6,8 +6,9 @@
  * knows how likely a path was to find what it brings; so is what fewer photons would
  * leave of it, and how much of that would be alike in neighbouring pixels. The noise of
  * all other light, and how many rays it takes, is measured with paths. Of several numbers
- * of photons, and none, the one is taken with which variance times work is least. Without
- * photons a pass is one of path tracing, and costs as much.
+ * of photons, and none, the one is taken with which variance times work is least, but
+ * none where blotches outweigh the gain in the picture that is shown. Without photons a
+ * pass is one of path tracing, and costs as much.
  */
 #pragma once
 
