@@ -16,6 +16,7 @@ enum {
     SAMPLES_CHUNK = 8,
     TRIAL_PLANNED = 1 << 15, /* samples that its planning counts on: few */
     ROWS_A_THREAD = 16,      /* of a trial write: OpenEXR's chunks have as many */
+    MORE_ROWS = 4,           /* times as many, while there is time */
     TRIAL_PASSES = 2,        /* the first one finds the machine cold */
 };
 
@@ -243,8 +244,9 @@ double pace_write_seconds(const film *f, unsigned threads, char **paths, double 
     if (!paths)
         return 0.0;
     double took = time_writing(f, rows, threads, paths);
-    for (double spent = took; spent < budget && rows < f->height; spent += took) {
-        rows = MIN(4 * rows, f->height);
+    for (double spent = took; spent + MORE_ROWS * took < budget && rows < f->height;
+         spent += took) {
+        rows = MIN(MORE_ROWS * rows, f->height);
         took = time_writing(f, rows, threads, paths);
     }
     return took * f->height / rows;
