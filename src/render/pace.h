@@ -36,6 +36,6 @@ double pace_pass_seconds(const pace_costs *costs, const settings *asked,
                          const settings *chosen, double n_pixels);
 
 /** @brief About how long it takes to make the picture and write it to files of these
- * names, s: tries it with a few rows, and with more while there are seconds left of the
- * budget. @param paths NULL-terminated; NULL: none */
+ * names, s: tries it with a few rows, and with more while that fits in a budget of
+ * seconds. @param paths NULL-terminated; NULL: none */
 double pace_write_seconds(const film *f, unsigned threads, char **paths, double budget);
