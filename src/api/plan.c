@@ -34,7 +34,7 @@ static void put_ways(GString *out, const NephPlan *plan)
         g_string_append_printf(out, "%-12sof caustics with paths, by discs of %.4g m2\n",
                                "share", plan->discs);
     if (plan->spots > 0.0)
-        g_string_append_printf(out, "%-12slooked at with probability %g\n",
+        g_string_append_printf(out, "%-12s looked at with probability %g\n",
                                "bright spots", plan->spots);
     else
         g_string_append_printf(out, "%-12s not looked at\n", "bright spots");
