@@ -24,6 +24,11 @@
              "ReverseOrientation Shape \"sphere\" \"float radius\" 0.18 AttributeEnd\n"
 #define BULB LIT_BY_BULB("")
 
+/* Outside, so bright that hardly a photon is the lamp's. */
+#define SUN                                                                              \
+    "AttributeBegin Translate 0 0 20 AreaLightSource \"diffuse\" \"rgb L\" [9e4 9e4 "    \
+    "9e4]\nShape \"sphere\" \"float radius\" 1 AttributeEnd\n"
+
 typedef struct choice {
     const char *name, *text, *words;
     bool gathers;
@@ -37,6 +42,7 @@ static const choice choices[] = {
     {"shown-once", ROOM_OF(128) GLASS_BALL, QUICK " passes=1 photons=24576", true},
     {"shown-without-noise", ROOM_OF(128) GLASS_BALL,
      QUICK " denoise=on passes=1 photons=24576", false},
+    {"beside-the-sun", ROOM_OF(128) SUN, QUICK, false},
     {"open", OPEN_OF(128), QUICK, false},
     {"unwanted", ROOM_OF(128), QUICK " gather_indirect=off", false},
     {"bounded", ROOM_OF(128), QUICK " max_backward_bounces=9", false},

@@ -19,6 +19,8 @@ typedef struct gather_place {
     double near[2], twice[2];  /* all with the first one */
     double beside;             /* as smooth[0], of the next pixel */
     double seen;               /* with the caustics that those leave out */
+    double lone;               /* square of what one photon adds, times its disc, m² */
+    double area;               /* of a pixel, m² */
     double first_rays;         /* of a pixel's first sample */
     double later_rays;         /* of another one, which shares the first one's looks */
     double path_rays;          /* of a path */
@@ -197,6 +199,19 @@ static double sample(radiance_function *radiance, const void *pass,
     return without_shared(plan, &found);
 }
 
+/* Square of the light that a photon of the plan's, as bright as they are when sent, adds
+   around the first surface, times the area of its disc. */
+static double lone_photon(const gather_trial *t, const trial_light *at, point_hits *hits)
+{
+    const int c = PHOTON_INDIRECT;
+    double sent = (double)t->plan.n_photons[c];
+    double flux = distribution_total(&t->plan.scene->light_power) / fmax(sent, 1.0);
+    double r = (double)photonmap_options_at(t->maps[0], c, at->p, hits).radius;
+    double disc = M_PI * r * r;
+    double added = flux * at->albedo / (M_PI * disc);
+    return at->area > 0.0 && disc > 0.0 ? added * added * disc : 0.0;
+}
+
 /* What the smooth map sees, by two samplers, and beside it. */
 static void see(const gather_task *all, vec2 raster, const sampler by[2],
                 transport_scratch *scratch, gather_place *at)
@@ -207,6 +222,8 @@ static void see(const gather_task *all, vec2 raster, const sampler by[2],
             trial_sample(photonmap_radiance, smooth, all->plan, raster, by[k], scratch);
         at->smooth[k] = without_shared(all->plan, &found);
         at->seen += 0.5 * found.all;
+        at->lone += 0.5 * lone_photon(all->trial, &found, &scratch->estimate.hits);
+        at->area += 0.5 * found.area;
     }
     vec2 beside = {raster.x + 1.0f, raster.y};
     at->beside = sample(photonmap_radiance, smooth, all->plan, beside, by[0], scratch);
@@ -397,6 +414,7 @@ typedef struct gather_sums {
     square_sum path, sample, photons;
     bias_sum bias;
     double off, beside;
+    double lone, area;
 } gather_sums;
 
 /* One of n places. */
@@ -409,9 +427,24 @@ static void add_place(gather_sums *to, const gather_place *at, double weight, do
     square_add(&to->sample, half * samples * samples);
     square_add(&to->photons, half * photons * photons);
     bias_add(&to->bias, w * (at->twice[0] - at->near[0]) * (at->twice[1] - at->near[1]));
+    to->lone += w * at->lone;
+    to->area += at->area / n;
     to->off += off_map(at) * sqrt(weight) / n;
     double off = at->beside - 0.5 * (at->smooth[0] + at->smooth[1]);
     to->beside += w * off * off;
+}
+
+/* Variance of photons too rare for few maps to hold one: by Laplace's rule of succession
+   the next one that is sent is such a one with a chance of one over all that were; it
+   lands anywhere in the picture. */
+static double unseen_photons(const gather_trial *t, double lone, double pixel_area)
+{
+    const int c = PHOTON_INDIRECT;
+    const film_settings *film = &t->plan.view->film;
+    double tried = (double)t->few[0].n_photons[c] + (double)t->few[1].n_photons[c];
+    double seen = pixel_area * (double)film->width * (double)film->height;
+    double arrive = (double)t->plan.n_photons[c] / fmax(tried, 1.0);
+    return lone > 0.0 ? arrive * lone / seen : 0.0;
 }
 
 /* Where neither path found the light that photons came from their difference tells
@@ -426,7 +459,8 @@ static gather_errors errors_of(const gather_trial *t)
     return (gather_errors){
         .path = fmax(square_total(&sums.path), sums.off * sums.off),
         .samples = square_total(&sums.sample),
-        .photons = square_total(&sums.photons) * t->area / t->fewer,
+        .photons = square_total(&sums.photons) * t->area / t->fewer +
+                   unseen_photons(t, sums.lone, sums.area),
         .bias2 = seen_bias(&sums.bias) / t->area + unseen_bias(&t->plan),
         /* Without the noise of one sample and of the mean of two. */
         .contrast = fmax(sums.beside - (1.0 + 0.5) * sums.sample.sum, 0.0),

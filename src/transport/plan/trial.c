@@ -26,5 +26,12 @@ trial_light trial_sample(radiance_function *radiance, const void *pass,
     radiance(pass, &r, &random, scratch, &out);
     for (unsigned i = 0; i < N_LAYERS; i++)
         sum += out.layers[i];
-    return (trial_light){mean_of(sum), mean_of(out.layers[LAYER_CAUSTIC])};
+    const camera *c = &plan->view->camera;
+    return (trial_light){
+        .all = mean_of(sum),
+        .caustic = mean_of(out.layers[LAYER_CAUSTIC]),
+        .albedo = mean_of(out.albedo),
+        .area = out.depth > 0.0f ? (double)camera_pixel_area(c, out.depth) : 0.0,
+        .p = out.p,
+    };
 }

@@ -13,9 +13,14 @@ typedef void radiance_function(const void *pass, const ray *r, sampler *random,
 /** @brief A place of the film, anywhere. @return pixels from its corner */
 vec2 trial_place(const transport_plan *plan, sampler *random);
 
-/** @brief Means over wavelengths, W m⁻² sr⁻¹ nm⁻¹; 0 where they are not finite. */
+/** @brief Light through a place, and the first surface that is seen there. */
 typedef struct trial_light {
-    double all, caustic; /**< of all layers together, and of that of caustics */
+    /** Means over wavelengths, W m⁻² sr⁻¹ nm⁻¹, 0 where they are not finite: of all
+     * layers together, and of that of caustics. */
+    double all, caustic;
+    double albedo; /**< of the surface, mean over wavelengths */
+    double area;   /**< of a pixel there, facing the camera, m²; 0: nothing is seen */
+    vec3 p;
 } trial_light;
 
 /** @brief Light through that place. */
