@@ -18,7 +18,8 @@
     "ActiveTransform EndTime Translate 0.4 0 0 ActiveTransform All " GLASS_BALL
 #define MOVING ROOM_CAMERA SIZE(24) "WorldBegin\n" SMALL_LAMP ROOM_WALLS FLYING_BALL
 #define IN_FOG                                                                           \
-    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [.1 .1 .1]" \
+    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [.1 .1 "    \
+    ".1] \"rgb sigma_a\" [.01 .01 .01]"                                                  \
     " MediumInterface \"\" \"fog\"\n" ROOM_CAMERA SIZE(                                  \
         24) "WorldBegin MediumInterface \"fog\" \"fog\"\n" SMALL_LAMP ROOM_WALLS         \
             "MediumInterface \"\" \"fog\"\n" GLASS_BALL

@@ -26,12 +26,15 @@ trial_light trial_sample(radiance_function *radiance, const void *pass,
     radiance(pass, &r, &random, scratch, &out);
     for (unsigned i = 0; i < N_LAYERS; i++)
         sum += out.layers[i];
+    const light_guide *seen = &out.guide;
+    float share = seen->weight > 0.0f ? 1.0f / seen->weight : 0.0f;
+    float depth = seen->depth * share;
     const camera *c = &plan->view->camera;
     return (trial_light){
         .all = mean_of(sum),
         .caustic = mean_of(out.layers[LAYER_CAUSTIC]),
-        .albedo = mean_of(out.albedo),
-        .area = out.depth > 0.0f ? (double)camera_pixel_area(c, out.depth) : 0.0,
-        .p = out.p,
+        .albedo = mean_of(seen->albedo * share),
+        .area = depth > 0.0f ? (double)camera_pixel_area(c, depth) : 0.0,
+        .p = r.origin + depth * r.direction,
     };
 }
