@@ -37,6 +37,23 @@ bool radiance_sample_guide(radiance_sample *out, const surface_hit *hit, const b
     return true;
 }
 
+path_sides path_part(unsigned bounces, const bsdf *b, vec3 wo)
+{
+    float reflected = spectrum_mean(bsdf_albedo(b, wo, LOBE_SPECULAR | LOBE_REFLECTION));
+    float through = spectrum_mean(bsdf_albedo(b, wo, LOBE_SPECULAR | LOBE_TRANSMISSION));
+    bool mirrors = reflected > through;
+    path_sides sides = {mirrors ? LOBE_REFLECTION : LOBE_TRANSMISSION,
+                        mirrors ? LOBE_TRANSMISSION : LOBE_REFLECTION, 0.0f, 1.0f, 1.0f};
+    float less = minf(reflected, through);
+    if (!(less > 0.0f))
+        return sides;
+    float share = less / (reflected + through);
+    sides.p_both = bounces == 0 ? 1.0f : sqrtf(share);
+    sides.alone = 1.0f / (1.0f - share);
+    sides.beside = (1.0f - share / sides.p_both) / (1.0f - share);
+    return sides;
+}
+
 bool transport_scratch_init(transport_scratch *scratch, size_t n_groups, GError **error)
 {
     if (!estimate_scratch_init(&scratch->estimate, n_groups, error))

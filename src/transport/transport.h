@@ -17,7 +17,7 @@
 #include "photon/time_slice.h"
 #include "photon/trace/caustic_mis.h"
 #include "photon/trace/trace.h"
-#include "scene/view.h"
+#include "scene/advance.h"
 #include "transport/radius_cache.h"
 #include "transport/sketch.h"
 
@@ -107,13 +107,31 @@ typedef struct transport_counts {
  * scenes, 18 cases, 128 x 128, 4 and 8 passes, three seeds). */
 enum { ROULETTE_BOUNCES = 4 };
 
-/** @brief True where clear glass parts a path from the eye in two, both of which are
- * followed: the first that it meets. Few paths would find a light that it mirrors by
- * chance, and of few of them a denoiser makes a smear. */
-static inline bool path_is_parted(unsigned bounces, const bsdf *b)
+/** @brief True where clear glass parts a path from the eye that no chance has led there
+ * (path_sides), until roulette begins. */
+static inline bool path_is_parted(const path_segment *at, unsigned bounces, const bsdf *b)
 {
-    return bounces == 0 && b->lobes == (LOBE_SPECULAR | LOBE_ANY_SIDE);
+    return at->certain && bounces + 1 < ROULETTE_BOUNCES &&
+           b->lobes == (LOBE_SPECULAR | LOBE_ANY_SIDE);
 }
+
+/** @brief How the sides of such glass are followed: the one that has more of the light
+ * always, so that no path misses a lamp behind panes, and now and then both; of the first
+ * glass always. Few paths would find a light that it mirrors by chance, and of few of
+ * them a denoiser makes a smear.
+ *
+ * With the share R of the other's light and both followed as often as q, the usual one
+ * weighs 1 alone and 1 - R/q beside the other's R/q: all of it is 1 each time, which has
+ * no noise where both see the same, and R² (1 - q)/q of the square of what they differ by
+ * where they do not. R is one of them by chance; q = √R has .17 of its noise in a pane.
+ */
+typedef struct path_sides {
+    unsigned usual, other; /**< LOBE_REFLECTION or LOBE_TRANSMISSION */
+    float p_both;
+    float alone, beside; /**< times the usual one's throughput */
+} path_sides;
+
+path_sides path_part(unsigned bounces, const bsdf *b, vec3 wo);
 
 /** @brief A point where the camera looks (transport/visible.h). */
 typedef struct visible_point {

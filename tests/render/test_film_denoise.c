@@ -134,6 +134,36 @@ static void test_lamp_in_mirror(void)
     }
 }
 
+/* A lamp before the eye, as wide as the picture, and a pane of glass between. */
+#define BEHIND_A_PANE                                                                    \
+    "Camera \"perspective\" \"float fov\" 20\n" SIZE(                                    \
+        16) "WorldBegin\n"                                                               \
+            "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool "       \
+            "twosided\" true Shape \"trianglemesh\" \"point3 P\" [-9 -9 5 9 -9 5 9 9 "   \
+            "5 -9 9 5] \"integer indices\" [0 1 2 0 2 3] AttributeEnd\n"                 \
+            "Material \"dielectric\" \"float eta\" 1.5\n"                                \
+            "Shape \"trianglemesh\" \"point3 P\" [-2 -2 2 2 -2 2 2 2 2 -2 2 2 -2 -2 "    \
+            "2.1 2 -2 2.1 2 2 2.1 -2 2 2.1] \"integer indices\" [0 2 1 0 3 2 4 5 6 4 "   \
+            "6 7]\n"
+
+/* Each path sees it: of its light .96² comes through the pane. */
+static void test_lamp_behind_pane(void)
+{
+    g_autoptr(view) v = view_of(BEHIND_A_PANE);
+    for (size_t k = 0; k < G_N_ELEMENTS(integrators); k++) {
+        for (int seed = 0; seed < 4; seed++) {
+            g_autofree char *words =
+                g_strdup_printf("denoise=on passes=1 spp=1 photons=500 seed=%d "
+                                "integrator=%s",
+                                seed, integrators[k]);
+            g_autoptr(render) r = render_of(v, words);
+            g_assert_true(render_run(r, NULL, NULL, NULL));
+            for (int i = 0; i < 16 * 16; i++)
+                g_assert_cmpfloat(r->film.halves[i].guides.lights[1], >, 0.5f);
+        }
+    }
+}
+
 /* So it is as sharp as a lamp in sight, also where few samples find its edge: what is
    shown differs by the noise of other light, .003 to .08, and not by a lamp smeared over
    what is dark beside it, .5 to 1.3. */
@@ -392,6 +422,7 @@ int main(int argc, char **argv)
     g_test_add_func("/film-denoise/less-noise", test_less_noise);
     g_test_add_func("/film-denoise/windows", test_windows);
     g_test_add_func("/film-denoise/lamp-in-mirror", test_lamp_in_mirror);
+    g_test_add_func("/film-denoise/lamp-behind-pane", test_lamp_behind_pane);
     g_test_add_func("/film-denoise/sharp-in-mirror", test_sharp_in_mirror);
     g_test_add_func("/film-denoise/algorithms", test_algorithms);
     g_test_add_func("/film-denoise/raw-stays", test_raw_stays);

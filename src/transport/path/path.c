@@ -61,8 +61,9 @@ static void note_density(const path_walk *walk, camera_path *path, const surface
         bsdf_pdf(all, -path->at.ray.direction, next->wi, LOBE_ALL, TRANSPORT_RADIANCE);
 }
 
+/* By lobes that are followed with some probability. */
 static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
-                   const bsdf *b, unsigned lobes)
+                   const bsdf *b, unsigned lobes, float probability)
 {
     float u_lobe = sampler_1d(walk->random);
     vec2 u = sampler_2d(walk->random);
@@ -75,7 +76,7 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
                           sampler_1d(walk->random), &next);
     note_density(walk, path, hit, b, &next);
     path->looked = path_looks(walk, path, b);
-    path_segment_leave(&path->at, hit, &next, 1.0f);
+    path_segment_leave(&path->at, hit, &next, probability);
     path->eta2 *= next.eta * next.eta;
     path->pdf = (next.lobe & LOBE_SPECULAR) ? 0.0f : next.pdf;
     path->from = hit->p;
@@ -130,26 +131,32 @@ static void follow(path_walk *walk)
 
 /* Goes on by one side of glass, for roulette as if that was all. */
 static bool bounce_by(path_walk *walk, camera_path *path, const surface_hit *hit,
-                      const bsdf *b, unsigned side)
+                      const bsdf *b, unsigned side, float probability)
 {
-    float before = spectrum_mean(path->at.throughput);
-    bool goes_on = bounce(walk, path, hit, b, LOBE_SPECULAR | side);
+    float before = spectrum_mean(path->at.throughput) * path->eta2;
+    bool goes_on = bounce(walk, path, hit, b, LOBE_SPECULAR | side, probability);
     path->eta2 = before / spectrum_mean(path->at.throughput);
     return goes_on;
 }
 
-/* Follows what glass mirrors, and goes on with what it lets through. */
+/* Follows the other side of glass, if so, and goes on with the usual one. */
 static bool part(path_walk *walk, camera_path *path, const surface_hit *hit,
                  const bsdf *b)
 {
-    const camera_path through = *path;
+    const path_sides sides = path_part(path->bounces, b, -path->at.ray.direction);
+    const camera_path here = *path;
     sampler *outer = walk->random, own = sampler_split(outer, 0);
     walk->random = &own;
-    if (bounce_by(walk, path, hit, b, LOBE_REFLECTION))
+    bool both = sampler_1d(&own) < sides.p_both;
+    if (both && bounce_by(walk, path, hit, b, sides.other, sides.p_both))
         follow(walk);
     walk->random = outer;
-    *path = through;
-    return bounce_by(walk, path, hit, b, LOBE_TRANSMISSION);
+    *path = here;
+    bool goes_on = bounce_by(walk, path, hit, b, sides.usual, 1.0f);
+    float scale = both ? sides.beside : sides.alone;
+    path->at.throughput *= scale;
+    path->eta2 /= scale;
+    return goes_on;
 }
 
 /* One more step of the path. @return false if it was the last. */
@@ -179,8 +186,9 @@ static bool path_goes_on(path_walk *walk)
         path_gather_caustics(walk, &seen, &hit, &b);
         path_look_at_spots(walk, path, &hit, &b);
     }
-    return path_is_parted(path->bounces, &b) ? part(walk, path, &hit, &b)
-                                             : bounce(walk, path, &hit, &b, LOBE_ALL);
+    return path_is_parted(&path->at, path->bounces, &b)
+               ? part(walk, path, &hit, &b)
+               : bounce(walk, path, &hit, &b, LOBE_ALL, 1.0f);
 }
 
 void path_radiance(const void *data, const ray *r, sampler *random,

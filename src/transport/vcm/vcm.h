@@ -207,9 +207,10 @@ typedef struct vcm_walk {
     transport_mode mode;
 } vcm_walk;
 
-/** @brief Goes on from v by one of the lobes, roulette apart. @return false: absorbed. */
+/** @brief Goes on from v by one of the lobes, roulette apart. @return false: absorbed.
+ * @param probability with which these are followed: path_segment_leave */
 bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsigned lobes,
-                sampler *random);
+                float probability, sampler *random);
 
 /** @brief The layer that a path of these scattering events from the eye to the light
  * belongs to. */

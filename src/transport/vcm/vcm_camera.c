@@ -348,10 +348,11 @@ static void leave_curve(camera_walk *c, const vcm_vertex *v)
     }
 }
 
-/* Goes on from v by some of its lobes. */
-static bool go_on_by(camera_walk *c, const vcm_vertex *v, unsigned lobes)
+/* Goes on from v by some of its lobes, which are followed with some probability. */
+static bool go_on_by(camera_walk *c, const vcm_vertex *v, unsigned lobes,
+                     float probability)
 {
-    if (!vcm_bounce(c->pass, &c->walk, v, lobes, c->random))
+    if (!vcm_bounce(c->pass, &c->walk, v, lobes, probability, c->random))
         return false;
     leave_curve(c, v);
     return survives(c);
@@ -360,23 +361,30 @@ static bool go_on_by(camera_walk *c, const vcm_vertex *v, unsigned lobes)
 static void follow(camera_walk *c);
 
 /* Goes on by one side of glass, for roulette as if that was all. */
-static bool go_on_by_side(camera_walk *c, const vcm_vertex *v, unsigned side)
+static bool go_on_by_side(camera_walk *c, const vcm_vertex *v, unsigned side,
+                          float probability)
 {
-    float before = spectrum_mean(c->walk.at.throughput);
-    bool goes_on = go_on_by(c, v, LOBE_SPECULAR | side);
+    float before = spectrum_mean(c->walk.at.throughput) * c->walk.eta2;
+    bool goes_on = go_on_by(c, v, LOBE_SPECULAR | side, probability);
     c->walk.eta2 = before / spectrum_mean(c->walk.at.throughput);
     return goes_on;
 }
 
-/* Follows what glass mirrors, and goes on with what it lets through. */
+/* Follows the other side of glass, if so, and goes on with the usual one. */
 static bool part(camera_walk *c, const vcm_vertex *v)
 {
-    camera_walk mirrored = *c;
+    const path_sides sides = path_part((unsigned)c->walk.counts.n, &v->bsdf, v->wo);
+    camera_walk other = *c;
     sampler own = sampler_split(c->random, 0);
-    mirrored.random = &own;
-    if (go_on_by_side(&mirrored, v, LOBE_REFLECTION))
-        follow(&mirrored);
-    return go_on_by_side(c, v, LOBE_TRANSMISSION);
+    other.random = &own;
+    bool both = sampler_1d(&own) < sides.p_both;
+    if (both && go_on_by_side(&other, v, sides.other, sides.p_both))
+        follow(&other);
+    bool goes_on = go_on_by_side(c, v, sides.usual, 1.0f);
+    float scale = both ? sides.beside : sides.alone;
+    c->walk.at.throughput *= scale;
+    c->walk.eta2 /= scale;
+    return goes_on;
 }
 
 /* Goes on from v, by mirrors only if all else has been merged. */
@@ -385,9 +393,9 @@ static bool go_on(camera_walk *c, const vcm_vertex *v)
     const vcm_strategies *how = &c->pass->strategies;
     if (!how->connect && !how->merge)
         return false;
-    if (path_is_parted((unsigned)c->walk.counts.n, &v->bsdf))
+    if (path_is_parted(&c->walk.at, (unsigned)c->walk.counts.n, &v->bsdf))
         return part(c, v);
-    return go_on_by(c, v, how->end_here ? LOBE_SPECULAR | LOBE_ANY_SIDE : LOBE_ALL);
+    return go_on_by(c, v, how->end_here ? LOBE_SPECULAR | LOBE_ANY_SIDE : LOBE_ALL, 1.0f);
 }
 
 static void follow(camera_walk *c)

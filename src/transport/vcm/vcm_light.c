@@ -272,7 +272,7 @@ static bool go_on(light_walk *l, const vcm_vertex *v)
         return false;
     }
     bool scattered =
-        vcm_bounce(pass, &l->walk, v, LOBE_ALL, &l->random) && survives(l, before);
+        vcm_bounce(pass, &l->walk, v, LOBE_ALL, 1.0f, &l->random) && survives(l, before);
     tell(l, scattered ? PHOTON_SCATTERED : PHOTON_ABSORBED, v->hit);
     return scattered;
 }

@@ -70,7 +70,7 @@ static bool sample_direction(const vcm_pass *pass, const vcm_walk *walk,
 }
 
 bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsigned lobes,
-                sampler *random)
+                float probability, sampler *random)
 {
     bsdf_sample next;
     if (!sample_direction(pass, walk, v, lobes, random, &next))
@@ -81,7 +81,7 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
     else
         weights_bounce(&walk->weights, cosine, vcm_pdf(v, next.wi, walk->mode),
                        vcm_pdf_reverse(v, next.wi, walk->mode), &pass->ratios, v->alone);
-    path_segment_leave(&walk->at, v->hit, &next, 1.0f);
+    path_segment_leave(&walk->at, v->hit, &next, probability);
     walk->lobe = next.lobe;
     walk->mirrors_only &= (next.lobe & LOBE_SPECULAR) != 0;
     walk->eta2 *= next.eta * next.eta;
