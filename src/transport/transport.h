@@ -36,9 +36,9 @@ typedef enum radiance_layer {
  * Sums, where there are several, weighed by how much of their light arrives. */
 typedef struct light_guide {
     spectrum albedo;
-    spectrum lights; /**< what of LAYER_SPECULAR comes from lights by mirrors, and glass
-                       whose both sides are followed, without any chance: radiance,
-                       whatever the weight */
+    spectrum lights; /**< what of LAYER_SPECULAR comes from lights by mirrors, and by
+                       sides of glass that are always followed, without any chance:
+                       radiance, whatever the weight */
     vec3 normal;     /**< shading normal, toward where it is seen from */
     float depth;     /**< distance from the eye as the crow flies, m */
     float weight;    /**< 0: nothing is seen yet */
@@ -123,14 +123,15 @@ static inline bool path_is_parted(const path_segment *at, unsigned bounces, cons
  * With the share R of the other's light and both followed as often as q, the usual one
  * weighs 1 alone and 1 - R/q beside the other's R/q: all of it is 1 each time, which has
  * no noise where both see the same, and R² (1 - q)/q of the square of what they differ by
- * where they do not. R is one of them by chance; q = √R has .17 of its noise in a pane.
- */
+ * where they do not. q = R is one of them by chance; q = √R has .17 of its variance in a
+ * pane. */
 typedef struct path_sides {
     unsigned usual, other; /**< LOBE_REFLECTION or LOBE_TRANSMISSION */
     float p_both;
     float alone, beside; /**< times the usual one's throughput */
 } path_sides;
 
+/** @brief At the bounce after so many, of light toward wo. */
 path_sides path_part(unsigned bounces, const bsdf *b, vec3 wo);
 
 /** @brief A point where the camera looks (transport/visible.h). */

@@ -4,8 +4,6 @@
 #include "transport/visible.h"
 #include "transport/work.h"
 
-#include <math.h>
-
 /* ---- The plan that it would be ---- */
 
 /* Bounds on bounces bound different paths where photons meet the eye's. */
