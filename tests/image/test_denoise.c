@@ -325,6 +325,25 @@ static double relative_error(const picture *p, const float *out)
     return sum;
 }
 
+/* No pixel is like another. */
+static float unlike(int x, int y)
+{
+    guint32 hash = ((guint32)x * 73856093u ^ (guint32)y * 19349663u) * 2654435761u;
+    hash = (hash ^ hash >> 15) * 2246822519u;
+    return 0.25f * expf(4.0f * (float)(hash >> 16) / 65536.0f);
+}
+
+/* What nothing is like is what itself says, also where no window is around it. */
+static void test_unlike(void)
+{
+    const double sigma = 0.2;
+    g_autofree picture *p = noisy(unlike, sigma, 52);
+    gain(p, NULL, false);
+    double left = relative_error(p, p->out) / (sigma * sigma);
+    g_test_message("%.3f of the squared error", left);
+    g_assert_cmpfloat(left, <, 1.5);
+}
+
 /* The noise of what is bright is no reason to keep from the dark beside it what the
    filter smeared there. */
 static void test_beside_bright(void)
@@ -607,6 +626,7 @@ int main(int argc, char **argv)
     g_test_add_func("/denoise/outlier", test_outlier);
     g_test_add_func("/denoise/few-bright-paths", test_few_bright_paths);
     g_test_add_func("/denoise/beside-bright", test_beside_bright);
+    g_test_add_func("/denoise/unlike", test_unlike);
     g_test_add_func("/denoise/black", test_black);
     g_test_add_func("/denoise/threads", test_threads);
     g_test_add_func("/denoise/small-pictures", test_small_pictures);

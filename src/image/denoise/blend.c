@@ -16,6 +16,18 @@
 #define SURE_PIXELS 1.0f
 #define SURE_MEANS 0.3f
 
+/* What a pixel's own colour weighs beside what windows say of it, where a pixel that is
+   like their centre weighs up to 1. Of one that nothing is like (a lamp, a spot of light
+   of a pixel or two) and that no window has at its centre, windows say hardly a word, and
+   a wrong one. Relative squared errors of seven scenes, 4 and 16 passes, over those
+   without: .94 in the mean, .74 (candles behind glass) to 1.01; with ten times as much
+   .92, but 1.07 where there is most noise (clutter, 4 passes). */
+#define OWN_WEIGHT 0.005f
+
+/* What it weighs where bandwidths are chosen by how well windows tell: only where they
+   say nothing. */
+#define LEAST_WEIGHT 1e-9f
+
 /* Of what the filter lost, means over squares of 2 r + 1 pixels come back first: they
    have the least noise, and the eye, which sees little of single pixels, sees them. */
 static const int radii[] = {PATCH, 1, 0};
@@ -45,13 +57,14 @@ static float brightness(const float *const planes[3], size_t at)
     return luminance(planes[0][at], planes[1][at], planes[2][at]);
 }
 
-/* What a regression says of a pixel's half; as it was where none said anything. */
-static void said(const blend_loop *loop, int band, int half, size_t at, float out[3])
+/* What a regression says of a pixel's half, and the pixel itself. */
+static void said(const blend_loop *loop, int band, int half, size_t at, float own_weight,
+                 float out[3])
 {
     float *const *sum = loop->b->done->sum[band][half];
-    float weight = sum[3][at];
+    const float *const *own = loop->b->done->color[half];
     for (int c = 0; c < 3; c++)
-        out[c] = weight > 0.0f ? sum[c][at] / weight : loop->b->raw[half][c][at];
+        out[c] = (sum[c][at] + own_weight * own[c][at]) / (sum[3][at] + own_weight);
 }
 
 /* ---- Which bandwidth ---- */
@@ -62,7 +75,7 @@ static float cross_error(const blend_loop *loop, int band, size_t at)
 {
     float rgb[3], y[N_HALVES], sum = 0.0f;
     for (int h = 0; h < N_HALVES; h++) {
-        said(loop, band, h, at, rgb);
+        said(loop, band, h, at, LEAST_WEIGHT, rgb);
         y[h] = luminance(rgb[0], rgb[1], rgb[2]);
         float other = brightness(loop->b->done->color[1 - h], at);
         sum += 0.5f * (y[h] - other) * (y[h] - other);
@@ -98,8 +111,8 @@ static void filter_row(int y, void *data)
         size_t at = plane_at(loop->g, x, y);
         float share = loop->around[0][at] / PATCH_PIXELS, wide[3], narrow[3];
         for (int h = 0; h < N_HALVES; h++) {
-            said(loop, 0, h, at, wide);
-            said(loop, 1, h, at, narrow);
+            said(loop, 0, h, at, OWN_WEIGHT, wide);
+            said(loop, 1, h, at, OWN_WEIGHT, narrow);
             for (int c = 0; c < 3; c++)
                 loop->filtered[h][c][at] = (1.0f - share) * wide[c] + share * narrow[c];
         }
