@@ -30,13 +30,14 @@ typedef struct path_segment {
     int wavelength;      /**< the wavelength that is left of it, or ALL_WAVELENGTHS */
     const view *eye;     /**< it has not scattered on its way from there: shapes that the
                             camera does not see let it pass. NULL: it has, or never was */
-    bool certain; /**< it comes from the eye, and no chance has chosen its way since */
+    bool mirrors_only; /**< it comes from the eye, and has left by no lobe but SPECULAR */
+    bool certain;      /**< likewise, and no chance has chosen its way */
 } path_segment;
 
 /** @brief A path that starts at the eye. */
 static inline path_segment path_segment_from_eye(const view *eye, const ray *r)
 {
-    return (path_segment){*r, spectrum_fill(1.0f), ALL_WAVELENGTHS, eye, true};
+    return (path_segment){*r, spectrum_fill(1.0f), ALL_WAVELENGTHS, eye, true, true};
 }
 
 /** @brief A path from the eye leaves a surface by a direction that was sampled there.
@@ -49,8 +50,9 @@ static inline void path_segment_leave(path_segment *at, const surface_hit *hit,
     at->wavelength = next->wavelength;
     at->ray = hit_ray(hit, next->wi);
     at->eye = NULL;
-    at->certain = at->certain && (next->lobe & LOBE_SPECULAR) &&
-                  next->pdf * probability >= 1.0f && next->wavelength == ALL_WAVELENGTHS;
+    at->mirrors_only = at->mirrors_only && (next->lobe & LOBE_SPECULAR);
+    at->certain = at->certain && at->mirrors_only && next->pdf * probability >= 1.0f &&
+                  next->wavelength == ALL_WAVELENGTHS;
 }
 
 /** @brief Who travels. Functions may be NULL. */

@@ -37,6 +37,15 @@ bool radiance_sample_guide(radiance_sample *out, const surface_hit *hit, const b
     return true;
 }
 
+void radiance_sample_light(radiance_sample *out, const path_segment *at,
+                           spectrum radiance)
+{
+    if (at->eye || !at->mirrors_only)
+        return;
+    spectrum *seen = at->certain ? &out->guide.lights : &out->guide.glints;
+    *seen += at->throughput * radiance;
+}
+
 path_sides path_part(unsigned bounces, const bsdf *b, vec3 wo)
 {
     float reflected = spectrum_mean(bsdf_albedo(b, wo, LOBE_SPECULAR | LOBE_REFLECTION));

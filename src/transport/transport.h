@@ -39,6 +39,7 @@ typedef struct light_guide {
     spectrum lights; /**< what of LAYER_SPECULAR comes from lights by mirrors, and by
                        sides of glass that are always followed, without any chance:
                        radiance, whatever the weight */
+    spectrum glints; /**< likewise by mirrors and glass, where chance chose the way */
     vec3 normal;     /**< shading normal, toward where it is seen from */
     float depth;     /**< distance from the eye as the crow flies, m */
     float weight;    /**< 0: nothing is seen yet */
@@ -66,6 +67,12 @@ void radiance_sample_note(radiance_sample *out, const surface_hit *hit, const bs
  * wavelengths @return whether it does */
 bool radiance_sample_guide(radiance_sample *out, const surface_hit *hit, const bsdf *b,
                            vec3 wo, vec3 eye, float arrives);
+
+/** @brief Adds a light that a path from the eye meets to the guide, if it is seen by way
+ * of nothing but mirrors and glass. @param radiance toward where the path has come from
+ */
+void radiance_sample_light(radiance_sample *out, const path_segment *at,
+                           spectrum radiance);
 
 /** @brief Light that a pass found on its way from the lights, at a place of the film. */
 typedef struct splat {

@@ -76,7 +76,7 @@ static picture *noisy(pattern what, double sigma, guint32 seed)
 
 static denoise_layer layer_of(const picture *p)
 {
-    return (denoise_layer){3, {p->half[0], p->half[1]}, p->variance};
+    return (denoise_layer){3, {p->half[0], p->half[1]}, p->variance, 0};
 }
 
 static double squared_error(const picture *p, const float *out)
@@ -287,6 +287,32 @@ static void test_outlier(void)
         g_assert_cmpfloat(fabsf(p->out[i] - p->truth[i]), <, 0.15);
 }
 
+/* @return the most that a pixel is off */
+static float greatest_error(picture *p, const denoise_layer *light)
+{
+    float most = 0.0f;
+    g_autoptr(denoiser) d = denoiser_new(&size, NULL);
+    g_assert_true(denoiser_filter(d, light, -1, p->out, NULL));
+    for (int i = 0; i < 3 * N; i++)
+        most = fmaxf(most, fabsf(p->out[i] - p->truth[i]));
+    return most;
+}
+
+/* Three of them together, where such are known to be. */
+static void test_outliers_together(void)
+{
+    g_autofree picture *p = noisy(flat, 0.1, 14);
+    for (int i = 0; i < 3; i++) {
+        int at = (30 + i / 2) * W + 40 + i % 2;
+        for (int c = 0; c < 3; c++)
+            p->half[1][3 * at + c] = 1000.0f;
+    }
+    denoise_layer light = {3, {p->half[0], p->half[1]}, NULL, 0};
+    g_assert_cmpfloat(greatest_error(p, &light), >, 1.0f);
+    light.n_beside = 2;
+    g_assert_cmpfloat(greatest_error(p, &light), <, 0.2f);
+}
+
 /* A wall in the dark that one path of eight finds a bright place from: the halves agree
    by chance on what each has of them, which is no reason to show it. */
 static void test_few_bright_paths(void)
@@ -392,7 +418,7 @@ static void test_small_pictures(void)
         for (int i = 0; i < 3 * 3 * w; i++)
             half[0][i] = half[1][i] = 0.25f;
         const denoise_size small = {w, 3, 0.5f, 0.7f, 1, NULL, false};
-        const denoise_layer light = {3, {half[0], half[1]}, NULL};
+        const denoise_layer light = {3, {half[0], half[1]}, NULL, 0};
         g_autoptr(denoiser) d = denoiser_new(&small, NULL);
         g_assert_true(denoiser_filter(d, &light, -1, out, NULL));
         for (int i = 0; i < 3 * 3 * w; i++)
@@ -624,6 +650,7 @@ int main(int argc, char **argv)
     g_test_add_func("/denoise/noisy-feature-of-nothing", test_noisy_feature_of_nothing);
     g_test_add_func("/denoise/not-finite", test_not_finite);
     g_test_add_func("/denoise/outlier", test_outlier);
+    g_test_add_func("/denoise/outliers-together", test_outliers_together);
     g_test_add_func("/denoise/few-bright-paths", test_few_bright_paths);
     g_test_add_func("/denoise/beside-bright", test_beside_bright);
     g_test_add_func("/denoise/unlike", test_unlike);

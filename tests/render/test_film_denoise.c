@@ -138,7 +138,8 @@ static void test_lamp_in_mirror(void)
 #define BEHIND_A_PANE                                                                    \
     "Camera \"perspective\" \"float fov\" 20\n" SIZE(                                    \
         16) "WorldBegin\n"                                                               \
-            "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool "       \
+            "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0 0 0] "           \
+            "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool "                      \
             "twosided\" true Shape \"trianglemesh\" \"point3 P\" [-9 -9 5 9 -9 5 9 9 "   \
             "5 -9 9 5] \"integer indices\" [0 1 2 0 2 3] AttributeEnd\n"                 \
             "Material \"dielectric\" \"float eta\" 1.5\n"                                \
@@ -161,6 +162,34 @@ static void test_lamp_behind_pane(void)
             for (int i = 0; i < 16 * 16; i++)
                 g_assert_cmpfloat(r->film.halves[i].guides.lights[1], >, 0.5f);
         }
+    }
+}
+
+/* And two balls of glass, in which light goes to and fro. */
+#define BEHIND_BALLS                                                                     \
+    BEHIND_A_PANE "AttributeBegin Translate 0 0 3.2 Shape \"sphere\" \"float radius\" "  \
+                  ".8 AttributeEnd Translate 0 0 1.2 Shape \"sphere\" \"float "          \
+                  "radius\" .7\n"
+
+/* Where chance chose the way through glass, lamps are glints: with those that each path
+   sees, all that glass shows where all else is black. */
+static void test_glints(void)
+{
+    g_autoptr(view) v = view_of(BEHIND_BALLS);
+    for (size_t k = 0; k < G_N_ELEMENTS(integrators); k++) {
+        g_autofree char *words = g_strdup_printf(
+            "denoise=on passes=2 spp=1 photons=500 integrator=%s", integrators[k]);
+        g_autoptr(render) r = render_of(v, words);
+        g_assert_true(render_run(r, NULL, NULL, NULL));
+        float most = 0.0f;
+        for (int i = 0; i < 16 * 16; i++) {
+            const guide_sum *guides = &r->film.halves[i].guides;
+            float shown = (float)r->film.pixels[i].sum.color[LAYER_SPECULAR][1];
+            g_assert_cmpfloat_with_epsilon(guides->lights[1] + guides->glints[1], shown,
+                                           1e-4f * (1.0f + shown));
+            most = fmaxf(most, guides->glints[1]);
+        }
+        g_assert_cmpfloat(most, >, 0.02f);
     }
 }
 
@@ -423,6 +452,7 @@ int main(int argc, char **argv)
     g_test_add_func("/film-denoise/windows", test_windows);
     g_test_add_func("/film-denoise/lamp-in-mirror", test_lamp_in_mirror);
     g_test_add_func("/film-denoise/lamp-behind-pane", test_lamp_behind_pane);
+    g_test_add_func("/film-denoise/glints", test_glints);
     g_test_add_func("/film-denoise/sharp-in-mirror", test_sharp_in_mirror);
     g_test_add_func("/film-denoise/algorithms", test_algorithms);
     g_test_add_func("/film-denoise/raw-stays", test_raw_stays);

@@ -11,10 +11,11 @@ enum {
     LIGHT_PLANES = 39, /* of one light: see light_planes */
     BLEND_PLANES = 4,  /* while blend_all works */
     OUTLIER_REACH = 2, /* pixels around one that may be an outlier */
+    MOST_OUTLIERS = 8, /* that lie together */
 };
 
 /* A pixel of one half is cut to so many times the brightest around it, in the other half
-   and beside it: more has come by a path that hardly anyone finds. */
+   and beside it, but for its like: more has come by a path that hardly anyone finds. */
 #define OUTLIER 4.0f
 
 /* Features that scatter in a window by less than this of what they do in the picture tell
@@ -239,20 +240,32 @@ static void variance_row(int y, void *data)
     }
 }
 
-/* The brightest around a pixel of half h, itself only in the other half. */
+/* Puts a number among the n greatest, which fall. */
+static void put_among(float *greatest, int n, float number)
+{
+    for (int i = 0; i < n; i++) {
+        float less = minf(greatest[i], number);
+        greatest[i] = maxf(greatest[i], number);
+        number = less;
+    }
+}
+
+/* The brightest around a pixel of half h, itself only in the other half, but for those
+   that are outliers with it. */
 static float brightest_around(const light_loop *loop, int h, size_t at)
 {
-    float most = 0.0f;
+    float most[MOST_OUTLIERS] = {0.0f};
+    int n = 1 + CLAMP(loop->light->n_beside, 0, MOST_OUTLIERS - 1);
     for (int v = -OUTLIER_REACH; v <= OUTLIER_REACH; v++) {
         for (int u = -OUTLIER_REACH; u <= OUTLIER_REACH; u++) {
             size_t i =
                 (size_t)((ptrdiff_t)at + v * (ptrdiff_t)loop->d->g.stride + (ptrdiff_t)u);
-            most = maxf(most, loop->p.bright[1 - h][i]);
+            put_among(most, n, loop->p.bright[1 - h][i]);
             if (u != 0 || v != 0)
-                most = maxf(most, loop->p.bright[h][i]);
+                put_among(most, n, loop->p.bright[h][i]);
         }
     }
-    return most;
+    return most[n - 1];
 }
 
 static void cut_row(int y, void *data)

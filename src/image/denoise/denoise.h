@@ -27,6 +27,8 @@ typedef struct denoise_layer {
     const float *half[2];  /**< [pixel][channel], rows from the top */
     const float *variance; /**< of the luminance of the mean of both, [pixel]: square of
                               its standard error; NULL: as the halves' difference tells */
+    int n_beside;          /**< so many pixels beside an outlier may be outliers with it;
+                              features have none */
 } denoise_layer;
 
 /** @brief Of the picture. */

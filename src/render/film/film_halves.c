@@ -42,6 +42,7 @@ void guide_add(guide_sum *sum, const film_pass *pass, const radiance_sample *sam
     const light_guide *guide = &sample->guide;
     const spectrum in_sight = sample->layers[LAYER_EMISSION] + guide->lights;
     add_xyz(sum->lights, pass->w, guide->lights, weight);
+    add_xyz(sum->glints, pass->w, guide->glints, weight);
     sum->lit += spectrum_is_black(in_sight) ? 0.0f : weight;
     if (!(guide->weight > 0.0f))
         return;
@@ -68,10 +69,13 @@ static void add_floats(void *to, const void *from, int n)
         sum[i] += number[i];
 }
 
-/* Lights in mirrors are in sight too: what they are of a layer. */
-static double lights_luminance(const guide_sum *guides, int layer)
+/* What of a layer is not filtered with it: lights in mirrors, which are in sight too, and
+   glints. */
+static double luminance_apart(const guide_sum *guides, int layer)
 {
-    return layer == LAYER_SPECULAR ? (double)guides->lights[FILM_Y] : 0.0;
+    if (layer != LAYER_SPECULAR)
+        return 0.0;
+    return (double)guides->lights[FILM_Y] + (double)guides->glints[FILM_Y];
 }
 
 void halves_end_pass(const film *f, size_t begin, size_t end)
@@ -83,7 +87,7 @@ void halves_end_pass(const film *f, size_t begin, size_t end)
         add_floats(&pixel->guides, &f->pass_guides[i], GUIDE_NUMBERS);
         for (size_t l = 0; l < N_LIGHTS; l++) {
             double y = (double)number[HALF_AT(color) + 3 * l + FILM_Y];
-            y -= lights_luminance(&f->pass_guides[i], (int)l);
+            y -= luminance_apart(&f->pass_guides[i], (int)l);
             pixel->y2[l] += w > 0.0 ? y * y / w : 0.0;
         }
         if (f->n_passes % 2 == 0) {
@@ -170,13 +174,13 @@ float halves_variance(const film *f, size_t i, int layer)
 {
     const film_sum *sum = &f->pixels[i].sum;
     double y = sum->color[layer][FILM_Y], w = fabs(sum->weight);
-    y -= lights_luminance(&f->halves[i].guides, layer);
+    y -= luminance_apart(&f->halves[i].guides, layer);
     double y2 = f->halves[i].y2[layer], n = (double)f->n_passes;
     if (f->n_cells > 0 && film_pass_counts(f, i)) {
         film_sum pass = {0};
         film_add_pass(&pass, &f->pass[i]);
         double more = pass.color[layer][FILM_Y], by = fabs(pass.weight);
-        more -= lights_luminance(&f->pass_guides[i], layer);
+        more -= luminance_apart(&f->pass_guides[i], layer);
         y += more;
         w += by;
         y2 += by > 0.0 ? more * more / by : 0.0;

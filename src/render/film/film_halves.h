@@ -25,7 +25,7 @@ enum {
 
 /** @brief Sums of the guides of one pixel in one pass. Zero to begin. */
 typedef struct guide_sum {
-    float albedo[3], lights[3]; /**< XYZ */
+    float albedo[3], lights[3], glints[3]; /**< XYZ */
     float normal[3], depth;
     float weight; /**< of the samples that ended at a surface */
     float lit; /**< weight of the samples that have a light in sight, also by mirrors */

@@ -39,8 +39,7 @@ static void meet_light(void *data, const met_light *met)
         direct_met_weight(walk->scene, walk->how, &from, path->at.ray.direction, met) *
         weight_beside_photons(walk, path, met);
     path_add_from(walk, path, met->radiance * weight, met->light);
-    if (!path->at.eye && path->at.certain)
-        walk->out->guide.lights += path->at.throughput * met->radiance * weight;
+    radiance_sample_light(walk->out, &path->at, met->radiance * weight);
 }
 
 static void meet_surface(void *data, const surface_hit *hit)

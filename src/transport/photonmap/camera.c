@@ -87,8 +87,7 @@ static void meet_light(void *data, const met_light *met)
     float weight =
         direct_met_weight(pass->scene, pass->how, &from, branch->at.ray.direction, met);
     add_from(step->tree, branch, LAYER_EMISSION, met->radiance * weight, met->light);
-    if (!branch->at.eye && branch->at.certain)
-        step->tree->out->guide.lights += branch->at.throughput * met->radiance * weight;
+    radiance_sample_light(step->tree->out, &branch->at, met->radiance * weight);
 }
 
 static void meet_surface(void *data, const surface_hit *hit)

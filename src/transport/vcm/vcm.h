@@ -202,8 +202,7 @@ typedef struct vcm_walk {
     float eta2; /**< takes refraction's scale of radiance out of roulette */
     partial_weights weights;
     scattering_counts counts;
-    unsigned lobe;     /**< that it left its last vertex by */
-    bool mirrors_only; /**< no lobe but SPECULAR so far */
+    unsigned lobe; /**< that it left its last vertex by */
     transport_mode mode;
 } vcm_walk;
 

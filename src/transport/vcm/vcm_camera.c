@@ -52,7 +52,7 @@ static bool meets_alone(const camera_walk *c, bool *counted)
 {
     const vcm_strategies *how = &c->pass->strategies;
     bool seen_directly = c->walk.counts.n == 0;
-    *counted = how->connect || seen_directly || (how->merge && c->walk.mirrors_only);
+    *counted = how->connect || seen_directly || (how->merge && c->walk.at.mirrors_only);
     return !how->connect || seen_directly;
 }
 
@@ -80,8 +80,7 @@ static void meet_light(void *data, const met_light *met)
         return;
     float weight = alone ? 1.0f : met_weight(c, met->light, met->hit);
     add(c, c->walk.counts, met->light, met->radiance * weight);
-    if (!c->walk.at.eye && c->walk.at.certain)
-        c->out->guide.lights += c->walk.at.throughput * met->radiance * weight;
+    radiance_sample_light(c->out, &c->walk.at, met->radiance * weight);
 }
 
 static void meet_surface(void *data, const surface_hit *hit)
@@ -426,7 +425,7 @@ static void follow(camera_walk *c)
             return;
         weights_arrive(&walk->weights, length3_2(hit.p - walk->from), cosine);
         arrive_past_curve(c, &hit, cosine);
-        v.alone = walk->mirrors_only
+        v.alone = walk->at.mirrors_only
                       ? 1.0f
                       : vcm_alone_at(pass, &hit, &c->scratch->estimate.hits);
         shade(c, &v);
@@ -457,7 +456,6 @@ void vcm_radiance(const void *data, const ray *r, sampler *random,
     c.walk = (vcm_walk){.at = path_segment_from_eye(pass->plan->view, r),
                         .from = r->origin,
                         .eta2 = 1.0f,
-                        .mirrors_only = true,
                         .mode = TRANSPORT_RADIANCE};
     if (pass->strategies.splat) {
         float pdf =

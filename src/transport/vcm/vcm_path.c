@@ -83,7 +83,6 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
                        vcm_pdf_reverse(v, next.wi, walk->mode), &pass->ratios, v->alone);
     path_segment_leave(&walk->at, v->hit, &next, probability);
     walk->lobe = next.lobe;
-    walk->mirrors_only &= (next.lobe & LOBE_SPECULAR) != 0;
     walk->eta2 *= next.eta * next.eta;
     walk->from = v->hit->p;
     walk->counts = vcm_count(walk->counts, (next.lobe & LOBE_DIFFUSE) != 0);
