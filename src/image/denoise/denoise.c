@@ -8,10 +8,10 @@
 #include <math.h>
 
 enum {
-    N_LIGHT_PLANES = 36, /* light_planes */
-    BLEND_PLANES = 4,    /* while blend_all works */
-    OUTLIER_REACH = 2,   /* pixels around one that may be an outlier */
-    MOST_OUTLIERS = 8,   /* that lie together */
+    LIGHT_PLANES = 39, /* of one light: see light_planes */
+    BLEND_PLANES = 4,  /* while blend_all works */
+    OUTLIER_REACH = 2, /* pixels around one that may be an outlier */
+    MOST_OUTLIERS = 8, /* that lie together */
 };
 
 /* A pixel of one half is cut to so many times the brightest around it, in the other half
@@ -25,18 +25,6 @@ enum {
 /* Differences of less than this of the mean light are not seen. */
 #define LEAST_CONTRAST 1e-3f
 
-/* Planes while light is filtered. */
-typedef struct light_planes {
-    float *raw[2][3], *color[2][3]; /* color: without outliers */
-    float *bright[2], *noise[2];    /* luminance, and its variance summed over patches */
-    float *variance;                /* of the mean of both */
-    float *sum[N_BANDS][N_HALVES][N_SUMS];
-    float *out[3];
-} light_planes;
-
-_Static_assert(sizeof(light_planes) == N_LIGHT_PLANES * sizeof(float *),
-               "all are counted");
-
 struct denoiser {
     grid g;
     float share;
@@ -49,24 +37,7 @@ struct denoiser {
     int n_features;
     float *doubts[MOST_FEATURES]; /* one a feature */
     int first[MOST_FEATURES];     /* planes of the features */
-    light_planes light;           /* from the first light on: new memory is slow to get */
 };
-
-static bool planes_new(const grid *g, float **planes, int n, GError **error)
-{
-    for (int i = 0; i < n; i++) {
-        planes[i] = plane_new(g, error);
-        if (!planes[i])
-            return false;
-    }
-    return true;
-}
-
-static void planes_free(float **planes, int n)
-{
-    for (int i = 0; i < n; i++)
-        g_clear_pointer(&planes[i], big_free);
-}
 
 denoiser *denoiser_new(const denoise_size *size, GError **error)
 {
@@ -87,7 +58,6 @@ void denoiser_free(denoiser *d)
 {
     if (!d)
         return;
-    planes_free((float **)&d->light, N_LIGHT_PLANES);
     for (int i = 0; i < d->n_planes; i++)
         big_free(d->plane[i]);
     for (int i = 0; i < d->n_features; i++)
@@ -100,7 +70,23 @@ size_t denoise_bytes(int width, int height, int n_features, int n_feature_channe
     const grid g = grid_make(width, height, 1, NULL);
     const int doubts = n_features;
     return sizeof(float) * g.n *
-           (size_t)(N_LIGHT_PLANES + BLEND_PLANES + n_feature_channels + doubts);
+           (size_t)(LIGHT_PLANES + BLEND_PLANES + n_feature_channels + doubts);
+}
+
+static bool planes_new(const grid *g, float **planes, int n, GError **error)
+{
+    for (int i = 0; i < n; i++) {
+        planes[i] = plane_new(g, error);
+        if (!planes[i])
+            return false;
+    }
+    return true;
+}
+
+static void planes_free(float **planes, int n)
+{
+    for (int i = 0; i < n; i++)
+        g_clear_pointer(&planes[i], big_free);
 }
 
 /* ---- Reading ---- */
@@ -201,6 +187,17 @@ int denoiser_add(denoiser *d, const denoise_layer *feature, GError **error)
 }
 
 /* ---- Light ---- */
+
+/* Planes while light is filtered. */
+typedef struct light_planes {
+    float *raw[2][3], *color[2][3]; /* color: without outliers */
+    float *bright[2], *noise[2];    /* luminance, and its variance summed over patches */
+    float *variance;                /* of the mean of both */
+    float *sum[N_BANDS][N_HALVES][N_SUMS];
+    float *out[3];
+} light_planes;
+
+_Static_assert(sizeof(light_planes) <= LIGHT_PLANES * sizeof(float *), "all are counted");
 
 typedef struct light_loop {
     const denoiser *d;
@@ -425,26 +422,15 @@ static bool filter(const light_loop *loop, float *out, GError **error)
     return false;
 }
 
-/* Planes for a light; all but the sums are filled by those who use them. */
-static bool open_light(denoiser *d, GError **error)
+bool denoiser_filter(const denoiser *d, const denoise_layer *light, int divide_by,
+                     float *out, GError **error)
 {
-    if (!d->light.out[2])
-        return planes_new(&d->g, (float **)&d->light, N_LIGHT_PLANES, error);
-    for (int k = 0; k < N_BANDS; k++)
-        for (int h = 0; h < N_HALVES; h++)
-            for (int c = 0; c < N_SUMS; c++)
-                memset(d->light.sum[k][h][c], 0, d->g.n * sizeof(float));
-    return true;
-}
-
-bool denoiser_filter(denoiser *d, const denoise_layer *light, int divide_by, float *out,
-                     GError **error)
-{
+    enum { N = sizeof(light_planes) / sizeof(float *) };
     light_loop loop = {.d = d, .light = light};
     if (divide_by >= 0)
         loop.albedo = d->plane + d->first[divide_by];
-    if (!open_light(d, error))
-        return false;
-    loop.p = d->light;
-    return filter(&loop, out, error);
+    float **planes = (float **)&loop.p;
+    bool ok = planes_new(&d->g, planes, N, error) && filter(&loop, out, error);
+    planes_free(planes, N);
+    return ok;
 }

@@ -56,8 +56,8 @@ int denoiser_add(denoiser *d, const denoise_layer *feature, GError **error);
  * @param divide_by number of a feature of three channels, an albedo that the light is
  * about proportional to; -1: none
  * @param out [pixel][3] */
-bool denoiser_filter(denoiser *d, const denoise_layer *light, int divide_by, float *out,
-                     GError **error);
+bool denoiser_filter(const denoiser *d, const denoise_layer *light, int divide_by,
+                     float *out, GError **error);
 
 /** @brief Bytes that it takes while it works on a picture, margins with it. */
 size_t denoise_bytes(int width, int height, int n_features, int n_feature_channels);

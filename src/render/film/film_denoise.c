@@ -211,8 +211,8 @@ static void add_light(size_t begin, size_t end, unsigned thread, void *data)
         loop->out[i] += loop->light[i];
 }
 
-static bool filter_lights(const film *f, denoiser *d, layer_room *room, unsigned threads,
-                          float *out, GError **error)
+static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
+                          unsigned threads, float *out, GError **error)
 {
     out_loop all = {f, room->out, out};
     parallel_for(n_pixels(f), ITEMS_AT_ONCE, threads, NULL, put_lights, &all);
