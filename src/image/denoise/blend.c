@@ -1,6 +1,5 @@
 #include "image/denoise/blend.h"
 
-#include "base/memory.h"
 #include "math/vec.h"
 
 #include <float.h>
@@ -359,6 +358,6 @@ bool blend_all(const blend *b, GError **error)
     if (ok && !(ok = blend_rows(&loop)))
         error_set(error, ERROR_CANCELLED, "cancelled");
     for (int k = 0; k < N_OWN; k++)
-        big_free(own[k]);
+        plane_free(&b->done->g, own[k]);
     return ok;
 }

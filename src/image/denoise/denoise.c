@@ -27,6 +27,7 @@ enum {
 
 struct denoiser {
     grid g;
+    spare_planes spare; /* of the grid */
     float share;
     float brightness;
     int step; /* regression.step */
@@ -48,6 +49,7 @@ denoiser *denoiser_new(const denoise_size *size, GError **error)
     }
     denoiser *d = g_new0(denoiser, 1);
     d->g = grid_make(size->width, size->height, size->threads, size->cancel);
+    d->g.spare = &d->spare;
     d->share = size->share;
     d->brightness = size->brightness;
     d->step = size->coarse ? 4 : 2;
@@ -62,6 +64,7 @@ void denoiser_free(denoiser *d)
         big_free(d->plane[i]);
     for (int i = 0; i < d->n_features; i++)
         big_free(d->doubts[i]);
+    spare_planes_clear(&d->spare);
     g_free(d);
 }
 
@@ -83,10 +86,12 @@ static bool planes_new(const grid *g, float **planes, int n, GError **error)
     return true;
 }
 
-static void planes_free(float **planes, int n)
+static void planes_free(const grid *g, float **planes, int n)
 {
-    for (int i = 0; i < n; i++)
-        g_clear_pointer(&planes[i], big_free);
+    for (int i = 0; i < n; i++) {
+        plane_free(g, planes[i]);
+        planes[i] = NULL;
+    }
 }
 
 /* ---- Reading ---- */
@@ -175,10 +180,10 @@ int denoiser_add(denoiser *d, const denoise_layer *feature, GError **error)
               planes_new(&d->g, d->plane + d->n_planes, n, error) &&
               planes_new(&d->g, d->doubts + number, 1, error) &&
               read_feature(d, feature, halves, error);
-    planes_free(halves, 2 * MOST_CHANNELS);
+    planes_free(&d->g, halves, 2 * MOST_CHANNELS);
     if (!ok) {
-        planes_free(d->plane + d->n_planes, n);
-        planes_free(d->doubts + number, 1);
+        planes_free(&d->g, d->plane + d->n_planes, n);
+        planes_free(&d->g, d->doubts + number, 1);
         return -1;
     }
     d->first[number] = d->n_planes;
@@ -431,6 +436,6 @@ bool denoiser_filter(const denoiser *d, const denoise_layer *light, int divide_b
         loop.albedo = d->plane + d->first[divide_by];
     float **planes = (float **)&loop.p;
     bool ok = planes_new(&d->g, planes, N, error) && filter(&loop, out, error);
-    planes_free(planes, N);
+    planes_free(&d->g, planes, N);
     return ok;
 }

@@ -2,17 +2,37 @@
 
 #include "base/memory.h"
 
+#include <string.h>
+
 grid grid_make(int width, int height, unsigned threads, const cancel_flag *cancel)
 {
     size_t blocks = ((size_t)width + BLOCK - 1) / BLOCK;
-    grid g = {width, height, blocks * BLOCK + 2 * MARGIN, 0, threads, cancel};
+    grid g = {width, height, blocks * BLOCK + 2 * MARGIN, 0, threads, cancel, NULL};
     g.n = g.stride * ((size_t)height + 2 * MARGIN);
     return g;
 }
 
 float *plane_new(const grid *g, GError **error)
 {
-    return big_alloc(g->n, sizeof(float), "denoising", error);
+    if (!g->spare || g->spare->n == 0)
+        return big_alloc(g->n, sizeof(float), "denoising", error);
+    float *plane = g->spare->plane[--g->spare->n];
+    memset(plane, 0, g->n * sizeof *plane);
+    return plane;
+}
+
+void plane_free(const grid *g, float *plane)
+{
+    if (plane && g->spare && g->spare->n < MOST_SPARE_PLANES)
+        g->spare->plane[g->spare->n++] = plane;
+    else
+        big_free(plane);
+}
+
+void spare_planes_clear(spare_planes *spare)
+{
+    while (spare->n > 0)
+        big_free(spare->plane[--spare->n]);
 }
 
 /* Where in 0..n-1 the mirrored picture has what lies at i. */

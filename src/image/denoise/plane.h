@@ -21,16 +21,30 @@ enum {
     ROWS_AT_ONCE = 16,
 };
 
+enum { MOST_SPARE_PLANES = 48 };
+
+/** @brief Planes that were given back, for who wants one next: new memory is slow to come
+ * by. Zero to begin. */
+typedef struct spare_planes {
+    float *plane[MOST_SPARE_PLANES];
+    int n;
+} spare_planes;
+
 /** @brief Size of the picture, and what it is worked on with. */
 typedef struct grid {
     int width, height;
     size_t stride, n; /**< n: numbers of a plane */
     unsigned threads;
     const cancel_flag *cancel;
+    spare_planes *spare; /**< NULL: none is kept */
 } grid;
 
 grid grid_make(int width, int height, unsigned threads, const cancel_flag *cancel);
+
+/** @brief A plane of zeros. */
 float *plane_new(const grid *g, GError **error);
+void plane_free(const grid *g, float *plane);
+void spare_planes_clear(spare_planes *spare);
 
 static inline size_t plane_at(const grid *g, int x, int y)
 {

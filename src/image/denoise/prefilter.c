@@ -1,7 +1,5 @@
 #include "image/denoise/prefilter.h"
 
-#include "base/memory.h"
-
 #include <string.h>
 
 enum { AROUND = 4 /* pixels that are looked at in both directions */ };
@@ -52,7 +50,7 @@ static bool find_noise(const noisy_feature *f, float *noise[2], GError **error)
         noise[1][i] = noise[0][i] / (1.0f - f->share);
         noise[0][i] /= f->share;
     }
-    big_free(variance);
+    plane_free(f->g, variance);
     return true;
 }
 
@@ -199,6 +197,6 @@ bool prefilter(const noisy_feature *f, float *const out[MOST_CHANNELS], float *d
             error_set(error, ERROR_CANCELLED, "cancelled");
     }
     for (int i = 0; i < N; i++)
-        big_free(planes[i]);
+        plane_free(f->g, planes[i]);
     return ok;
 }
