@@ -214,11 +214,11 @@ static bool is_large(size_t bytes)
 #ifdef SANITIZED
     return false && bytes;
 #else
-    /* A half of what malloc takes for large until it has met larger ones: smaller ones
-       it gives back at the end of its heap, and takes them again page by page, which
-       may be 10 us each (75 planes of 68 kB, on a virtual machine: half the time that
-       denoising them takes). */
-    enum { LARGE_ARRAY = 1 << 16 };
+    /* More than a thread's first slab (slab_list.c), and half of what malloc takes for
+       large at first: what is smaller it gives back at the end of its heap, and takes it
+       again page by page, which may be 10 us each (75 planes of 68 kB, on a virtual
+       machine: half the time that denoising them takes). */
+    enum { LARGE_ARRAY = 65 << 10 };
     return bytes >= LARGE_ARRAY;
 #endif
 }
