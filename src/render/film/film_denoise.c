@@ -129,6 +129,7 @@ static void specular_of(const film *f, half_place at, int which, double sum[3])
     }
 }
 
+/* What is filtered of a light. */
 static void light_of(const film *f, half_place at, int which, float *rgb)
 {
     double sum[3];
