@@ -8,7 +8,6 @@
 #include <math.h>
 
 enum {
-    LIGHT_PLANES = 39, /* of one light: see light_planes */
     BLEND_PLANES = 4,  /* while blend_all works */
     OUTLIER_REACH = 2, /* pixels around one that may be an outlier */
     MOST_OUTLIERS = 8, /* that lie together */
@@ -24,6 +23,17 @@ enum {
 
 /* Differences of less than this of the mean light are not seen. */
 #define LEAST_CONTRAST 1e-3f
+
+/* Planes while a light is filtered. */
+typedef struct light_planes {
+    float *raw[2][3], *color[2][3]; /* color: without outliers */
+    float *bright[2], *noise[2];    /* luminance, and its variance summed over patches */
+    float *variance;                /* of the mean of both */
+    float *sum[N_BANDS][N_HALVES][N_SUMS];
+    float *out[3];
+} light_planes;
+
+enum { LIGHT_PLANES = sizeof(light_planes) / sizeof(float *) };
 
 struct denoiser {
     grid g;
@@ -192,17 +202,6 @@ int denoiser_add(denoiser *d, const denoise_layer *feature, GError **error)
 }
 
 /* ---- Light ---- */
-
-/* Planes while light is filtered. */
-typedef struct light_planes {
-    float *raw[2][3], *color[2][3]; /* color: without outliers */
-    float *bright[2], *noise[2];    /* luminance, and its variance summed over patches */
-    float *variance;                /* of the mean of both */
-    float *sum[N_BANDS][N_HALVES][N_SUMS];
-    float *out[3];
-} light_planes;
-
-_Static_assert(sizeof(light_planes) <= LIGHT_PLANES * sizeof(float *), "all are counted");
 
 typedef struct light_loop {
     const denoiser *d;
@@ -430,12 +429,11 @@ static bool filter(const light_loop *loop, float *out, GError **error)
 bool denoiser_filter(const denoiser *d, const denoise_layer *light, int divide_by,
                      float *out, GError **error)
 {
-    enum { N = sizeof(light_planes) / sizeof(float *) };
     light_loop loop = {.d = d, .light = light};
     if (divide_by >= 0)
         loop.albedo = d->plane + d->first[divide_by];
     float **planes = (float **)&loop.p;
-    bool ok = planes_new(&d->g, planes, N, error) && filter(&loop, out, error);
-    planes_free(&d->g, planes, N);
+    bool ok = planes_new(&d->g, planes, LIGHT_PLANES, error) && filter(&loop, out, error);
+    planes_free(&d->g, planes, LIGHT_PLANES);
     return ok;
 }

@@ -103,11 +103,6 @@ static const feature features[] = {
 
 /* ---- The picture ---- */
 
-/* Lights that are filtered: those of the film's layers, and glints, which are lamps in
-   glass that not every path finds. With what else is seen there these would make whatever
-   is beside them look like noise. */
-enum { GLINTS = N_LIGHTS, N_FILTERED };
-
 /* With so many pixels beside it a glint is an outlier, if there are no others around it:
    it would become a smear. Relative squared errors of eleven scenes, 4 and 16 passes,
    over those with none: .98; with 2 and 8 .985, with 19 1.02. */

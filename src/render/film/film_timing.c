@@ -46,19 +46,21 @@ double film_denoise_seconds(const film *f, unsigned threads, bool gets_more)
 /* ---- Of none yet ---- */
 
 /* Lights of which the pass under way has shown any, or those that most pictures have. */
-static void find_lights(const film *f, bool lit[N_LIGHTS])
+static void find_lights(const film *f, bool lit[N_FILTERED])
 {
     lit[LAYER_DIRECT] = lit[LAYER_INDIRECT] = f->n_cells == 0;
     for (size_t i = 0; i < (size_t)f->width * (size_t)f->height; i++) {
         const float *color = f->pass[i].number + HALF_AT(color);
-        int n = film_pass_counts(f, i) ? N_LIGHTS : 0;
-        for (int l = 0; l < n; l++)
+        if (!film_pass_counts(f, i))
+            continue;
+        for (int l = 0; l < N_LIGHTS; l++)
             lit[l] |= color[3 * l + FILM_Y] != 0.0f;
+        lit[GLINTS] |= f->pass_guides[i].glints[FILM_Y] != 0.0f;
     }
 }
 
 /* A pass over walls whose light is noise. */
-static void put_noise(film *f, const bool lit[N_LIGHTS])
+static void put_noise(film *f, const bool lit[N_FILTERED])
 {
     for (int i = 0; i < f->width * f->height; i++) {
         sampler random = sampler_make((uint64_t)f->n_passes, (uint64_t)i);
@@ -67,6 +69,8 @@ static void put_noise(film *f, const bool lit[N_LIGHTS])
         for (int k = 0; k < 3; k++) {
             for (int l = 0; l < N_LIGHTS; l++)
                 sum.color[l][k] = lit[l] ? (double)sampler_1d(&random) : 0.0;
+            guides.glints[k] = lit[GLINTS] ? sampler_1d(&random) : 0.0f;
+            sum.color[LAYER_SPECULAR][k] += (double)guides.glints[k];
             sum.color[N_LAYERS][k] = (double)(guides.albedo[k] = sampler_1d(&random));
             sum.normal[k] = (double)(guides.normal[k] = sampler_1d(&random));
         }
@@ -81,7 +85,7 @@ double film_denoise_seconds_ahead(const film *f, const view *v, unsigned threads
 {
     view few = *v;
     film noise = {0};
-    bool lit[N_LIGHTS] = {false};
+    bool lit[N_FILTERED] = {false};
     double took = 0.0;
     few.film.width = MIN(TRIAL_COLUMNS, f->width);
     few.film.height = MIN(TRIAL_ROWS, f->height);
