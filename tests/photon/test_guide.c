@@ -35,10 +35,13 @@ static size_t draw_records(const emission_guide *guide, uint64_t key,
 
 static emission_guide *learned_guide(emission_record records[N])
 {
-    emission_guide *guide = emission_guide_new();
-    for (uint64_t round = 0; round < 4; round++)
-        emission_guide_learn(guide, records, draw_records(guide, round, records));
-    return guide;
+    g_autoptr(emission_guide) guide = NULL;
+    for (uint64_t round = 0; round < 4; round++) {
+        size_t n = draw_records(guide, round, records);
+        emission_guide_free(guide);
+        guide = emission_guide_learn(records, n);
+    }
+    return g_steal_pointer(&guide);
 }
 
 /* The integral of the density over the cube is one, and a drawn point has it. */

@@ -29,13 +29,10 @@ typedef struct guide_node {
     double mass; /* probability, defensive share included */
 } guide_node;
 
-/* What is learned of a node from arrivals; of a leaf also where in it they lie. */
+/* What is learned of a node from the arrivals in it. */
 typedef struct guide_tally {
-    uint32_t arrivals;
+    size_t arrivals;
     double flux;
-    double square;     /* integral of the squared flux over the cell */
-    double importance; /* what its mass shall be in proportion to */
-    double share;      /* of all importance, smoothed */
     double by_axis[EMISSION_DIMENSIONS][BINS];
     uint32_t by_pair[N_PAIRS][BINS * BINS];
 } guide_tally;
@@ -57,7 +54,7 @@ static double volume(const guide_node *node)
     return v;
 }
 
-emission_guide *emission_guide_new(void)
+static emission_guide *guide_new(void)
 {
     emission_guide *guide = g_new0(emission_guide, 1);
     guide_node root = {.mass = 1.0};
@@ -132,9 +129,16 @@ float emission_guide_draw(const emission_guide *guide, sampler *random,
 
 /* ---- Learning ---- */
 
-static guide_tally *tally_at(GArray *tallies, int i)
+/* What is learned of a node. */
+typedef struct guide_learned {
+    size_t arrivals;
+    double importance; /* what its mass shall be in proportion to */
+    double share;      /* of all importance, smoothed */
+} guide_learned;
+
+static guide_learned *learned_at(GArray *learned, int i)
 {
-    return &g_array_index(tallies, guide_tally, i);
+    return &g_array_index(learned, guide_learned, i);
 }
 
 static void add_record(const guide_node *leaf, guide_tally *tally,
@@ -142,9 +146,7 @@ static void add_record(const guide_node *leaf, guide_tally *tally,
 {
     int bin[EMISSION_DIMENSIONS], pair = 0;
     double value = (double)record->value;
-    tally->arrivals++;
     tally->flux += value;
-    tally->square += value * value * (double)record->density;
     for (int a = 0; a < EMISSION_DIMENSIONS; a++) {
         float place = (record->u[a] - leaf->low[a]) / (leaf->high[a] - leaf->low[a]);
         bin[a] = CLAMP((int)(place * (float)BINS), 0, BINS - 1);
@@ -216,7 +218,7 @@ static int correlated_axis(const guide_tally *tally)
 static int axis_to_split(const guide_node *leaf, const guide_tally *tally)
 {
     const bool tells = tally->arrivals >= BINS * BINS;
-    if (leaf->child || leaf->depth >= MAX_DEPTH || !tells)
+    if (leaf->depth >= MAX_DEPTH || !tells)
         return -1;
     int axis = uneven_axis(tally);
     return axis >= 0 ? axis : correlated_axis(tally);
@@ -237,47 +239,60 @@ static void split(emission_guide *guide, int i, int axis)
     g_array_append_vals(guide->nodes, half, 2);
 }
 
-/* Tallies the records in their leaves and splits the leaves that deserve it, once. */
-static bool refine(emission_guide *guide, GArray *tallies, const emission_record *records,
-                   size_t n)
+/* Moves the records below x along the axis to the front. @return how many. */
+static size_t partition(emission_record *records, size_t n, int axis, float x)
 {
-    g_array_set_size(tallies, 0);
-    g_array_set_size(tallies, guide->nodes->len);
+    size_t below = 0;
     for (size_t i = 0; i < n; i++) {
-        int leaf = leaf_of(guide, records[i].u);
-        add_record(node_at(guide, leaf), tally_at(tallies, leaf), &records[i]);
-    }
-    bool any = false;
-    for (int i = 0; i < (int)tallies->len; i++) {
-        int axis = axis_to_split(node_at(guide, i), tally_at(tallies, i));
-        if (axis >= 0) {
-            split(guide, i, axis);
-            any = true;
+        if (records[i].u[axis] < x) {
+            emission_record r = records[i];
+            records[i] = records[below];
+            records[below++] = r;
         }
     }
-    return any;
+    return below;
 }
 
 /* Least variance wants photons in proportion to the root of the mean squared flux: where
-   few of many arrive, those few must not be heavy. Children come after their parents in
-   the array. */
-static void set_importance(const emission_guide *guide, GArray *tallies)
+   few of many arrive, those few must not be heavy. */
+static double importance_of(const guide_node *leaf, const emission_record *records,
+                            size_t n)
 {
-    for (int i = (int)tallies->len - 1; i >= 0; i--) {
-        const guide_node *node = node_at(guide, i);
-        guide_tally *tally = tally_at(tallies, i);
-        tally->importance = sqrt(volume(node) * tally->square);
-        if (node->child) {
-            const guide_tally *half = tally_at(tallies, node->child);
-            tally->importance = half[0].importance + half[1].importance;
-            tally->arrivals = half[0].arrivals + half[1].arrivals;
-        }
+    double square = 0.0; /* integral of the squared flux over the cell */
+    for (size_t i = 0; i < n; i++) {
+        double value = (double)records[i].value;
+        square += value * value * (double)records[i].density;
     }
+    return sqrt(volume(leaf) * square);
+}
+
+/* Grows the tree below node i, in which the records lie, and learns of it. */
+static void grow(emission_guide *guide, GArray *learned, int i, emission_record *records,
+                 size_t n)
+{
+    guide_tally tally = {.arrivals = n};
+    for (size_t k = 0; k < n; k++)
+        add_record(node_at(guide, i), &tally, &records[k]);
+    int axis = axis_to_split(node_at(guide, i), &tally);
+    guide_learned of = {.arrivals = n};
+    if (axis < 0) {
+        of.importance = importance_of(node_at(guide, i), records, n);
+    } else {
+        split(guide, i, axis);
+        g_array_set_size(learned, guide->nodes->len);
+        int child = node_at(guide, i)->child;
+        size_t below = partition(records, n, axis, middle(node_at(guide, i)));
+        grow(guide, learned, child, records, below);
+        grow(guide, learned, child + 1, records + below, n - below);
+        of.importance = learned_at(learned, child)->importance +
+                        learned_at(learned, child + 1)->importance;
+    }
+    *learned_at(learned, i) = of;
 }
 
 /* What n arrivals in both halves say of one of them, by Laplace's rule of succession: a
    half where none of them lay may still hold one in n + 2. */
-static double smoothed_share(const guide_tally *parent, const guide_tally *half)
+static double smoothed_share(const guide_learned *parent, const guide_learned *half)
 {
     double n = (double)parent->arrivals;
     double seen = n > 0.0 ? half->importance / parent->importance : 0.5;
@@ -286,29 +301,32 @@ static double smoothed_share(const guide_tally *parent, const guide_tally *half)
     return (1.0 - share) * learned + 0.5 * share;
 }
 
-static void set_masses(emission_guide *guide, GArray *tallies)
+/* Children come after their parents in the array. */
+static void set_masses(emission_guide *guide, GArray *learned)
 {
     const double share = (double)DEFENSIVE_SHARE;
-    tally_at(tallies, 0)->share = 1.0;
-    for (int i = 0; i < (int)tallies->len; i++) {
+    learned_at(learned, 0)->share = 1.0;
+    for (int i = 0; i < (int)learned->len; i++) {
         guide_node *node = node_at(guide, i);
-        const guide_tally *tally = tally_at(tallies, i);
-        node->mass = share * volume(node) + (1.0 - share) * tally->share;
+        const guide_learned *of = learned_at(learned, i);
+        node->mass = share * volume(node) + (1.0 - share) * of->share;
         for (int k = 0; k < 2 && node->child; k++) {
-            guide_tally *half = tally_at(tallies, node->child + k);
-            half->share = tally->share * smoothed_share(tally, half);
+            guide_learned *half = learned_at(learned, node->child + k);
+            half->share = of->share * smoothed_share(of, half);
         }
     }
 }
 
-void emission_guide_learn(emission_guide *guide, const emission_record *records, size_t n)
+emission_guide *emission_guide_learn(emission_record *records, size_t n)
 {
-    g_autoptr(GArray) tallies = g_array_new(FALSE, TRUE, sizeof(guide_tally));
-    while (refine(guide, tallies, records, n)) {
-    }
-    set_importance(guide, tallies);
-    if (tally_at(tallies, 0)->importance > 0.0)
-        set_masses(guide, tallies);
+    emission_guide *guide = guide_new();
+    if (n == 0)
+        return guide;
+    g_autoptr(GArray) learned = g_array_new(FALSE, TRUE, sizeof(guide_learned));
+    g_array_set_size(learned, 1);
+    grow(guide, learned, 0, records, n);
+    set_masses(guide, learned);
+    return guide;
 }
 
 /* ---- As bytes ---- */
@@ -335,7 +353,7 @@ emission_guide *emission_guide_get(bytes_reader *from)
     size_t n = bytes_get_count(from, sizeof(guide_node));
     if (n == 0)
         return NULL;
-    g_autoptr(emission_guide) guide = emission_guide_new();
+    g_autoptr(emission_guide) guide = guide_new();
     g_array_set_size(guide->nodes, (guint)n);
     for (size_t i = 0; i < n; i++) {
         bytes_get(from, node_at(guide, (int)i), 1, sizeof(guide_node));

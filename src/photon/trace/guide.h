@@ -43,20 +43,16 @@ typedef struct emission_guide emission_guide;
 /** @brief A photon that arrived usefully: where it started, and what it was worth. */
 typedef struct emission_record {
     float u[EMISSION_DIMENSIONS];
-    float value;   /**< useful flux, already over the density it was drawn with; >= 0 */
+    float value;   /**< useful flux, already over the density it was drawn with; > 0 */
     float density; /**< that density */
 } emission_record;
 
-/** @brief A guide that draws uniformly. */
-emission_guide *emission_guide_new(void);
 void emission_guide_free(emission_guide *guide);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(emission_guide, emission_guide_free)
 
-/** @brief Learns from n records of photons drawn with the guide as it is: cells are split
- * where arrivals crowd, and weights set anew. Not thread-safe; the guide is const
- * afterwards. */
-void emission_guide_learn(emission_guide *guide, const emission_record *records,
-                          size_t n);
+/** @brief A guide by n records, which are put in another order: cells are split where
+ * arrivals crowd. @param n 0: one that draws uniformly @return owned */
+emission_guide *emission_guide_learn(emission_record *records, size_t n);
 
 /** @brief Draws the six numbers. @param guide NULL: uniform
  *  @return the density they were drawn with, > 0, mean of 1/density is 1 */
