@@ -346,9 +346,9 @@ static bool guide_pays(const trials *all)
     return pays;
 }
 
-/* Up to four times the pilots are sent in each round: with so many as they are at most
-   the variance of caustics is 1.22 times as much in scenes/ring, and twice at the foot of
-   its wall, where few arrive (640 x 480, 12 passes, five seeds). */
+/* A round has up to four times the pilots. With as many as them the variance of caustics
+   is 1.22 times as much in scenes/ring, and twice as much at the foot of its wall, where
+   few arrive (640 x 480, 12 passes, five seeds). */
 static trials trials_of(transport_plan *plan, const cancel_flag *cancel)
 {
     return (trials){
