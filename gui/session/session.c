@@ -8,7 +8,9 @@
 #define LOOK_MOVING 0.05
 static const double looks_still[] = {0.25};
 
-/* Shares of its time that a render may spend on handing pictures over. */
+/* Shares of its time that a render may spend on handing pictures over: those of twice as
+   many passes as the last one, which look better, and others. */
+#define BETTER_SHARE 0.33
 #define SNAPSHOT_SHARE 0.1
 
 static double seconds(void)
@@ -99,14 +101,20 @@ static void show_picture(session *s)
 }
 
 /* Pictures are handed over as often as they are cheap beside the passes. */
+static bool is_time_to_show(const session *s, const NephStatistics *now)
+{
+    bool first = now->passes == 0 && now->can_look;
+    bool better = now->passes >= 2 * s->passes_shown;
+    double budget = better ? BETTER_SHARE : SNAPSHOT_SHARE;
+    bool cheap = budget * (seconds() - s->last_snapshot) > s->snapshot_cost;
+    return (first || now->passes > s->passes_shown) && (cheap || s->passes_shown == 0);
+}
+
 static bool on_progress(double fraction, const NephStatistics *statistics, void *data)
 {
     session *s = data;
-    bool first = statistics->passes == 0 && statistics->can_look;
-    bool newer = first || statistics->passes > s->passes_shown;
-    bool cheap = SNAPSHOT_SHARE * (seconds() - s->last_snapshot) > s->snapshot_cost;
     NephStatistics now = *statistics;
-    if (newer && (cheap || s->passes_shown == 0)) {
+    if (is_time_to_show(s, statistics)) {
         s->passes_shown = statistics->passes;
         show_picture(s);
     }
