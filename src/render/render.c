@@ -246,9 +246,13 @@ image *render_image(const render *r, GError **error)
     return render_image_while(r, NULL, error);
 }
 
+/* Of a render under way better pictures follow. */
 image *render_image_while(const render *r, const cancel_flag *cancel, GError **error)
 {
-    image *img = film_image(&r->film, r->n_threads, cancel, error);
+    film shown = r->film;
+    bool under_way = r->cancel.progress != NULL;
+    shown.coarse |= under_way && r->plan.how.denoise_windows == WINDOWS_AUTO;
+    image *img = film_image(&shown, r->n_threads, cancel, error);
     if (img)
         describe(r, img);
     return img;

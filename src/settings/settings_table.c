@@ -216,7 +216,7 @@ static const setting_row table[] = {
      WINDOWS_AUTO, window_words, "", "all",
      "Around which pixels denoise works: every second (fine), or every fourth (coarse), "
      "which takes less than half of the time and errs a little more; auto: coarse where "
-     "fine would take more than a tenth of the render's time."},
+     "fine would take more than a tenth of the render's time, and while it goes on."},
     {"seed", SETTING_COUNT, AT(seed), "", 0, 9007199254740992.0, 0, NULL, "", "all",
      "Chooses the random numbers; the same seed gives the same image, bit for bit."},
     {"camera_seed", SETTING_COUNT, AT(camera_seed), "", 0, 9007199254740992.0, 0, NULL,

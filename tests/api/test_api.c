@@ -205,6 +205,8 @@ typedef struct watch {
     double last;
     unsigned n_calls;
     int64_t stop_after; /* passes; 0: never */
+    NephRender *render;
+    NephImage *picture;
 } watch;
 
 static bool look(double fraction, const NephStatistics *statistics, void *data)
@@ -265,6 +267,59 @@ static void test_render_stops(void)
     neph_image_free(image);
     neph_render_free(render);
     neph_scene_free(scene);
+}
+
+/* Keeps the picture after two passes. */
+static bool keep_picture(double fraction, const NephStatistics *statistics, void *data)
+{
+    (void)fraction;
+    watch *w = data;
+    if (statistics->passes == 2 && !w->picture)
+        w->picture = neph_render_image(w->render, NULL);
+    return true;
+}
+
+/* After so many of three passes, noise being taken out in such windows; how it looked
+   after two in under_way. */
+static NephImage *picture_after(const char *passes, const char *windows,
+                                NephImage **under_way)
+{
+    g_autoptr(NephScene) scene = load();
+    g_autoptr(NephSettings) settings = neph_scene_settings(scene);
+    g_assert_true(neph_settings_set(settings, "planned_passes", "3", NULL));
+    g_assert_true(neph_settings_set(settings, "passes", passes, NULL));
+    g_assert_true(neph_settings_set(settings, "denoise_windows", windows, NULL));
+    g_autoptr(NephRender) render = neph_render_new(scene, settings, NULL);
+    watch w = {.render = render};
+    g_assert_true(neph_render_run(render, keep_picture, &w, NULL));
+    g_assert_nonnull(w.picture);
+    if (under_way)
+        *under_way = w.picture;
+    else
+        neph_image_free(w.picture);
+    return neph_render_image(render, NULL);
+}
+
+static bool are_same(const NephImage *a, const NephImage *b)
+{
+    int width, height, n;
+    neph_image_size(a, &width, &height, &n);
+    size_t size = (size_t)(width * height * n) * sizeof(float);
+    return memcmp(neph_image_pixels(a), neph_image_pixels(b), size) == 0;
+}
+
+/* Noise is taken out in fewer windows of a render under way, unless it is asked how. */
+static void test_render_under_way(void)
+{
+    g_autoptr(NephImage) early = NULL, early_fine = NULL;
+    g_autoptr(NephImage) whole = picture_after("3", "auto", &early);
+    g_autoptr(NephImage) whole_fine = picture_after("3", "fine", &early_fine);
+    g_autoptr(NephImage) coarse = picture_after("2", "coarse", NULL);
+    g_autoptr(NephImage) fine = picture_after("2", "fine", NULL);
+    g_assert_false(are_same(coarse, fine));
+    g_assert_true(are_same(early, coarse));
+    g_assert_true(are_same(early_fine, fine));
+    g_assert_true(are_same(whole, whole_fine));
 }
 
 /* Whether a render with the n-th big allocation refused ends well. */
@@ -403,6 +458,7 @@ int main(int argc, char **argv)
     g_test_add_func("/api/scene/power", test_described_power_scales);
     g_test_add_func("/api/render/lives", test_render_lives);
     g_test_add_func("/api/render/stops", test_render_stops);
+    g_test_add_func("/api/render/under-way", test_render_under_way);
     g_test_add_func("/api/render/refusals", test_render_survives_refusals);
     g_test_add_func("/api/images", test_images);
     g_test_add_func("/api/photons", test_photons);
