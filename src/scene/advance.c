@@ -167,6 +167,16 @@ float scene_medium_end(const scene *s, const ray *r, float length)
     return isfinite(length) ? length : maxf(sphere_end(s, r, &enters), 0.0f);
 }
 
+/* What is around where light from beyond comes in: a boundary on its way says so, and
+   else it is what leads there from the camera. */
+static uint32_t medium_beyond(const scene *s, const ray *r)
+{
+    surface_hit hit;
+    bool is_told =
+        scene_has_media(s) && scene_intersect_solid(s, r, &hit) && hit.boundary;
+    return is_told ? hit_media(&hit, -r->direction).participating : s->outer_medium;
+}
+
 void scene_leave_light(const scene *s, int i, vec3 n, ray *r)
 {
     const light *from = scene_light(s, i);
@@ -176,7 +186,7 @@ void scene_leave_light(const scene *s, int i, vec3 n, ray *r)
         r->media.participating = scene_light_medium(s, i, n, r->direction);
         return;
     }
-    r->media.participating = s->outer_medium;
-    if (s->outer_medium && sphere_end(s, r, &enters) > 0.0f && enters > 0.0f)
+    uint32_t around = r->media.participating = medium_beyond(s, r);
+    if (around && sphere_end(s, r, &enters) > 0.0f && enters > 0.0f)
         r->origin += enters * r->direction;
 }

@@ -214,6 +214,53 @@ static void test_photons_in_nests(void)
     }
 }
 
+/* The sun stands above a tank of water, 2 m deep, in which the camera is, between walls
+   that water is said to be behind, too. W of its light on the floor. */
+static double sun_in_tank(const char *sigma_a)
+{
+#define WALL(points)                                                                     \
+    "Shape \"trianglemesh\" \"point3 P\" [" points "] \"integer indices\" [0 1 2 0 2 "   \
+                                                   "3]\n"
+    g_autofree char *text = g_strdup_printf(
+        "MakeNamedMedium \"water\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" "
+        "[300 %s 900 %s] \"spectrum sigma_s\" [300 0 900 0]\n"
+        "MediumInterface \"\" \"water\"\n"
+        "LookAt 0 -1 1  0 0 1  0 0 1 Camera \"perspective\"\n" SIZE(4) //
+        "WorldBegin\n"
+        "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]\n"
+        "MediumInterface \"water\" \"\" Material \"interface\"\n"    //
+        WALL("-2 -2 2 2 -2 2 2 2 2 -2 2 2")                          //
+        "MediumInterface \"water\" \"water\" Material \"diffuse\"\n" //
+        WALL("-2 -2 0 2 -2 0 2 2 0 -2 2 0") WALL("-2 -2 0 2 -2 0 2 -2 2 -2 -2 2")
+            WALL("-2 2 0 2 2 0 2 2 2 -2 2 2") WALL("-2 -2 0 -2 2 0 -2 2 2 -2 -2 2")
+                WALL("2 -2 0 2 2 0 2 2 2 2 -2 2"),
+        sigma_a, sigma_a);
+#undef WALL
+    g_autoptr(scene) s = scene_of(text);
+    settings how = s->settings;
+    trace_task task = {.scene = s,
+                       .how = &how,
+                       .w = wavelengths_at(0.5f),
+                       .photon_class = PHOTON_DIRECT,
+                       .n_photons = 500000};
+    trace_result result;
+    g_assert_true(photon_trace(&task, false, &result, NULL));
+    double flux = 0;
+    for (size_t i = 0; i < result.photons.n; i++)
+        flux += (double)spectrum_mean(result.photons.flux[i]);
+    trace_result_clear(&result);
+    return flux;
+}
+
+/* Where light from beyond comes in is what the boundary that it meets says is outside,
+   not what lies behind walls that the camera cannot see through. */
+static void test_beyond(void)
+{
+    double left = sun_in_tank(".5") / sun_in_tank("0");
+    g_test_message("%.4f, expected %.4f", left, exp(-1.0));
+    g_assert_cmpfloat(fabs(left / exp(-1.0) - 1.0), <, 0.003);
+}
+
 /* ---- What is refused ---- */
 
 static void refuse(const char *glass, const char *message)
@@ -246,6 +293,7 @@ int main(int argc, char **argv)
     g_test_add_func("/medium/photons", test_photons);
     g_test_add_func("/medium/nests", test_nests);
     g_test_add_func("/medium/photons-in-nests", test_photons_in_nests);
+    g_test_add_func("/medium/beyond", test_beyond);
     g_test_add_func("/medium/refused", test_refused);
     return g_test_run();
 }
