@@ -187,6 +187,6 @@ void scene_leave_light(const scene *s, int i, vec3 n, ray *r)
         return;
     }
     uint32_t around = r->media.participating = medium_beyond(s, r);
-    if (around && sphere_end(s, r, &enters) > 0.0f && enters > 0.0f)
+    if (around && sphere_end(s, r, &enters) > 0.0f)
         r->origin += enters * r->direction;
 }
