@@ -62,6 +62,18 @@ static void test_camera_paths(void)
     }
 }
 
+/* W that all photons of the task bring. */
+static double flux_of(const trace_task *task)
+{
+    trace_result result;
+    g_assert_true(photon_trace(task, false, &result, NULL));
+    double flux = 0.0;
+    for (size_t i = 0; i < result.photons.n; i++)
+        flux += (double)spectrum_mean(result.photons.flux[i]);
+    trace_result_clear(&result);
+    return flux;
+}
+
 /* A floor behind the slab, lit by a beam: what arrives is the slab's transmittance. */
 static void test_photons(void)
 {
@@ -83,22 +95,16 @@ static void test_photons(void)
                        .photon_class = PHOTON_CAUSTIC,
                        .casters = casters,
                        .n_photons = 100000};
-    trace_result result;
-    g_assert_true(photon_trace(&task, false, &result, NULL));
-    double flux = 0, sky = 0;
-    for (size_t i = 0; i < result.photons.n; i++)
-        flux += (double)spectrum_mean(result.photons.flux[i]);
     const light *l = scene_light(s, 0);
     light_sample to;
     g_assert_true(l->kind->sample(l->self, &task.w, vec3_make(0, 0, 2), 0.5f,
                                   (vec2){0.5f, 0.5f}, &to));
-    sky = (double)spectrum_mean(to.radiance) * G_PI;
-    double seen = flux / sky;
+    double sky = (double)spectrum_mean(to.radiance) * G_PI;
+    double seen = flux_of(&task) / sky;
     double expected = slab_transmittance(1.5, exp(-1.5));
     g_test_message("photons: %.4f, expected %.4f", seen, expected);
     /* 17000 photons of about one weight: a deviation of 0.8 %. */
     g_assert_cmpfloat(fabs(seen / expected - 1.0), <, 0.045);
-    trace_result_clear(&result);
 }
 
 /* ---- Solids in solids: all of index 1, so that light goes straight through ---- */
@@ -184,14 +190,8 @@ static double beam_through(const char *from, const char *bodies, const char *flo
                        .photon_class = PHOTON_CAUSTIC,
                        .casters = casters,
                        .n_photons = 2000};
-    trace_result result;
-    g_assert_true(photon_trace(&task, false, &result, NULL));
-    double flux = 0;
-    for (size_t i = 0; i < result.photons.n; i++)
-        flux += (double)spectrum_mean(result.photons.flux[i]);
-    trace_result_clear(&result);
     const light *l = scene_light(s, 0);
-    return flux / (double)spectrum_mean(l->kind->power(l->self, &task.w));
+    return flux_of(&task) / (double)spectrum_mean(l->kind->power(l->self, &task.w));
 }
 
 static void test_photons_in_nests(void)
@@ -226,13 +226,7 @@ static double direct_flux(const char *text)
                        .w = wavelengths_at(0.5f),
                        .photon_class = PHOTON_DIRECT,
                        .n_photons = 500000};
-    trace_result result;
-    g_assert_true(photon_trace(&task, false, &result, NULL));
-    double flux = 0;
-    for (size_t i = 0; i < result.photons.n; i++)
-        flux += (double)spectrum_mean(result.photons.flux[i]);
-    trace_result_clear(&result);
-    return flux;
+    return flux_of(&task);
 }
 
 /* The camera is in water, as far as that goes; the sun stands above. */
