@@ -99,8 +99,10 @@ typedef struct light_kind {
      * goes everywhere. */
     cone3 (*beam)(const void *self);
     /** False if no light comes along this ray, which emit_toward's direction was given
-     * another start: behind a portal. NULL: light comes everywhere. */
-    bool (*admits)(const void *self, const ray *r);
+     * another start: behind a portal. *begins gets the distance along it from which on
+     * its light is there, and before which things only cast shadows; -INFINITY: it is
+     * all along. NULL: light comes everywhere, and all along. */
+    bool (*admits)(const void *self, const ray *r, float *begins);
 } light_kind;
 
 struct light {
@@ -113,6 +115,13 @@ struct light {
     medium_interface media; /**< around it */
     bool is_delta;          /**< no ray can meet it: without an extent, or of alpha 0 */
 };
+
+/** @brief As light_kind's admits, of any light. */
+static inline bool light_admits(const light *l, const ray *r, float *begins)
+{
+    *begins = -INFINITY;
+    return !l->kind->admits || l->kind->admits(l->self, r, begins);
+}
 
 /** @brief Kind number i of the table; NULL behind the last. */
 const light_kind *light_kind_at(size_t i);

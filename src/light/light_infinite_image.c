@@ -303,13 +303,17 @@ static bool emit(const void *self, const wavelengths *w, float u_primitive,
 }
 
 /* A photon's line passes the portal from outside. */
-static bool admits(const void *self, const ray *r)
+static bool admits(const void *self, const ray *r, float *begins)
 {
     const image_environment *l = self;
-    float distance;
-    return !l->passing ||
-           through(&l->portal, r->origin + 4.0f * l->disk.radius * r->direction,
-                   -r->direction, &distance);
+    float behind = 4.0f * l->disk.radius, distance;
+    *begins = -INFINITY;
+    if (!l->passing)
+        return true;
+    if (!through(&l->portal, r->origin + behind * r->direction, -r->direction, &distance))
+        return false;
+    *begins = behind - distance;
+    return true;
 }
 
 static void emit_pdf(const void *self, vec3 p, vec3 n, vec3 direction,

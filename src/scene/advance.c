@@ -177,16 +177,33 @@ static uint32_t medium_beyond(const scene *s, const ray *r)
     return is_told ? hit_media(&hit, -r->direction).participating : s->outer_medium;
 }
 
-void scene_leave_light(const scene *s, int i, vec3 n, ray *r)
+/* Lets a ray begin at a portal. */
+static spectrum come_in(const scene *s, float begins, const wavelengths *w, ray *r)
+{
+    r->origin += begins * r->direction;
+    r->media.participating = medium_beyond(s, r);
+    ray back = *r;
+    back.direction = -r->direction;
+    return scene_occluded(s, &back) ? spectrum_fill(0.0f)
+                                    : scene_transmittance(s, &back, w);
+}
+
+spectrum scene_leave_light(const scene *s, int i, vec3 n, const wavelengths *w, ray *r)
 {
     const light *from = scene_light(s, i);
-    float enters;
+    const spectrum all = spectrum_fill(1.0f);
+    float begins, enters;
     r->media = from->inside;
     if (!from->kind->is_environment && !from->kind->is_parallel) {
         r->media.participating = scene_light_medium(s, i, n, r->direction);
-        return;
+        return all;
     }
+    if (!light_admits(from, r, &begins)) /* by rounding, at a portal's edge */
+        return spectrum_fill(0.0f);
+    if (isfinite(begins))
+        return come_in(s, begins, w, r);
     uint32_t around = r->media.participating = medium_beyond(s, r);
     if (around && sphere_end(s, r, &enters) > 0.0f)
         r->origin += enters * r->direction;
+    return all;
 }

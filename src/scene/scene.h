@@ -204,9 +204,12 @@ static inline uint32_t scene_light_medium(const scene *s, int i, vec3 n, vec3 di
 }
 
 /** @brief Puts a ray that light takes from light i into the media there. One that comes
- * from beyond the scene is moved to where the medium around it begins, if there is one.
- * @param n as above */
-void scene_leave_light(const scene *s, int i, vec3 n, ray *r);
+ * from beyond the scene is moved to where the medium around it begins, if there is one,
+ * and one that comes through a portal to the portal: what lies before that only casts
+ * shadows, as in pbrt-v4.
+ * @param n as above
+ * @return share of the light that gets there */
+spectrum scene_leave_light(const scene *s, int i, vec3 n, const wavelengths *w, ray *r);
 
 /** @brief Index of a light's group, if the scene has groups. */
 static inline int scene_light_group(const scene *s, int i)

@@ -2,7 +2,8 @@
  * Committing a scene: what only the whole of it can tell is found once and kept, so that
  * queries need only look.
  *
- *   bounds ─► lights, prepared for them ─► acceleration structure ─► groups, solids
+ *   bounds ─► acceleration structure ─► media ─► lights, prepared for how far they
+ *   reach ─► groups, solids
  */
 #include "base/wanted.h"
 #include "scene/builder.h"
@@ -46,7 +47,7 @@ static bool find_lights(scene *s, GError **error)
     for (guint i = 0; i < n && (done = done && still_wanted(error)); i++) {
         const light *l = s->lights->pdata[i];
         if (l->kind->prepare)
-            l->kind->prepare(l->self, s->center, s->radius);
+            l->kind->prepare(l->self, s->center, scene_lit_radius(s));
         if (l->kind->is_environment)
             s->environments[s->n_environments++] = (int)i;
         light_strength strength = light_measure(l, &lines);
@@ -92,11 +93,16 @@ static void find_light_groups(scene *s)
 
 /* ---- All of it ---- */
 
-static void finish(scene *s, const camera *from)
+static bool find_all(scene *s, const camera *from, unsigned threads, GError **error)
 {
+    if (!scene_find_bounds(s, error) || !scene_build_accel(s, threads, error))
+        return false;
+    scene_find_outer_medium(s, from->medium_at, from->medium_there);
+    if (!find_lights(s, error))
+        return false;
     find_light_groups(s);
     scene_find_solids(s);
-    scene_find_outer_medium(s, from->medium_at, from->medium_there);
+    return true;
 }
 
 scene *scene_builder_commit(scene_builder *b, unsigned threads, GError **error)
@@ -110,12 +116,10 @@ scene *scene_builder_commit(scene_builder *b, unsigned threads, GError **error)
     }
     if (!b->filter.name && !filter_init_default(&b->filter, error))
         return NULL;
-    if (!scene_find_bounds(s, error) || !find_lights(s, error) ||
-        !scene_build_accel(s, threads, error)) {
+    if (!find_all(s, &b->camera, threads, error)) {
         scene_forget_commit(s);
         return NULL;
     }
-    finish(s, &b->camera);
     b->scene = NULL;
     return s;
 }

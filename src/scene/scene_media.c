@@ -28,3 +28,9 @@ void scene_find_outer_medium(scene *s, vec3 from, uint32_t there)
     s->outer_medium = scene_medium_behind(s, segment);
     s->media_radius = MEDIA_REACH * maxf(s->radius, distance);
 }
+
+float scene_lit_radius(const scene *s)
+{
+    const medium *outer = scene_medium(s, s->outer_medium);
+    return outer && medium_scatters(outer) ? s->media_radius : s->radius;
+}

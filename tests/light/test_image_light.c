@@ -337,9 +337,12 @@ static void test_portal_power(void)
         l->kind->emit_pdf(l->self, e.ray.origin, e.n, e.ray.direction, &position,
                           &direction);
         ray away = e.ray;
-        g_assert_true(l->kind->admits(l->self, &away) == (position > 0));
+        float begins;
+        g_assert_true(l->kind->admits(l->self, &away, &begins) == (position > 0));
+        if (position > 0)
+            g_assert_cmpfloat(fabsf(begins - t), <, 1e-3f * t);
         away.origin[0] += 3;
-        g_assert_false(l->kind->admits(l->self, &away));
+        g_assert_false(l->kind->admits(l->self, &away, &begins));
         if (position > 0)
             g_assert_cmpfloat(fabsf(position / e.pdf_position - 1), <, 1e-3f);
         sum += flux;

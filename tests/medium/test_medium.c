@@ -270,6 +270,32 @@ static void test_beyond(void)
     }
 }
 
+/* A stone below the middle of a sky's portal, which is .5 m above; from .49 m on there is
+   water. */
+#define HATCH(sigma_a, more)                                                             \
+    WATER(sigma_a)                                                                       \
+    "LookAt 0 0 1  0 0 0  0 1 0 Camera \"perspective\" WorldBegin\n"                     \
+    "LightSource \"infinite\" \"point3 portal\" [-.01 -.01 .5 -.01 .01 .5 .01 .01 .5 "   \
+    ".01 -.01 .5] \"rgb L\" [1 1 1]\n"                                                   \
+    "Material \"interface\" Shape \"disk\" \"float height\" .49 \"float radius\" .1\n"   \
+    "MediumInterface \"\" \"\" Material \"diffuse\" Shape \"disk\" \"float radius\" "    \
+    ".01\n" more
+#define PLATE(height) "Shape \"disk\" \"float radius\" .1 \"float height\" " height
+
+/* What lies before a portal only takes light away: a plate gets none and leaves none,
+   water leaves what Beer and Lambert say. */
+static void test_before_portal(void)
+{
+    g_autoptr(scene) s = scene_of(HATCH(".5", ""));
+    double clear = direct_flux(HATCH("0", ""));
+    double water = (double)(s->center[2] + s->media_radius) - 0.49;
+    double left = direct_flux(HATCH(".5", "")) / clear, expected = exp(-0.5 * water);
+    g_test_message("%.4f, expected %.4f", left, expected);
+    g_assert_cmpfloat(fabs(left / expected - 1.0), <, 0.02);
+    g_assert_cmpfloat(direct_flux(HATCH("0", PLATE(".6"))), ==, 0.0);
+    g_assert_cmpfloat(direct_flux(HATCH("0", PLATE(".3"))), >, clear);
+}
+
 /* ---- What is refused ---- */
 
 static void refuse(const char *glass, const char *message)
@@ -303,6 +329,7 @@ int main(int argc, char **argv)
     g_test_add_func("/medium/nests", test_nests);
     g_test_add_func("/medium/photons-in-nests", test_photons_in_nests);
     g_test_add_func("/medium/beyond", test_beyond);
+    g_test_add_func("/medium/before-portal", test_before_portal);
     g_test_add_func("/medium/refused", test_refused);
     return g_test_run();
 }

@@ -133,6 +133,21 @@ static const place places[] = {
      "0.06] \"rgb sigma_s\" [0.3 0.2 0.15] \"float g\" 0.3 MediumInterface "
      "\"fog\" " IN_ROOM("MediumInterface \"\" \"fog\" Material \"dielectric\" " BALL),
      ""},
+    /* The wall above it casts shadows, and is lit from below alone. */
+    {"portal",
+     EYE("") STAGE
+     "LightSource \"infinite\" \"rgb L\" [2 3 4] \"point3 portal\" [-1 -1 2 -1 1 2 1 "
+     "1 2 1 -1 2]\n"
+     "Shape \"trianglemesh\" \"point3 P\" [0.2 -1 2.1 0.2 1 2.1 0.2 1 4 0.2 -1 4] "
+     "\"integer indices\" [0 1 2 0 2 3]\n",
+     ""},
+    /* Nothing bounds it: it is bright far from all that stands in it. */
+    {"haze",
+     "MakeNamedMedium \"haze\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0.02 "
+     "0.02 "
+     "0.02] \"rgb sigma_s\" [0.05 0.1 0.2] MediumInterface \"haze\" \"haze\" " EYE("")
+         STAGE "LightSource \"infinite\" \"rgb L\" [1 1 1]\n",
+     " photons=50000"},
 };
 
 /* An algorithm, its settings, and what its radii may do to a block. */

@@ -70,8 +70,9 @@ bool photon_path_start(photon_path *path)
     if (!start(task, &path->random, &at))
         return false;
     path->at.ray = at.ray;
-    scene_leave_light(task->scene, at.light, at.n, &path->at.ray);
-    path->at.throughput = at.flux / (float)task->n_photons;
+    spectrum share =
+        scene_leave_light(task->scene, at.light, at.n, &task->w, &path->at.ray);
+    path->at.throughput = at.flux * share / (float)task->n_photons;
     path->light = at.light;
     path->at.wavelength = ALL_WAVELENGTHS;
     path->from_delta = scene_light(task->scene, at.light)->is_delta;
@@ -80,5 +81,5 @@ bool photon_path_start(photon_path *path)
     path->primitive = at.primitive;
     path->end = (caustic_end){
         .light = at.light, .p = at.ray.origin, .n = at.n, .direction = at.ray.direction};
-    return true;
+    return !spectrum_is_black(share);
 }

@@ -203,9 +203,9 @@ static bool emit(light_walk *l)
                              .n = e.n,
                              .direction = e.ray.direction};
     e.ray.time = l->time;
-    scene_leave_light(pass->scene, l->light, e.n, &e.ray);
+    spectrum share = scene_leave_light(pass->scene, l->light, e.n, &pass->w, &e.ray);
     l->walk = (vcm_walk){.at = {.ray = e.ray,
-                                .throughput = e.flux / p_light,
+                                .throughput = e.flux * share / p_light,
                                 .wavelength = ALL_WAVELENGTHS},
                          .from = l->start.p,
                          .eta2 = 1.0f,
