@@ -36,6 +36,8 @@ struct camera_kind {
        connected. */
     float (*density)(const camera *c, vec3 d);
     float (*pixel_area)(const camera *c, float z);
+    /* camera_repeats, on a film of 1 x 1. NULL: there are none. */
+    int (*repeats)(const camera *c, vec2 at, vec2 out[MOST_REPEATS]);
 };
 
 /* ---- parameters ---- */
@@ -253,6 +255,33 @@ static float pixel_area_spherical(const camera *c, float z)
     return 4.0f * PI_F * z * z / ((float)c->width * (float)c->height);
 }
 
+/* As wrap_square has it: beyond a corner the square goes on as it is. */
+static int repeats_of_square(vec2 at, vec2 out[MOST_REPEATS])
+{
+    int n = 0;
+    for (float x = -1.0f; x <= 1.0f; x += 2.0f) {
+        out[n++] = (vec2){1.0f + x - at.x, 1.0f - at.y};
+        out[n++] = (vec2){1.0f - at.x, 1.0f + x - at.y};
+        out[n++] = (vec2){at.x + x, at.y - 1.0f};
+        out[n++] = (vec2){at.x + x, at.y + 1.0f};
+    }
+    return n;
+}
+
+/* Around, and over the poles to where it is half a turn further. */
+static int repeats_spherical(const camera *c, vec2 at, vec2 out[MOST_REPEATS])
+{
+    if (c->equal_area)
+        return repeats_of_square(at, out);
+    int n = 0;
+    for (float x = -1.0f; x <= 1.0f; x += 2.0f) {
+        out[n++] = (vec2){at.x + x, at.y};
+        out[n++] = (vec2){at.x + 0.5f * x, -at.y};
+        out[n++] = (vec2){at.x + 0.5f * x, 2.0f - at.y};
+    }
+    return n;
+}
+
 /* ---- all of them ---- */
 
 static const camera_kind kinds[] = {
@@ -260,13 +289,13 @@ static const camera_kind kinds[] = {
      "fov halffov screenwindow frameaspectratio lensradius focaldistance shutteropen "
      "shutterclose",
      read_perspective, start_perspective, see_perspective, density_perspective,
-     pixel_area_perspective},
+     pixel_area_perspective, NULL},
     {"orthographic",
      "screenwindow frameaspectratio lensradius focaldistance shutteropen shutterclose",
      read_orthographic, start_orthographic, see_orthographic, NULL,
-     pixel_area_orthographic},
+     pixel_area_orthographic, NULL},
     {"spherical", "mapping shutteropen shutterclose", read_spherical, start_spherical,
-     see_spherical, density_spherical, pixel_area_spherical},
+     see_spherical, density_spherical, pixel_area_spherical, repeats_spherical},
 };
 
 const char *camera_kind_at(size_t i)
@@ -364,6 +393,17 @@ bool camera_project(const camera *c, vec3 p, vec2 *raster)
 {
     transform to_world = camera_at(c, 0.0f), to_camera = transform_inverse(&to_world);
     return c->kind->see(c, transform_point(&to_camera, p), (vec3){0}, raster);
+}
+
+int camera_repeats(const camera *c, vec2 raster, vec2 out[MOST_REPEATS])
+{
+    const vec2 size = {(float)c->width, (float)c->height};
+    if (!c->kind->repeats)
+        return 0;
+    int n = c->kind->repeats(c, (vec2){raster.x / size.x, raster.y / size.y}, out);
+    for (int i = 0; i < n; i++)
+        out[i] = (vec2){out[i].x * size.x, out[i].y * size.y};
+    return n;
 }
 
 /* ---- connections ---- */

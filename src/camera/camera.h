@@ -61,6 +61,14 @@ float camera_pixel_area(const camera *c, float z);
  * camera. */
 bool camera_project(const camera *c, vec3 p, vec2 *raster);
 
+/** @brief Places that camera_repeats may find. */
+#define MOST_REPEATS 8
+
+/** @brief Where else, beyond the film's borders, camera_ray sees what it sees at `raster`
+ * on the film: what a spherical camera sees goes on there. Filters reach that far.
+ * @return how many of out it has filled */
+int camera_repeats(const camera *c, vec2 raster, vec2 out[MOST_REPEATS]);
+
 /** @brief A point seen by the camera: what connects light to the eye. */
 typedef struct camera_connection {
     vec3 direction; /**< from the point to the place on the lens, unit */

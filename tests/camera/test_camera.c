@@ -315,6 +315,33 @@ static void test_equal_area(void)
     assert_near3(direction_at(&c, 20, -0.01f), direction_at(&c, 44, 0.01f), 1e-3);
 }
 
+/* Every place near the border, on either side of it, is where a connection leads or one
+   of its repeats, once; and all of these see the same. */
+static void test_spherical_repeats(void)
+{
+    for (int k = 0; k < 2; k++) {
+        camera c = camera_of("spherical", k ? "equalarea" : "equirectangular", 50, 40);
+        for (uint32_t i = 0; i < 2000; i++) {
+            sampler s = sampler_make(9, i);
+            vec2 u = sampler_2d(&s), at = {56 * u.x - 3, 46 * u.y - 3};
+            vec2 seen[1 + MOST_REPEATS];
+            camera_connection found;
+            vec3 d = direction_at(&c, at.x, at.y);
+            g_assert_true(camera_connect(&c, 3.0f * d, (vec2){0, 0}, 0, &found));
+            seen[0] = found.raster;
+            int n = 1 + camera_repeats(&c, found.raster, seen + 1), n_here = 0;
+            for (int j = 0; j < n; j++) {
+                assert_near3(direction_at(&c, seen[j].x, seen[j].y), d, 1e-3);
+                n_here += hypotf(seen[j].x - at.x, seen[j].y - at.y) < 0.02f;
+            }
+            g_assert_cmpint(n_here, ==, 1);
+        }
+    }
+    camera flat = camera_of("perspective", NULL, 50, 40);
+    vec2 none[MOST_REPEATS];
+    g_assert_cmpint(camera_repeats(&flat, (vec2){1, 1}, none), ==, 0);
+}
+
 /* Back to the raster, and pixels per solid angle by differences. */
 static void test_spherical_connects(void)
 {
@@ -578,6 +605,7 @@ int main(int argc, char **argv)
     g_test_add_func("/camera/equirectangular", test_equirectangular);
     g_test_add_func("/camera/equal-area", test_equal_area);
     g_test_add_func("/camera/spherical/connects", test_spherical_connects);
+    g_test_add_func("/camera/spherical/repeats", test_spherical_repeats);
     g_test_add_func("/camera/halffov", test_half_field_of_view);
     g_test_add_func("/camera/centre", test_centre_and_sides);
     g_test_add_func("/camera/fov", test_fov_spans_shorter_side);

@@ -85,6 +85,19 @@ static void keep_splat(light_walk *l, const splat *s)
         *kept = *s;
 }
 
+/* Keeps it wherever the film sees it: filters reach over the film's borders. */
+static void keep_splats(light_walk *l, splat s)
+{
+    const view *v = l->pass->plan->view;
+    vec2 at[1 + MOST_REPEATS] = {s.raster};
+    int n = 1 + camera_repeats(&v->camera, s.raster, at + 1);
+    for (int i = 0; i < n; i++) {
+        s.raster = at[i];
+        if (filter_reaches(&v->filter, at[i], v->film.width, v->film.height))
+            keep_splat(l, &s);
+    }
+}
+
 /* ---- To the eye ---- */
 
 static bool hidden(const scene *s, const surface_hit *hit)
@@ -130,13 +143,12 @@ static float weight_to_eye(const light_walk *l, const vcm_vertex *v,
 static void connect_to_eye(light_walk *l, const vcm_vertex *v)
 {
     const vcm_pass *pass = l->pass;
+    const view *to = pass->plan->view;
     camera_connection eye;
     vec2 u_lens = sampler_2d(&l->random);
     if (hidden(pass->scene, v->hit) ||
-        !camera_connect(&pass->plan->view->camera, v->hit->p, u_lens, v->hit->time,
-                        &eye) ||
-        !filter_reaches(&pass->plan->view->filter, eye.raster,
-                        pass->plan->view->film.width, pass->plan->view->film.height))
+        !camera_connect(&to->camera, v->hit->p, u_lens, v->hit->time, &eye) ||
+        !filter_reaches(&to->filter, eye.raster, to->film.width, to->film.height))
         return;
     lobe_pair f = vcm_scatter(v, eye.direction, TRANSPORT_IMPORTANCE);
     if (lobe_pair_is_black(&f))
@@ -159,7 +171,7 @@ static void connect_to_eye(light_walk *l, const vcm_vertex *v)
             .group = scene_light_group(pass->scene, l->light),
         };
         if (!spectrum_is_black(s.value))
-            keep_splat(l, &s);
+            keep_splats(l, s);
     }
 }
 
