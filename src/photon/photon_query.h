@@ -5,11 +5,11 @@
  *
  *   accepted    where photons keep curves: it is on the same one, or on none
  *               where photons keep normals: the photon's surface is not turned by more
- *               than 60 degrees, so that walls at a corner are told apart
- *               one-sided: the photon's direction lies on the side of n
- *               of one face: its direction and its flag say that its own surface lies
- *               alike, or it lies in the plane, |d·n|² < 1e-5 |d|² (so that triangles of
- *               a sheet may be wound as they like)
+ *               than 60 degrees, so that walls at a corner are told apart; where
+ * one-sided, nor is it the other side of a thin wall one-sided: the photon's direction
+ * lies on the side of n of one face: its direction and its flag say that its own surface
+ * lies alike, or it lies in the plane, |d·n|² < 1e-5 |d|² (so that triangles of a sheet
+ * may be wound as they like)
  *
  * Without the normals /neighbourhood/bright-wall fails, a wall lights the floor at its
  * foot; without the faces /verify/agree/thin-pane does, vcm shows 3 % too much; without
@@ -73,12 +73,14 @@ static inline bool photon_is_of_face(const photon_query *query, size_t i)
  * radius, of indirect and of all light, alike at the other three and with a quarter. */
 #define SAME_SURFACE 0.25f
 
-/** @brief True if the surface of photon i is not turned away from the query's. */
+/** @brief True if the surface of photon i is not turned away from the query's, nor, on
+ * one side, is it the other side of something thin. */
 static inline bool photon_is_alike(const photon_query *query, size_t i)
 {
     vec3 o = direction_octahedron(query->normal[i]);
     float dot = direction_dot(query->normal[i], query->at.n);
-    return dot * dot > SAME_SURFACE * fused_dot3(o, o);
+    float side = query->one_sided ? dot : fabsf(dot);
+    return side * fabsf(dot) > SAME_SURFACE * fused_dot3(o, o);
 }
 
 /** @brief True if some photons are not accepted. */
@@ -102,9 +104,9 @@ static inline bool photon_query_accepts(const photon_query *query, size_t i)
 static inline unsigned photons_alike(const photon_query *query, lane_ints normal)
 {
     lane_vec3 n = lane_directions_of(normal);
-    lane_floats dot = dot3_lanes(n, query->at.n);
+    lane_floats dot = dot3_lanes(n, query->at.n), size = abs_lanes(dot);
     lane_floats length2 = fused_lanes(n.z, n.z, fused_lanes(n.y, n.y, n.x * n.x));
-    return bits_below(SAME_SURFACE * length2, dot * dot);
+    return bits_below(SAME_SURFACE * length2, (query->one_sided ? dot : size) * size);
 }
 
 /** @brief True if photon i passes what is looked at one by one. */
