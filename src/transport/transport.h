@@ -26,7 +26,9 @@ typedef enum radiance_layer {
     LAYER_DIRECT,   /**< light → surface → eye */
     LAYER_INDIRECT, /**< by at least one diffuse bounce before the seen surface */
     LAYER_CAUSTIC,  /**< light → specular or glossy → seen surface → eye */
-    LAYER_SPECULAR, /**< all that is seen by way of a specular or glossy bounce */
+    LAYER_SPECULAR, /**< all that is seen by way of a specular or glossy bounce, or of a
+                       point in a medium: by what is not the first surface, whose albedo
+                       the denoiser divides the layers above by */
     LAYER_EMISSION, /**< lights and environment seen directly */
     N_LAYERS
 } radiance_layer;

@@ -114,6 +114,18 @@ static void test_twin(void)
     }
 }
 
+/* What fog scatters toward the eye has nothing of the surface behind it: it is in the
+   layer that is not divided by that one's albedo. */
+static void test_layer(gconstpointer data)
+{
+    const method *m = data;
+    g_autoptr(view) v = view_of(COLOURED EYE("", "0 -4 .3  0 0 .3") BETWEEN("", "")
+                                    POINT("2 -1.5 0") BETWEEN("f", "") BALL("1"));
+    g_autoptr(image) img = render_with(v, m->words);
+    g_assert_cmpfloat(mean_of(img, ""), >, 0.0);
+    g_assert_cmpfloat(fabs(mean_of(img, "specular") / mean_of(img, "") - 1), <, 1e-5);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -127,6 +139,13 @@ int main(int argc, char **argv)
     for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
         g_autofree char *name = g_strdup_printf("/fog/colour/%s", ways[i].name);
         g_test_add_data_func(name, &ways[i], test_colour);
+    }
+    static const method layered[] = {
+        {"path", "integrator=path spp=4 passes=1", 0},
+        {"photonmap", "integrator=photonmap spp=4 passes=1 photons=4000", 0}};
+    for (size_t i = 0; i < G_N_ELEMENTS(layered); i++) {
+        g_autofree char *name = g_strdup_printf("/fog/layer/%s", layered[i].name);
+        g_test_add_data_func(name, &layered[i], test_layer);
     }
     g_test_add_func("/fog/beam-is-found", test_beam_is_found);
     return g_test_run();

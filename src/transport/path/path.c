@@ -91,26 +91,6 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     return sampler_1d(walk->random) < p;
 }
 
-/* The eye sees this surface first: its albedo and normal are the picture's there. */
-static void note_seen(const path_walk *walk, const surface_hit *hit)
-{
-    bsdf b;
-    const path_pass *pass = walk->pass;
-    const camera_path *path = &walk->path;
-    if (scene_bsdf(walk->scene, hit, &pass->w, path->at.wavelength, &pass->options, &b))
-        radiance_sample_note(walk->out, hit, &b, -path->at.ray.direction, path->from);
-}
-
-/* What the eye's ray meets behind a medium is what the picture shows there. */
-static scene_event cross_medium(void *data, float length, const surface_hit *behind,
-                                surface_hit *at)
-{
-    path_walk *walk = data;
-    if (behind && walk->path.at.eye)
-        note_seen(walk, behind);
-    return path_meets_medium(walk, &walk->path, length, at) ? EVENT_MEDIUM : EVENT_NONE;
-}
-
 /* The first surface that is not specular guides the denoiser. */
 static void note_guide(const path_walk *walk, camera_path *path, const surface_hit *hit,
                        const bsdf *b)
@@ -118,6 +98,29 @@ static void note_guide(const path_walk *walk, camera_path *path, const surface_h
     path->guided = path->guided ||
                    radiance_sample_guide(walk->out, hit, b, -path->at.ray.direction,
                                          walk->eye, spectrum_mean(path->at.throughput));
+}
+
+/* If the eye sees this surface first, its albedo and normal are the picture's there. */
+static void note_seen(path_walk *walk, const surface_hit *hit)
+{
+    bsdf b;
+    const path_pass *pass = walk->pass;
+    camera_path *path = &walk->path;
+    if (!scene_bsdf(walk->scene, hit, &pass->w, path->at.wavelength, &pass->options, &b))
+        return;
+    if (path->at.eye)
+        radiance_sample_note(walk->out, hit, &b, -path->at.ray.direction, path->from);
+    note_guide(walk, path, hit, &b);
+}
+
+/* What the eye's ray meets behind a medium is what the picture shows there. */
+static scene_event cross_medium(void *data, float length, const surface_hit *behind,
+                                surface_hit *at)
+{
+    path_walk *walk = data;
+    if (behind && (walk->path.at.eye || !walk->path.guided))
+        note_seen(walk, behind);
+    return path_meets_medium(walk, &walk->path, length, at) ? EVENT_MEDIUM : EVENT_NONE;
 }
 
 static bool path_goes_on(path_walk *walk);

@@ -17,6 +17,7 @@ static void gather_in_medium(path_walk *walk, const camera_path *path, float len
     if (!photons || path_is_caustic(path) || path_is_cut(walk, path, 2) ||
         path_skips_gather(walk, &seen, walk->pass->plan->p_blurred_in_media))
         return;
+    camera_path_count_medium(&seen);
     camera_path_count(&seen, LOBE_DIFFUSE);
     seen.n_after = 1;
     path_add_parts(walk, &seen,
@@ -43,5 +44,6 @@ bool path_meets_medium(path_walk *walk, camera_path *path, float length, surface
     if (!next.scatters)
         return false;
     *hit = hit_in_medium(&path->at.ray, next.t);
+    camera_path_count_medium(path);
     return true;
 }

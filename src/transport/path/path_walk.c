@@ -32,6 +32,12 @@ void camera_path_count(camera_path *path, unsigned lobe)
     }
 }
 
+void camera_path_count_medium(camera_path *path)
+{
+    path->n_before += path->n_diffuse == 0;
+    path->guided = true;
+}
+
 bool path_is_caustic(const camera_path *path)
 {
     return path->n_diffuse > 0 && path->n_after > 0;

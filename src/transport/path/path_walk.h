@@ -11,7 +11,8 @@
 typedef struct camera_path {
     path_segment at;
     unsigned bounces;
-    unsigned n_before;  /* followed bounces before the first diffuse one */
+    unsigned n_before;  /* followed bounces, and points in media, before the first diffuse
+                           surface */
     unsigned n_diffuse; /* diffuse bounces */
     unsigned n_after;   /* followed bounces since the last diffuse one */
     float eta2;         /* takes refraction's scale of radiance out of roulette */
@@ -40,6 +41,10 @@ typedef struct path_walk {
 
 /** @brief Counts one more bounce by a lobe. */
 void camera_path_count(camera_path *path, unsigned lobe);
+
+/** @brief Counts that it is seen by way of a point in a medium, before the bounce there
+ * counts as a diffuse one. Surfaces that it comes to guide nothing. */
+void camera_path_count_medium(camera_path *path);
 
 /** @brief True if so many more bounces are more than the settings allow. */
 bool path_is_cut(const path_walk *walk, const camera_path *path, unsigned more);

@@ -210,6 +210,8 @@ static scene_event shade_medium(void *data, float length, const surface_hit *beh
     camera_branch *branch = step->branch;
     const photonmap_pass *pass = tree->pass;
     const medium *m = scene_medium(pass->scene, branch->at.ray.media.participating);
+    camera_branch seen = *branch; /* by way of it */
+    seen.n_followed++;
     const bool samples_lights = pass->how->direct_illumination;
     static const radiance_layer layers[N_PHOTON_CLASSES] = {LAYER_DIRECT, LAYER_INDIRECT,
                                                             LAYER_CAUSTIC};
@@ -220,13 +222,13 @@ static scene_event shade_medium(void *data, float length, const surface_hit *beh
     if (scatters && samples_lights) {
         spectrum direct =
             photonmap_direct_in_medium(pass, &look, tree->random, tree->scratch);
-        add_parts(tree, branch, LAYER_DIRECT, direct, parts);
+        add_parts(tree, &seen, LAYER_DIRECT, direct, parts);
     }
     for (int c = samples_lights ? PHOTON_INDIRECT : PHOTON_DIRECT;
          scatters && c < N_PHOTON_CLASSES; c++) {
         spectrum radiance = photonmap_gather_medium(
             pass, (photon_class)c, &branch->at.ray, length, tree->scratch);
-        add_parts(tree, branch, layers[c], radiance, parts);
+        add_parts(tree, &seen, layers[c], radiance, parts);
     }
     branch->at.throughput *= medium_transmittance(m, length, &pass->w);
     return EVENT_NONE;
