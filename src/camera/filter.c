@@ -13,6 +13,7 @@
 #include "camera/filter.h"
 
 #include "math/distribution.h"
+#include "math/sampler.h"
 
 #include <string.h>
 
@@ -45,6 +46,8 @@ typedef struct axis {
 
 struct filter_table {
     axis x, y;
+    double negative; /* probability of a weight below 0 */
+    uint64_t block;  /* in so many samples there is at most one; 0: by chance alone */
 };
 
 /* ---- the profiles ---- */
@@ -156,6 +159,30 @@ static float axis_sample(const axis *a, float u, float *weight)
     return x;
 }
 
+/* Of so many samples an axis' share of weights below 0 is told by. */
+#define SIGN_SAMPLES 4096
+
+static double axis_negative(const axis *a)
+{
+    int n = 0;
+    for (int i = 0; i < SIGN_SAMPLES; i++) {
+        float weight = 1.0f;
+        axis_sample(a, ((float)i + 0.5f) / SIGN_SAMPLES, &weight);
+        n += weight < 0.0f;
+    }
+    return (double)n / SIGN_SAMPLES;
+}
+
+/* Below 0 where one of both axes is. Shorter blocks would not keep sums above 0. */
+static void find_signs(filter_table *t)
+{
+    enum { SHORTEST = 4 };
+    double x = axis_negative(&t->x), y = axis_negative(&t->y);
+    t->negative = x * (1.0 - y) + y * (1.0 - x);
+    if (t->negative > 0.0 && t->negative * SHORTEST <= 1.0)
+        t->block = (uint64_t)(1.0 / t->negative);
+}
+
 /* ---- making one ---- */
 
 static const filter_kind *find_kind(const char *name)
@@ -201,6 +228,7 @@ static bool make_table(pixel_filter *f, const profile *shape, source_place place
     f->table->y.f.radius = f->y_radius;
     if (!axis_init(&f->table->x, error) || !axis_init(&f->table->y, error))
         return false;
+    find_signs(f->table);
     const double tiny = 1e-6;
     if (f->table->x.integral > tiny * f->table->x.absolute &&
         f->table->y.integral > tiny * f->table->y.absolute)
@@ -258,6 +286,35 @@ vec2 filter_sample(const pixel_filter *f, vec2 u, float *weight)
     float x = axis_sample(&f->table->x, u.x, weight);
     float y = axis_sample(&f->table->y, u.y, weight);
     return (vec2){x, y};
+}
+
+/* One sample of a block at most, anywhere in it; of the first block in its later half, so
+   that there are others before it. */
+static bool is_negative(const filter_table *t, uint64_t key, uint64_t number)
+{
+    uint64_t block = number / t->block, at = number % t->block;
+    uint64_t random = hash_mix(key, block);
+    if (!((double)(random >> 11) * 0x1p-53 < t->negative * (double)t->block))
+        return false;
+    uint64_t first = block == 0 ? (t->block + 1) / 2 : 0;
+    return at == first + hash_mix(random, 1) % (t->block - first);
+}
+
+vec2 filter_sample_nth(const pixel_filter *f, uint64_t key, uint64_t number, vec2 u,
+                       float *weight)
+{
+    enum { MOST_DRAWS = 1 << 12 };
+    vec2 at = filter_sample(f, u, weight);
+    if (f->table->block == 0)
+        return at;
+    bool negative = is_negative(f->table, key, number);
+    for (uint64_t i = 0; (*weight < 0.0f) != negative && i < MOST_DRAWS; i++) {
+        uint64_t random = hash_mix(hash_mix(key, ~number), i);
+        u = (vec2){(float)(random >> 40) * 0x1p-24f,
+                   (float)(random & 0xffffff) * 0x1p-24f};
+        at = filter_sample(f, u, weight);
+    }
+    return at;
 }
 
 float filter_eval(const pixel_filter *f, vec2 offset)

@@ -22,6 +22,12 @@ void filter_clear(pixel_filter *f);
 bool filter_init_default(pixel_filter *f, GError **error);
 /** @brief Offset from the pixel's centre for uniform u, and the sample's weight. */
 vec2 filter_sample(const pixel_filter *f, vec2 u, float *weight);
+/** @brief Likewise, of the number-th of samples that are summed up. Where the filter has
+ * negative lobes, weights below 0 come as often as they should, but evenly, and not
+ * first: so the sum of few weights, by which that of samples is divided, is not near 0.
+ * @param key of these samples */
+vec2 filter_sample_nth(const pixel_filter *f, uint64_t key, uint64_t number, vec2 u,
+                       float *weight);
 /** @brief f(x, y), not normalised. */
 float filter_eval(const pixel_filter *f, vec2 offset);
 /** @brief f(x, y) over its integral, per pixel area: what a place on the film gives to a

@@ -59,16 +59,23 @@ typedef struct pixel_sums {
     guide_sum guide;
 } pixel_sums;
 
+/* A sample of a pixel: its number among those of even passes, or of odd ones. */
+typedef struct pixel_sample {
+    vec2 pixel;
+    uint64_t key, number;
+} pixel_sample;
+
 /* Where in the pixel and on the lens, and when, a sample looks. */
 typedef struct pixel_look {
     vec2 offset, u_lens;
     float time, weight;
 } pixel_look;
 
-static pixel_look look_at(const view *v, sampler *random)
+static pixel_look look_at(const view *v, const pixel_sample *which, sampler *random)
 {
     pixel_look at;
-    at.offset = filter_sample(&v->filter, sampler_2d(random), &at.weight);
+    at.offset = filter_sample_nth(&v->filter, which->key, which->number,
+                                  sampler_2d(random), &at.weight);
     at.u_lens = sampler_2d(random);
     at.time = sampler_1d(random);
     if (v->scene->switches.fixed_pixels)
@@ -91,11 +98,12 @@ static void find_radiance(look *l, const ray *from_eye, sampler *random, unsigne
 }
 
 /* One camera sample of a pixel, random already told which. */
-static void render_sample(look *l, vec2 pixel, sampler *random, unsigned thread,
-                          pixel_sums *sums, const group_sums *groups)
+static void render_sample(look *l, const pixel_sample *which, sampler *random,
+                          unsigned thread, pixel_sums *sums, const group_sums *groups)
 {
     const view *v = l->task.plan->view;
-    pixel_look at = look_at(v, random);
+    const vec2 pixel = which->pixel;
+    pixel_look at = look_at(v, which, random);
     float weight = at.weight;
     vec2 raster = {pixel.x + 0.5f + at.offset.x, pixel.y + 0.5f + at.offset.y};
     ray from_eye = camera_ray(&v->camera, raster, at.u_lens, at.time);
@@ -134,7 +142,11 @@ static void render_pixel(look *l, int x, int y, unsigned thread)
             tell_progress(l->task.cancel);
         sampler random =
             sampler_make(key, l->task.index * (uint64_t)how->spp + (uint64_t)i);
-        render_sample(l, (vec2){(float)x, (float)y}, &random, thread, &sums, &groups);
+        const pixel_sample which = {.pixel = {(float)x, (float)y},
+                                    .key = hash_mix(key, 0x66696c74u + l->task.index % 2),
+                                    .number = l->task.index / 2 * (uint64_t)how->spp +
+                                              (uint64_t)i};
+        render_sample(l, &which, &random, thread, &sums, &groups);
     }
     if (cancelled(l->task.cancel)) /* then the last sample is not whole */
         return;

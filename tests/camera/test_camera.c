@@ -488,6 +488,38 @@ static void test_weights_integrate(void)
     }
 }
 
+/* Sums of few weights stay well above 0, and by number, too, the mean weight is one and
+ * the mean of weight * test the filter's integral. */
+static void test_few_weights(void)
+{
+    enum { KEYS = 2000, N = 64 };
+    for (int i = 0; i < 5; i++) {
+        pixel_filter f = make_filter(kinds[i]);
+        double frequency = 2.0 / (double)f.x_radius, sum = 0, ones = 0;
+        for (uint64_t key = 0; key < KEYS; key++) {
+            sampler s = sampler_make(key, 0);
+            double weights = 0;
+            for (uint64_t j = 0; j < N; j++) {
+                float w;
+                vec2 u = {sampler_1d(&s), sampler_1d(&s)};
+                vec2 p = filter_sample_nth(&f, key, j, u, &w);
+                double x = (double)p.x, y = (double)p.y, weight = (double)w;
+                weights += weight;
+                g_assert_cmpfloat(weights, >, 0.6);
+                sum += weight * (1 + cos(frequency * x) * cos(0.7 * frequency * y));
+            }
+            ones += weights;
+        }
+        double mean = sum / (KEYS * N), all = KEYS * N;
+        double expected = integrate(&f, frequency) / integrate(&f, 0) * 2;
+        g_test_message("%s: %.4f, expected %.4f; weights %.4f", kinds[i], mean, expected,
+                       ones / all);
+        g_assert_cmpfloat(fabs(mean - expected), <, 0.02);
+        g_assert_cmpfloat(fabs(ones / all - 1), <, 0.005);
+        filter_clear(&f);
+    }
+}
+
 /* Box, triangle and Gaussian: every sample counts as one. */
 static void test_positive_filters_have_unit_weight(void)
 {
@@ -620,6 +652,7 @@ int main(int argc, char **argv)
     g_test_add_func("/filter/values", test_filter_values);
     g_test_add_func("/filter/reach", test_filter_reach);
     g_test_add_func("/filter/weights", test_weights_integrate);
+    g_test_add_func("/filter/few-weights", test_few_weights);
     g_test_add_func("/filter/unit-weight", test_positive_filters_have_unit_weight);
     g_test_add_func("/filter/triangle", test_triangle_is_inverted);
     g_test_add_func("/filter/chi2", test_samples_follow_filter);
