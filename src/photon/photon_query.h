@@ -5,11 +5,12 @@
  *
  *   accepted    where photons keep curves: it is on the same one, or on none
  *               where photons keep normals: the photon's surface is not turned by more
- *               than 60 degrees, so that walls at a corner are told apart; where
- * one-sided, nor is it the other side of a thin wall one-sided: the photon's direction
- * lies on the side of n of one face: its direction and its flag say that its own surface
- * lies alike, or it lies in the plane, |d·n|² < 1e-5 |d|² (so that triangles of a sheet
- * may be wound as they like)
+ *               than 60 degrees, so that walls at a corner are told apart; one-sided,
+ *               not upside down either, as the other side of a thin wall is
+ *               one-sided: the photon's direction lies on the side of n
+ *               of one face: its direction and its flag say that its own surface lies
+ *               alike, or it lies in the plane, |d·n|² < 1e-5 |d|² (so that triangles of
+ *               a sheet may be wound as they like)
  *
  * Without the normals /neighbourhood/bright-wall fails, a wall lights the floor at its
  * foot; without the faces /verify/agree/thin-pane does, vcm shows 3 % too much; without
