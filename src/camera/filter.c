@@ -308,12 +308,9 @@ vec2 filter_sample_nth(const pixel_filter *f, uint64_t key, uint64_t number, vec
     if (f->table->block == 0)
         return at;
     bool negative = is_negative(f->table, key, number);
-    for (uint64_t i = 0; (*weight < 0.0f) != negative && i < MOST_DRAWS; i++) {
-        uint64_t random = hash_mix(hash_mix(key, ~number), i);
-        u = (vec2){(float)(random >> 40) * 0x1p-24f,
-                   (float)(random & 0xffffff) * 0x1p-24f};
-        at = filter_sample(f, u, weight);
-    }
+    sampler again = sampler_make(hash_mix(key, 1), number);
+    for (int i = 0; (*weight < 0.0f) != negative && i < MOST_DRAWS; i++)
+        at = filter_sample(f, sampler_2d(&again), weight);
     return at;
 }
 

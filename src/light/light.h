@@ -116,13 +116,6 @@ struct light {
     bool is_delta;          /**< no ray can meet it: without an extent, or of alpha 0 */
 };
 
-/** @brief As light_kind's admits, of any light. */
-static inline bool light_admits(const light *l, const ray *r, float *begins)
-{
-    *begins = -INFINITY;
-    return !l->kind->admits || l->kind->admits(l->self, r, begins);
-}
-
 /** @brief Kind number i of the table; NULL behind the last. */
 const light_kind *light_kind_at(size_t i);
 /** @brief The parameters that every light has. */

@@ -192,13 +192,13 @@ spectrum scene_leave_light(const scene *s, int i, vec3 n, const wavelengths *w, 
 {
     const light *from = scene_light(s, i);
     const spectrum all = spectrum_fill(1.0f);
-    float begins, enters;
+    float begins = -INFINITY, enters;
     r->media = from->inside;
     if (!from->kind->is_environment && !from->kind->is_parallel) {
         r->media.participating = scene_light_medium(s, i, n, r->direction);
         return all;
     }
-    if (!light_admits(from, r, &begins)) /* by rounding, at a portal's edge */
+    if (from->kind->admits && !from->kind->admits(from->self, r, &begins))
         return spectrum_fill(0.0f);
     if (isfinite(begins))
         return come_in(s, begins, w, r);

@@ -72,7 +72,7 @@ bool photon_emit_aimed(const caustic_casters *c, const wavelengths *w, sampler *
                        photon_start *out)
 {
     light_emission emission;
-    float u_light = sampler_1d(random), u_primitive = sampler_1d(random), begins;
+    float u_light = sampler_1d(random), u_primitive = sampler_1d(random);
     vec2 u = sampler_2d(random);
     if (!(distribution_total(&c->power) > 0.0))
         return false;
@@ -81,7 +81,7 @@ bool photon_emit_aimed(const caustic_casters *c, const wavelengths *w, sampler *
     if (!l || !l->kind->emit_toward(l->self, w, u_primitive, u, target, &emission))
         return false;
     emission.ray.time = out->ray.time;
-    if (!meets_caster(c, w, emission.ray) || !light_admits(l, &emission.ray, &begins))
+    if (!meets_caster(c, w, emission.ray))
         return false;
     double density = aimed_density(c, emission.ray, l->kind->is_parallel);
     return density > 0.0 && finish(&emission, (float)density, out);
@@ -106,13 +106,12 @@ static bool emit_at_disc(const caustic_casters *c, const light *l, const wavelen
                          const float u[EMISSION_DIMENSIONS], light_emission *out)
 {
     vec2 u_direction = {u[4], u[5]}, disk = warp_disk((vec2){u[2], u[3]});
-    float begins;
     if (!l->kind->emit_toward(l->self, w, u[1], u_direction, c->center, out))
         return false;
     frame f = frame_from_normal(out->ray.direction);
     out->ray.origin += c->radius * (disk.x * f.s + disk.y * f.t);
     out->flux *= PI_F * c->radius * c->radius;
-    return light_admits(l, &out->ray, &begins);
+    return true;
 }
 
 /* math: how far off rounding may turn a unit direction (radians). */
