@@ -314,6 +314,12 @@ vec2 filter_sample_nth(const pixel_filter *f, uint64_t key, uint64_t number, vec
     return at;
 }
 
+float filter_taken(const pixel_filter *f)
+{
+    double negative = f->table->negative;
+    return (float)(negative / (1.0 - negative));
+}
+
 float filter_eval(const pixel_filter *f, vec2 offset)
 {
     return eval(&f->table->x.f, offset.x) * eval(&f->table->y.f, offset.y);

@@ -28,6 +28,8 @@ vec2 filter_sample(const pixel_filter *f, vec2 u, float *weight);
  * @param key of these samples */
 vec2 filter_sample_nth(const pixel_filter *f, uint64_t key, uint64_t number, vec2 u,
                        float *weight);
+/** @brief What negative lobes take off what a pixel has, over all of it: 0 to < 1. */
+float filter_taken(const pixel_filter *f);
 /** @brief f(x, y), not normalised. */
 float filter_eval(const pixel_filter *f, vec2 offset);
 /** @brief f(x, y) over its integral, per pixel area: what a place on the film gives to a

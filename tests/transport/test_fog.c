@@ -126,6 +126,22 @@ static void test_layer(gconstpointer data)
     g_assert_cmpfloat(fabs(mean_of(img, "specular") / mean_of(img, "") - 1), <, 1e-5);
 }
 
+/* The sky behind a ball of fog is as bright as the fog lets it: a path that is scattered
+   has seen it as well as one that comes through, which a pixel's four samples often do
+   not. */
+static void test_lights_in_sight(gconstpointer data)
+{
+    const method *m = data;
+    g_autoptr(view) v = view_of(FOG("f", ".2", ".8", "0") EYE("", "0 -4 .3  0 0 .3")
+                                    BETWEEN("", "") SKY BETWEEN("f", "") BALL("1"));
+    g_autoptr(image) img = render_with(v, m->words);
+    const double through = exp(-2 * sqrt(1 - 0.3 * 0.3));
+    for (size_t i = 0; i < pixels_of(img); i++) {
+        double seen = (double)at(img, i, channel_of(img, "emission.G"));
+        g_assert_cmpfloat(fabs(seen / through - 1), <, 0.1);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -146,6 +162,9 @@ int main(int argc, char **argv)
     for (size_t i = 0; i < G_N_ELEMENTS(layered); i++) {
         g_autofree char *name = g_strdup_printf("/fog/layer/%s", layered[i].name);
         g_test_add_data_func(name, &layered[i], test_layer);
+        g_autofree char *sight =
+            g_strdup_printf("/fog/lights-in-sight/%s", layered[i].name);
+        g_test_add_data_func(sight, &layered[i], test_lights_in_sight);
     }
     g_test_add_func("/fog/beam-is-found", test_beam_is_found);
     return g_test_run();

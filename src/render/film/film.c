@@ -63,6 +63,7 @@ bool film_open(film *f, const view *v, bool denoise, GError **error)
         .x0 = (int)ceilf(how->crop[0] * (float)how->width),
         .y0 = (int)ceilf(how->crop[2] * (float)how->height),
         .scale = view_imaging_ratio(v),
+        .least = filter_taken(&v->filter),
         .space = how->space ? how->space : color_space_srgb(),
         .most = how->most,
         .balanced = how->kelvin > 0.0f,
@@ -302,20 +303,27 @@ static GPtrArray *channel_names(const film *f, bool denoised)
     return names;
 }
 
+double film_surface_weight(const film *f, const film_sum *sum)
+{
+    bool enough = sum->surface_weight > (double)f->least * sum->weight;
+    double weight = enough ? sum->surface_weight : sum->weight;
+    return fabs(weight) > 0.0 ? weight : 1.0;
+}
+
 static void write_sum(const film *f, const film_sum *sum, float *out)
 {
+    double weight = film_surface_weight(f, sum);
     float *beauty = out, *layers = out + 3;
     for (int i = 0; i < FILM_COLORS; i++) {
         bool is_albedo = i == N_LAYERS;
         float *rgb = layers + 3 * i;
-        film_to_rgb(f, sum->color[i], is_albedo ? sum->surface_weight : sum->weight, rgb);
+        film_to_rgb(f, sum->color[i], is_albedo ? weight : sum->weight, rgb);
         for (int c = 0; c < 3 && !is_albedo; c++) {
             rgb[c] *= f->scale;
             beauty[c] += rgb[c];
         }
     }
     float *rest = layers + 3 * FILM_COLORS;
-    double weight = fabs(sum->surface_weight) > 0.0 ? sum->surface_weight : 1.0;
     for (int i = 0; i < 3; i++)
         rest[i] = (float)(sum->normal[i] / weight);
     rest[3] = (float)(sum->depth / weight);

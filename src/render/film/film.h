@@ -70,6 +70,7 @@ typedef struct film {
     int n_cells;   /**< of the pass under way all pixels of so many cells are part of the
                       picture: film_cell(pixel) < n_cells */
     float scale;   /**< the sensor's: view_imaging_ratio */
+    float least;   /**< share of a pixel that surfaces must take: filter_taken */
     float most;    /**< film_settings.most */
     bool balanced; /**< by this matrix of XYZ */
     double balance[9];
@@ -136,6 +137,11 @@ void film_end_pass(film *f, unsigned threads);
  * the mean does. INFINITY before there are two passes.
  */
 double film_noise(const film *f);
+
+/** @brief By what sums over the surfaces of a pixel are divided for their mean: the
+ * weight of these. Where the filter's negative lobes take as much as there is, that may
+ * be next to nothing, and they count by the share of the pixel that they have. */
+double film_surface_weight(const film *f, const film_sum *sum);
 
 /** @brief Mean of sums of XYZ, white-balanced, in the film's colour space. */
 void film_to_rgb(const film *f, const double sum[3], double weight, float out[3]);

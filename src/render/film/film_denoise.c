@@ -15,6 +15,14 @@ static size_t n_pixels(const film *f)
 /* Differences of less than this part of a feature are none. */
 #define NO_DIFFERENCE 1e-5f
 
+/* What a surface is counts as its light does: by the share of the pixel that it takes,
+   where there is none beside it nothing. Where weights of either sign meet, those of
+   surfaces alone may come to nothing. */
+static double weight_of(const film *f, half_place at)
+{
+    return half_number(f, at, HALF_AT(weight));
+}
+
 static void mean_of(const double *sum, double weight, int n, float *out)
 {
     for (int i = 0; i < n; i++)
@@ -25,26 +33,20 @@ static void first_albedo(const film *f, half_place at, float *out)
 {
     double sum[3];
     half_get(f, at, HALF_AT(color[N_LAYERS]), 3, sum);
-    film_to_rgb(f, sum, half_number(f, at, HALF_AT(surface_weight)), out);
+    film_to_rgb(f, sum, weight_of(f, at), out);
 }
 
 static void first_normal(const film *f, half_place at, float *out)
 {
     double sum[3];
     half_get(f, at, HALF_AT(normal), 3, sum);
-    mean_of(sum, half_number(f, at, HALF_AT(surface_weight)), 3, out);
+    mean_of(sum, weight_of(f, at), 3, out);
 }
 
 static void first_depth(const film *f, half_place at, float *out)
 {
     double sum = half_number(f, at, HALF_AT(depth));
-    mean_of(&sum, half_number(f, at, HALF_AT(surface_weight)), 1, out);
-}
-
-static void guide_color(const film *f, const float xyz[3], float weight, float *out)
-{
-    double sum[3] = {(double)xyz[0], (double)xyz[1], (double)xyz[2]};
-    film_to_rgb(f, sum, (double)weight, out);
+    mean_of(&sum, weight_of(f, at), 1, out);
 }
 
 /* Of what is seen in a mirror only how it differs from the mirror counts: elsewhere it
@@ -60,8 +62,11 @@ static void less_first(float *out, const float *first, int n)
 static void seen_albedo(const film *f, half_place at, float *out)
 {
     float first[3];
-    guide_sum sum = half_guides(f, at);
-    guide_color(f, sum.albedo, sum.weight, out);
+    guide_sum guides = half_guides(f, at);
+    double sum[3];
+    for (int c = 0; c < 3; c++)
+        sum[c] = (double)guides.albedo[c];
+    film_to_rgb(f, sum, weight_of(f, at), out);
     first_albedo(f, at, first);
     less_first(out, first, 3);
 }
@@ -69,9 +74,11 @@ static void seen_albedo(const film *f, half_place at, float *out)
 static void seen_normal(const film *f, half_place at, float *out)
 {
     float first[3];
-    guide_sum sum = half_guides(f, at);
+    guide_sum guides = half_guides(f, at);
+    double sum[3];
     for (int k = 0; k < 3; k++)
-        out[k] = sum.weight > 0.0f ? sum.normal[k] / sum.weight : 0.0f;
+        sum[k] = (double)guides.normal[k];
+    mean_of(sum, weight_of(f, at), 3, out);
     first_normal(f, at, first);
     less_first(out, first, 3);
 }
@@ -79,8 +86,8 @@ static void seen_normal(const film *f, half_place at, float *out)
 static void seen_depth(const film *f, half_place at, float *out)
 {
     float first;
-    guide_sum sum = half_guides(f, at);
-    *out = sum.weight > 0.0f ? sum.depth / sum.weight : 0.0f;
+    double sum = (double)half_guides(f, at).depth;
+    mean_of(&sum, weight_of(f, at), 1, out);
     first_depth(f, at, &first);
     less_first(out, &first, 1);
 }

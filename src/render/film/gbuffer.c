@@ -184,7 +184,7 @@ void gbuffer_write(const film *f, const surface_sum *of, const film_sum *sum, fl
 {
     if (!f->surfaces)
         return;
-    double weight = fabs(sum->surface_weight) > 0.0 ? sum->surface_weight : 1.0;
+    double weight = film_surface_weight(f, sum);
     film_to_rgb(f, sum->color[N_LAYERS], sum->weight, out);
     out = write_mean(out + 3, of->p, 3, weight);
     double dz[2] = {fabs(of->dz[0]), fabs(of->dz[1])};

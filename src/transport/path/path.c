@@ -32,7 +32,7 @@ static void meet_light(void *data, const met_light *met)
 {
     path_walk *walk = data;
     const camera_path *path = &walk->path;
-    if (walk->pass->without_lights && sees_light(path))
+    if (path->lights_met || (walk->pass->without_lights && sees_light(path)))
         return;
     const scattered_from from = {path->from, path->pdf, path->every_light};
     float weight =
@@ -79,6 +79,7 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     path->eta2 *= next.eta * next.eta;
     path->pdf = (next.lobe & LOBE_SPECULAR) ? 0.0f : next.pdf;
     path->from = hit->p;
+    path->lights_met = false;
     path->every_light = path_samples_every_light(path);
     path->by_either = path->looked > 0.0f && bsdf_has_both(b);
     camera_path_count(path, next.lobe);
@@ -113,6 +114,30 @@ static void note_seen(path_walk *walk, const surface_hit *hit)
     note_guide(walk, path, hit, &b);
 }
 
+/* Whether there may be lights behind a medium. */
+static bool may_shine(const surface_hit *behind)
+{
+    return !behind || behind->light != NO_INDEX || behind->material == NO_INDEX;
+}
+
+/* Lights in sight are met by as much as media let through, whatever becomes of the path:
+   met by the chance that it comes through they would be as noisy as they are bright, and
+   nothing takes that out, for they are not filtered. */
+static void meet_lights_behind(path_walk *walk, const surface_hit *behind)
+{
+    camera_path *path = &walk->path;
+    const path_segment here = path->at;
+    scene_traveller straight = walk->who;
+    surface_hit hit;
+    if (path->lights_met || !path->at.certain)
+        return;
+    straight.cross_medium = NULL;
+    if (may_shine(behind) && scene_advance(&straight, &path->at, &hit) == EVENT_ESCAPE)
+        meet_surface(walk, NULL);
+    path->at = here;
+    path->lights_met = true;
+}
+
 /* What the eye's ray meets behind a medium is what the picture shows there. */
 static scene_event cross_medium(void *data, float length, const surface_hit *behind,
                                 surface_hit *at)
@@ -120,6 +145,7 @@ static scene_event cross_medium(void *data, float length, const surface_hit *beh
     path_walk *walk = data;
     if (behind && (walk->path.at.eye || !walk->path.guided))
         note_seen(walk, behind);
+    meet_lights_behind(walk, behind);
     return path_meets_medium(walk, &walk->path, length, at) ? EVENT_MEDIUM : EVENT_NONE;
 }
 

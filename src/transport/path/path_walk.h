@@ -22,6 +22,7 @@ typedef struct camera_path {
                           share */
     bool every_light;  /* how lights were sampled there */
     bool guided;       /* a surface that it came to guides the denoiser */
+    bool lights_met;   /* all that are on its ray: it goes through a medium */
     float looked;      /* probability that bright spots were looked at from there ... */
     bool by_either;    /* ... and it has lobes both diffuse and glossy */
 } camera_path;
