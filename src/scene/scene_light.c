@@ -13,12 +13,22 @@ spectrum scene_emitted(const scene *s, const surface_hit *hit, vec3 wo,
     return l->kind->radiance(l->self, hit, wo, w);
 }
 
-bool scene_has_delta_lights(const scene *s)
+static bool has_lights(const scene *s, bool delta)
 {
     for (unsigned i = 0; i < s->lights->len; i++)
-        if (scene_light(s, (int)i)->is_delta)
+        if (scene_light(s, (int)i)->is_delta == delta)
             return true;
     return false;
+}
+
+bool scene_has_delta_lights(const scene *s)
+{
+    return has_lights(s, true);
+}
+
+bool scene_has_lights_to_see(const scene *s)
+{
+    return has_lights(s, false);
 }
 
 bool scene_sample_one_light(const scene *s, int i, const wavelengths *w, vec3 ref,

@@ -129,7 +129,7 @@ static void meet_lights_behind(path_walk *walk, const surface_hit *behind)
     const path_segment here = path->at;
     scene_traveller straight = walk->who;
     surface_hit hit;
-    if (path->lights_met || !path->at.certain)
+    if (!walk->pass->sees_lights || path->lights_met || !path->at.certain)
         return;
     straight.cross_medium = NULL;
     if (may_shine(behind) && scene_advance(&straight, &path->at, &hit) == EVENT_ESCAPE)
@@ -264,6 +264,7 @@ static void *begin_pass(const transport_plan *plan, uint32_t index,
     pass->plan = plan;
     pass->w = scene_wavelengths(plan->scene, &plan->how, index);
     pass->options.deterministic = !plan->how.multiple_samples;
+    pass->sees_lights = scene_has_lights_to_see(plan->scene);
     return pass;
 }
 

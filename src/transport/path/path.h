@@ -27,6 +27,7 @@ typedef struct path_pass {
                               bounce to a diffuse surface is left out */
     bool caustics_apart;   /**< to measure with: those of the first diffuse surface are in
                               their layer, also behind glass and in mirrors */
+    bool sees_lights;      /**< there are some that can be seen */
     bool without_lights;   /**< to measure with: lights that are seen, also in mirrors and
                               through clear glass, are left out */
 } path_pass;
