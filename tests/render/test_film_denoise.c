@@ -237,10 +237,10 @@ static void test_rims(void)
         for (size_t i = 0; i < 3 * pixels_of(img); i++) {
             const char *c[] = {"R", "G", "B"},
                        *shown[] = {"denoised.R", "denoised.G", "denoised.B"};
-            float is = at(img, i / 3, channel_of(img, shown[i % 3]));
-            float was = at(img, i / 3, channel_of(img, c[i % 3]));
-            g_assert_cmpfloat(fabsf(is - was), <, 0.5);
-            g_assert_cmpfloat(fabsf(at(img, i / 3, channel_of(img, bounded[i % 3]))), <,
+            double is = at(img, i / 3, channel_of(img, shown[i % 3]));
+            double was = at(img, i / 3, channel_of(img, c[i % 3]));
+            g_assert_cmpfloat(fabs(is - was), <, 0.5);
+            g_assert_cmpfloat(fabs(at(img, i / 3, channel_of(img, bounded[i % 3]))), <,
                               8);
         }
     }
