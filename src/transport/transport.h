@@ -225,6 +225,8 @@ typedef struct transport_plan {
     float looked_share; /**< estimate_options.looked_share, of a trial of few photons */
     float p_spots;      /**< path_pass.p_spots */
     bool gathers;       /**< auto: photons carry indirect light too (plan/gather.h) */
+    double path_noise;  /**< variance of a sample by paths, relative as sketch_weight has
+                           it: of what no photons bring */
     double sample_rays; /**< that a sample costs, photons apart ... */
     double photon_rays; /**< and its part of the photons of a pass */
     float p_blurred;    /**< probability of a gather that is seen by way of a diffuse

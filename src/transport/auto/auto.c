@@ -88,6 +88,9 @@ static bool try_photons(transport_plan *plan, path_effort *paths,
     plan->mis.boost = found.boost;
     if (plan->n_photons[PHOTON_CAUSTIC] > 0)
         caustics_decide(plan, &found, paths);
+    plan->path_noise = paths->noise;
+    if (plan->n_photons[PHOTON_CAUSTIC] == 0)
+        plan->path_noise += found.noise;
     return true;
 }
 

@@ -199,8 +199,11 @@ spectrum photonmap_gather_medium(const photonmap_pass *pass, photon_class c, con
         .n_groups = own->n_groups,
     };
     own->n_queries++;
-    if (map)
-        return volume_map_radiance(map, &query, &own->failed);
+    if (map) {
+        spectrum found = volume_map_radiance(map, &query, &own->failed);
+        own->n_weighed += own->crossings.n * N_WAVELENGTHS;
+        return found;
+    }
     for (size_t i = 0; i < own->n_groups; i++)
         own->groups[i] = (spectrum){0};
     return (spectrum){0};

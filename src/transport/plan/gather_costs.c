@@ -1,5 +1,6 @@
 #include "transport/plan/gather_costs.h"
 
+#include "transport/plan/trial.h"
 #include "transport/work.h"
 
 #include <math.h>
@@ -22,27 +23,6 @@ static double mean_of(const gather_trial *t)
     for (uint32_t i = 0; i < t->n; i++)
         sum += t->places[i].seen;
     return sum / t->n;
-}
-
-/* A sum of squares, and the two largest of them. */
-typedef struct square_sum {
-    double sum, loudest, second;
-} square_sum;
-
-static void square_add(square_sum *to, double square)
-{
-    to->sum += square;
-    to->second = fmax(to->second, fmin(square, to->loudest));
-    to->loudest = fmax(to->loudest, square);
-}
-
-/* With the loudest no louder than the next: one path that met a lamp by a rare way may be
-   louder than all others, and tells nothing of them (a coffee maker: 2.1 with it, 0.02
-   without, of 17 places). Left out of paths alone, it makes those of few places too good:
-   of 16 in a Cornell box .32 becomes .08, where .21 is true. */
-static double square_total(const square_sum *of)
-{
-    return of->sum - of->loudest + of->second;
 }
 
 /* How far both paths are from what the map sees. */
@@ -77,7 +57,7 @@ static double unseen_bias(const transport_plan *plan)
 
 /* Sums over the places. */
 typedef struct gather_sums {
-    square_sum path, sample, photons;
+    square_sum sample, photons;
     bias_sum bias;
     double off, beside;
     double lone, area;
@@ -87,9 +67,8 @@ typedef struct gather_sums {
 static void add_place(gather_sums *to, const gather_place *at, double weight, double n)
 {
     double w = weight / n, half = 0.5 * w;
-    double paths = at->path[0] - at->path[1], photons = at->near[0] - at->near[1];
     double samples = at->smooth[0] - at->smooth[1];
-    square_add(&to->path, half * paths * paths);
+    double photons = at->near[0] - at->near[1];
     square_add(&to->sample, half * samples * samples);
     square_add(&to->photons, half * photons * photons);
     bias_add(&to->bias, w * (at->twice[0] - at->near[0]) * (at->twice[1] - at->near[1]));
@@ -113,17 +92,17 @@ static double unseen_photons(const gather_trial *t, double lone, double pixel_ar
     return lone > 0.0 ? arrive * lone / seen : 0.0;
 }
 
-/* Where neither path found the light that photons came from their difference tells
-   nothing, but how far they are off the map does: its mean, since its square is as much
-   at the mercy of one place as theirs. Fewer photons have as many times the variance. */
-static gather_errors errors_of(const gather_trial *t)
+/* Where no path found the light that photons came from their noise tells nothing, but how
+   far they are off the map does: its mean, since its square is at the mercy of one place.
+   Fewer photons have as many times the variance. */
+static gather_errors errors_of(const gather_trial *t, double path_noise)
 {
     gather_sums sums = {0};
     double mean = mean_of(t);
     for (uint32_t i = 0; i < t->n && mean > 0.0; i++)
         add_place(&sums, &t->places[i], relative_weight(t->places[i].seen, mean), t->n);
     return (gather_errors){
-        .path = fmax(square_total(&sums.path), sums.off * sums.off),
+        .path = fmax(path_noise, sums.off * sums.off),
         .samples = square_total(&sums.sample),
         .photons = square_total(&sums.photons) * t->area / t->fewer +
                    unseen_photons(t, sums.lone, sums.area),
@@ -160,20 +139,20 @@ static double variance_of_samples(double variance, const gather_errors *e, doubl
 static double error_of(const transport_plan *plan, const gather_errors *e, double in_time)
 {
     double passes = settings_planned_passes(&plan->how), alpha = plan->how.alpha;
-    double spp = (double)plan->how.spp, bias = bias_of_passes(alpha, passes);
-    double alike =
-        e->photons * variance_of_passes(alpha, passes) + e->bias2 * bias * bias;
+    double spp = (double)plan->how.spp, whole = fmax(in_time, 1.0);
+    double bias = bias_of_passes(alpha, whole);
+    double alike = e->photons * variance_of_passes(alpha, whole) + e->bias2 * bias * bias;
     bool short_of_time = in_time < fmin(passes, 1.0);
     double weight = plan_weight_alike(plan);
     double weight_of_grain = short_of_time ? weight : 1.0;
     return weight_of_grain * variance_of_samples(e->samples, e, in_time * spp) +
-           weight * passes * spp * alike;
+           weight * in_time * spp * alike;
 }
 
 void gather_costs(const transport_plan *plan, const gather_trial *t, plan_cost *without,
                   plan_cost *with)
 {
-    const gather_errors e = errors_of(t);
+    const gather_errors e = errors_of(t, plan->path_noise);
     double passes = settings_planned_passes(&plan->how), spp = (double)plan->how.spp;
     without->rays = t->path_rays + plan->photon_rays;
     without->variance = variance_of_samples(e.path, &e, passes * spp);

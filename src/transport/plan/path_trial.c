@@ -125,10 +125,11 @@ static bool measure_noise(const sketch *s, const sample_pair *pairs, uint32_t n,
                           double *noise, GError **error)
 {
     point_hits hits = {0};
-    *noise = 0.0;
+    square_sum sum = {0};
     for (uint32_t i = 0; i < n; i++)
-        *noise +=
-            variance_of(&pairs[i]) * sketch_weight(s, pairs[i].raster, i, &hits) / n;
+        square_add(&sum,
+                   variance_of(&pairs[i]) * sketch_weight(s, pairs[i].raster, i, &hits));
+    *noise = square_total(&sum) / n;
     bool refused = hits.refused;
     point_hits_clear(&hits);
     return !refused || point_hits_refuse(error);
@@ -219,6 +220,8 @@ static void choose_share(transport_plan *plan, const spot_trial *trial, double n
         best = with;
         plan->p_spots = (float)share;
     }
+    if (plan->p_spots > 0.0f)
+        plan->path_noise *= best.variance / without.variance;
     plan_note(plan, "bright spots", without, best, plan->p_spots > 0.0f);
 }
 

@@ -15,6 +15,18 @@ static double mean_of(spectrum s)
     return isfinite(mean) ? mean : 0.0;
 }
 
+void square_add(square_sum *to, double square)
+{
+    to->sum += square;
+    to->second = fmax(to->second, fmin(square, to->loudest));
+    to->loudest = fmax(to->loudest, square);
+}
+
+double square_total(const square_sum *of)
+{
+    return of->sum - of->loudest + of->second;
+}
+
 trial_light trial_sample(radiance_function *radiance, const void *pass,
                          const transport_plan *plan, vec2 raster, sampler random,
                          transport_scratch *scratch)
@@ -25,8 +37,9 @@ trial_light trial_sample(radiance_function *radiance, const void *pass,
     ray r = camera_ray(&plan->view->camera, raster, u_lens, sampler_1d(&random));
     radiance(pass, &r, &random, scratch, &out);
     for (unsigned i = 0; i < N_LAYERS; i++)
-        sum += out.layers[i];
+        sum += i == LAYER_EMISSION ? spectrum_fill(0.0f) : out.layers[i];
     const light_guide *seen = &out.guide;
+    sum -= seen->lights + seen->glints;
     float share = seen->weight > 0.0f ? 1.0f / seen->weight : 0.0f;
     float depth = seen->depth * share;
     const camera *c = &plan->view->camera;
