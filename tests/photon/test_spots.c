@@ -132,7 +132,7 @@ static const spot_scene scenes[] = {
 
 static image *look(const view *v, const spot_scene *of, const char *more)
 {
-    g_autofree char *words = g_strconcat(of->how, " ", more, NULL);
+    g_autofree char *words = g_strconcat(of->how, " gather_indirect=off ", more, NULL);
     return render_with(v, words);
 }
 
