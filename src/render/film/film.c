@@ -303,13 +303,6 @@ static GPtrArray *channel_names(const film *f, bool denoised)
     return names;
 }
 
-double film_surface_weight(const film *f, const film_sum *sum)
-{
-    bool enough = sum->surface_weight > (double)f->least * sum->weight;
-    double weight = enough ? sum->surface_weight : sum->weight;
-    return fabs(weight) > 0.0 ? weight : 1.0;
-}
-
 static void write_sum(const film *f, const film_sum *sum, float *out)
 {
     double weight = film_surface_weight(f, sum);

@@ -1,9 +1,17 @@
 /*
- * From sums on the film to colours: white balance, then the film's colour space.
+ * From sums on the film to means: of surfaces; and of colours: white balance, then the
+ * film's colour space.
  */
 #include "render/film/film.h"
 
 #include <math.h>
+
+double film_surface_weight(const film *f, const film_sum *sum)
+{
+    bool enough = sum->surface_weight > (double)f->least * sum->weight;
+    double weight = enough ? sum->surface_weight : sum->weight;
+    return fabs(weight) > 0.0 ? weight : 1.0;
+}
 
 void film_to_rgb(const film *f, const double sum[3], double weight, float out[3])
 {

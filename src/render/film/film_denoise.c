@@ -59,13 +59,18 @@ static void less_first(float *out, const float *first, int n)
     }
 }
 
+static void doubles_of(const float from[3], double to[3])
+{
+    for (int k = 0; k < 3; k++)
+        to[k] = (double)from[k];
+}
+
 static void seen_albedo(const film *f, half_place at, float *out)
 {
     float first[3];
-    guide_sum guides = half_guides(f, at);
     double sum[3];
-    for (int c = 0; c < 3; c++)
-        sum[c] = (double)guides.albedo[c];
+    guide_sum guides = half_guides(f, at);
+    doubles_of(guides.albedo, sum);
     film_to_rgb(f, sum, weight_of(f, at), out);
     first_albedo(f, at, first);
     less_first(out, first, 3);
@@ -74,10 +79,9 @@ static void seen_albedo(const film *f, half_place at, float *out)
 static void seen_normal(const film *f, half_place at, float *out)
 {
     float first[3];
-    guide_sum guides = half_guides(f, at);
     double sum[3];
-    for (int k = 0; k < 3; k++)
-        sum[k] = (double)guides.normal[k];
+    guide_sum guides = half_guides(f, at);
+    doubles_of(guides.normal, sum);
     mean_of(sum, weight_of(f, at), 3, out);
     first_normal(f, at, first);
     less_first(out, first, 3);
@@ -139,7 +143,7 @@ static void light_of(const film *f, half_place at, int which, float *rgb)
         specular_of(f, at, which, sum);
     else
         half_get(f, at, HALF_AT(color) + 3 * (size_t)which, 3, sum);
-    film_to_rgb(f, sum, half_number(f, at, HALF_AT(weight)), rgb);
+    film_to_rgb(f, sum, weight_of(f, at), rgb);
     for (int c = 0; c < 3; c++)
         rgb[c] *= f->scale;
 }

@@ -51,7 +51,6 @@ void guide_add(guide_sum *sum, const film_pass *pass, const radiance_sample *sam
     for (int i = 0; i < 3; i++)
         sum->normal[i] += guide->normal[i] * share;
     sum->depth += guide->depth * share;
-    sum->weight += weight;
 }
 
 void halves_put(film *f, int x, int y, const guide_sum *sum)

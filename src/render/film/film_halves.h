@@ -19,16 +19,15 @@
 
 #include "render/film/film.h"
 
-/** @brief Lights that are filtered: layers, all but lights in sight, and glints, which are
- * lamps in glass that not every path finds. With what else is seen there these would make
- * whatever is beside them look like noise. */
+/** @brief Lights that are filtered: layers, all but lights in sight, and glints, which
+ * are lamps in glass that not every path finds. With what else is seen there these would
+ * make whatever is beside them look like noise. */
 enum { N_LIGHTS = LAYER_EMISSION, GLINTS = N_LIGHTS, N_FILTERED };
 
 /** @brief Sums of the guides of one pixel in one pass. Zero to begin. */
 typedef struct guide_sum {
     float albedo[3], lights[3], glints[3]; /**< XYZ */
     float normal[3], depth;
-    float weight; /**< of the samples that ended at a surface */
     float lit; /**< weight of the samples that have a light in sight, also by mirrors */
 } guide_sum;
 

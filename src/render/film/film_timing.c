@@ -65,7 +65,7 @@ static void put_noise(film *f, const bool lit[N_FILTERED])
     for (int i = 0; i < f->width * f->height; i++) {
         sampler random = sampler_make((uint64_t)f->n_passes, (uint64_t)i);
         film_sum sum = {.weight = 1.0, .surface_weight = 1.0};
-        guide_sum guides = {.weight = 1.0f};
+        guide_sum guides = {0};
         for (int k = 0; k < 3; k++) {
             for (int l = 0; l < N_LIGHTS; l++)
                 sum.color[l][k] = lit[l] ? (double)sampler_1d(&random) : 0.0;
