@@ -114,10 +114,12 @@ static void note_seen(path_walk *walk, const surface_hit *hit)
     note_guide(walk, path, hit, &b);
 }
 
-/* Whether there may be lights behind a medium. */
-static bool may_shine(const surface_hit *behind)
+/* Whether chance may hide lights that there may be behind the path's medium. */
+static bool may_hide_lights(const path_walk *walk, const surface_hit *behind)
 {
-    return !behind || behind->light != NO_INDEX || behind->material == NO_INDEX;
+    const medium *m = scene_medium(walk->scene, walk->path.at.ray.media.participating);
+    bool may_shine = !behind || behind->light != NO_INDEX || behind->material == NO_INDEX;
+    return walk->pass->sees_lights && may_shine && medium_scatters(m);
 }
 
 /* Lights in sight are met by as much as media let through, whatever becomes of the path:
@@ -129,10 +131,10 @@ static void meet_lights_behind(path_walk *walk, const surface_hit *behind)
     const path_segment here = path->at;
     scene_traveller straight = walk->who;
     surface_hit hit;
-    if (!walk->pass->sees_lights || path->lights_met || !path->at.certain)
+    if (path->lights_met || !path->at.certain || !may_hide_lights(walk, behind))
         return;
     straight.cross_medium = NULL;
-    if (may_shine(behind) && scene_advance(&straight, &path->at, &hit) == EVENT_ESCAPE)
+    if (scene_advance(&straight, &path->at, &hit) == EVENT_ESCAPE)
         meet_surface(walk, NULL);
     path->at = here;
     path->lights_met = true;
