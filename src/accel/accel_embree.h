@@ -153,29 +153,6 @@ static inline void embree_nearest_packet(RTCScene scene, const int *valid,
 #endif
 }
 
-/** What Embree hands on from a query to the functions that intersect. */
-#if RTC_VERSION_MAJOR >= 4
-typedef struct RTCRayQueryContext embree_context;
-#else
-typedef struct RTCIntersectContext embree_context;
-#endif
-
-/** @brief embree_any with a context that the caller has put before data of its own. */
-static inline void embree_any_within(RTCScene scene, embree_context *context,
-                                     struct RTCRay *query)
-{
-#if RTC_VERSION_MAJOR >= 4
-    struct RTCOccludedArguments args;
-    rtcInitRayQueryContext(context);
-    rtcInitOccludedArguments(&args);
-    args.context = context;
-    rtcOccluded1(scene, query, &args);
-#else
-    rtcInitIntersectContext(context);
-    rtcOccluded1(scene, context, query);
-#endif
-}
-
 static inline void embree_any(RTCScene scene, struct RTCRay *query)
 {
 #if RTC_VERSION_MAJOR >= 4

@@ -15,6 +15,7 @@
 #define MEDIUM_PARAMETERS "attenuationcolor attenuationdistance absorption"
 
 #include "color/curve.h"
+#include "math/lanes.h"
 #include "medium/hit.h"
 #include "params/params.h"
 
@@ -70,6 +71,13 @@ static inline float phase_henyey_greenstein(float g, float cosine)
 {
     float d = 1.0f + g * g + 2.0f * g * cosine;
     return (1.0f - g * g) / (4.0f * (float)G_PI * d * sqrtf(d));
+}
+
+/** @brief The same of a lane each. */
+static inline lane_floats phase_henyey_greenstein_lanes(float g, lane_floats cosine)
+{
+    lane_floats d = 1.0f + g * g + 2.0f * g * cosine;
+    return (1.0f - g * g) / (4.0f * (float)G_PI * d * sqrt_lanes(d));
 }
 
 /** @brief Transmittance of t metres; INFINITY is allowed. One where m is NULL. */

@@ -483,7 +483,6 @@ bool estimate_scratch_init(estimate_scratch *scratch, size_t n_groups, GError **
 void estimate_scratch_clear(estimate_scratch *scratch)
 {
     point_hits_clear(&scratch->hits);
-    disc_crossings_clear(&scratch->crossings);
     big_free(scratch->groups);
     scratch->groups = NULL;
 }

@@ -18,7 +18,6 @@
  */
 #pragma once
 
-#include "photon/disc_set.h"
 #include "photon/flat_curve.h"
 #include "photon/looked_around.h"
 #include "photon/photon_map.h"
@@ -47,7 +46,6 @@ typedef struct estimate_options {
  * the end. */
 typedef struct estimate_scratch {
     point_hits hits;
-    disc_crossings crossings;
     uint64_t n_queries, n_looks; /**< of maps so far, and short rays for edges */
     uint64_t n_weighed;          /**< photons, once for each number that they were
                                     weighed by: a kernel's, or a BSDF's wavelengths */

@@ -16,13 +16,13 @@
 #pragma once
 
 #include "medium/medium.h"
-#include "photon/disc_set.h"
 #include "photon/kernel.h"
 #include "photon/photon.h"
 
 typedef struct volume_map volume_map;
 
-/** @brief Builds a map over *store, whose arrays are taken (also on failure).
+/** @brief Builds a map over *store, of at least one photon, whose arrays are taken (also
+ * on failure).
  *  @param radii m, one per photon, > 0 */
 volume_map *volume_map_build(photon_store *store, const float *radii, unsigned threads,
                              GError **error);
@@ -31,7 +31,7 @@ volume_map *volume_map_build(photon_store *store, const float *radii, unsigned t
 volume_map *volume_map_widened(const volume_map *map, float by, unsigned threads,
                                GError **error);
 void volume_map_free(volume_map *map);
-size_t volume_map_bytes(const volume_map *map); /**< memory kept, Embree's apart */
+size_t volume_map_bytes(const volume_map *map); /**< memory kept */
 const photon_store *volume_map_store(const volume_map *map);
 
 /** @brief What to ask for. */
@@ -42,12 +42,11 @@ typedef struct volume_query {
     float length;         /**< m: how far the medium reaches on it */
     const wavelengths *w;
     kernel kernel;
-    disc_crossings *crossings; /**< scratch */
-    spectrum *groups;          /**< gets what the photons of each tag gave of it ... */
-    size_t n_groups;           /**< 0: not asked for */
+    spectrum *groups; /**< gets what the photons of each tag gave of it ... */
+    size_t n_groups;  /**< 0: not asked for */
 } volume_query;
 
 /** @brief Radiance that arrives at the ray's origin from photons in its medium.
- *  @param failed set when memory was refused; the result is then too small */
+ *  @param n_weighed gets the number of those that it crosses */
 spectrum volume_map_radiance(const volume_map *map, const volume_query *query,
-                             bool *failed);
+                             size_t *n_weighed);

@@ -12,7 +12,8 @@
  * than planes, and sixteen are tested at once. 1.6 bytes a point.
  *
  * A search within a radius goes down level by level, with lists of groups in place of a
- * stack: what a group's boxes say is appended without a branch.
+ * stack: what a group's boxes say is appended without a branch. So does a search for
+ * balls that a ray meets: then boxes hold the balls around the points.
  *
  * Bentley, "Multidimensional binary search trees used for associative searching", 1975;
  * Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001.
@@ -22,6 +23,8 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "math/box.h"
+
+#include <float.h>
 
 enum {
     WIDTH = 16,   /* size: of a group; so many lanes fill one vector, or two */
@@ -60,6 +63,7 @@ typedef struct kd_builder {
     size_t span; /* points below a full node of the split being made */
     size_t *order;
     const point_arrays *points;
+    const float *radii; /* of balls around them; NULL: they are points */
     unsigned n_levels, level;
     const cancel_flag *cancel;
 } kd_builder;
@@ -231,12 +235,16 @@ size_t *kdtree_sort(const point_arrays *points, workers by, GError **error)
     return b.order;
 }
 
-static box3 leaf_bounds(const point_arrays *s, size_t leaf)
+static box3 leaf_bounds(const kd_builder *b, size_t leaf)
 {
+    const point_arrays *s = b->points;
     box3 box = box3_empty();
     size_t end = MIN((leaf + 1) * LEAF, s->n);
-    for (size_t i = leaf * LEAF; i < end; i++)
-        box = with_point(box, s->x[i], s->y[i], s->z[i]);
+    for (size_t i = leaf * LEAF; i < end; i++) {
+        float r = b->radii ? b->radii[i] : 0.0f;
+        box = with_point(box, s->x[i] - r, s->y[i] - r, s->z[i] - r);
+        box = with_point(box, s->x[i] + r, s->y[i] + r, s->z[i] + r);
+    }
     return box;
 }
 
@@ -258,7 +266,7 @@ static box3 child_bounds(const kd_builder *b, size_t child)
     if (child >= nodes_on_level(b->n, b->level - 1))
         return box3_empty();
     if (b->level == 1)
-        return leaf_bounds(b->points, child);
+        return leaf_bounds(b, child);
     return group_bounds(b->tree->groups + b->tree->offset[b->level - 1] + child);
 }
 
@@ -288,7 +296,8 @@ static void shape_tree(kdtree *tree, size_t n)
     }
 }
 
-kdtree *kdtree_build(const point_arrays *sorted, workers by, GError **error)
+kdtree *kdtree_build(const point_arrays *sorted, const float *radii, workers by,
+                     GError **error)
 {
     kdtree *tree = big_alloc(1, sizeof *tree, "kdtree", error);
     if (!tree)
@@ -299,7 +308,7 @@ kdtree *kdtree_build(const point_arrays *sorted, workers by, GError **error)
         kdtree_free(tree);
         return NULL;
     }
-    kd_builder b = {.tree = tree, .n = sorted->n, .points = sorted};
+    kd_builder b = {.tree = tree, .n = sorted->n, .points = sorted, .radii = radii};
     bool done = true;
     for (b.level = 1; b.level <= tree->n_levels && done; b.level++)
         done = parallel_work(nodes_on_level(b.n, b.level), ITEMS_AT_ONCE / (WIDTH * LEAF),
@@ -463,12 +472,19 @@ void kdtree_nearest_one(const kdtree *tree, nearest_set *set)
     }
 }
 
+/* A ray that boxes are to meet. */
+typedef struct kd_ray {
+    vec3 inverse; /* of the direction */
+    float length;
+} kd_ray;
+
 /* A search for runs. */
 typedef struct kd_search {
     const kdtree *tree;
     const point_arrays *points;
     vec3 p;
-    float limit; /* squared */
+    float limit;       /* squared */
+    const kd_ray *ray; /* from p; NULL: boxes within the limit */
     point_run_visitor visit;
     void *data;
 } kd_search;
@@ -488,7 +504,33 @@ static __attribute__((noinline)) void visit_leaves(const kd_search *s,
     s->visit(runs, n, s->data);
 }
 
-/* The nodes below n of a level that are near enough, in order; n <= OPENED. Returns their
+/* Bits of LANES boxes that a ray from p meets, none left out by rounding (Ize, "Robust
+   BVH Ray Traversal", 2013); an empty one is never met. */
+static inline unsigned boxes_met(const kd_group *group, int first, vec3 p,
+                                 const kd_ray *ray)
+{
+    const float rounding = 1.0f + 3.0f * FLT_EPSILON; /* math: of what is multiplied */
+    lane_floats begin = fill_lanes(0.0f), end = fill_lanes(ray->length);
+    for (int axis = 0; axis < 3; axis++) {
+        bool back = ray->inverse[axis] < 0.0f;
+        const float *near = back ? group->high[axis] : group->low[axis];
+        const float *far = back ? group->low[axis] : group->high[axis];
+        lane_floats enters = (load_lanes(near + first) - p[axis]) * ray->inverse[axis];
+        lane_floats leaves = (load_lanes(far + first) - p[axis]) * ray->inverse[axis];
+        begin = max_lanes(enters, begin);
+        end = min_lanes(leaves * rounding, end);
+    }
+    return bits_below(begin, end);
+}
+
+static inline unsigned boxes_wanted(const kd_search *s, const kd_group *group, int first)
+{
+    if (s->ray)
+        return boxes_met(group, first, s->p, s->ray);
+    return bits_below(box_distances(group, first, s->p), fill_lanes(s->limit));
+}
+
+/* The nodes below n of a level that are wanted, in order; n <= OPENED. Returns their
  * number. */
 static inline __attribute__((always_inline)) size_t
 open_nodes(const kd_search *s, unsigned level, const uint32_t *nodes, size_t n,
@@ -498,8 +540,7 @@ open_nodes(const kd_search *s, unsigned level, const uint32_t *nodes, size_t n,
     size_t n_below = 0;
     for (size_t i = 0; i < n; i++) {
         for (int first = 0; first < WIDTH; first += LANES) {
-            lane_floats d2 = box_distances(groups + nodes[i], first, s->p);
-            n_below += pack_numbers(bits_below(d2, fill_lanes(s->limit)),
+            n_below += pack_numbers(boxes_wanted(s, groups + nodes[i], first),
                                     nodes[i] * WIDTH + (uint32_t)first, below + n_below);
         }
     }
@@ -526,6 +567,33 @@ static void visit_nodes(const kd_search *s, unsigned level, const uint32_t *node
 void kdtree_runs(const kdtree *tree, const point_arrays *points, vec3 p, float radius,
                  point_run_visitor visit, void *data)
 {
-    const kd_search s = {tree, points, p, radius * radius, visit, data};
+    const kd_search s = {.tree = tree,
+                         .points = points,
+                         .p = p,
+                         .limit = radius * radius,
+                         .visit = visit,
+                         .data = data};
+    visit_nodes(&s, tree->n_levels, (const uint32_t[]){0}, 1);
+}
+
+/* Never of zero, so that no product is of zero and infinity. */
+static vec3 inverse_of(vec3 direction)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (fabsf(direction[axis]) < FLT_MIN)
+            direction[axis] = copysignf(FLT_MIN, direction[axis]);
+    return 1.0f / direction;
+}
+
+void kdtree_runs_along(const kdtree *tree, const point_arrays *points, vec3 from,
+                       vec3 direction, float length, point_run_visitor visit, void *data)
+{
+    const kd_ray ray = {inverse_of(direction), length};
+    const kd_search s = {.tree = tree,
+                         .points = points,
+                         .p = from,
+                         .ray = &ray,
+                         .visit = visit,
+                         .data = data};
     visit_nodes(&s, tree->n_levels, (const uint32_t[]){0}, 1);
 }

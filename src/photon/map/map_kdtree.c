@@ -12,7 +12,7 @@ static size_t *tree_sort(point_index *index, float radius, workers by, GError **
 
 static bool tree_build(point_index *index, workers by, GError **error)
 {
-    index->structure = kdtree_build(&index->points, by, error);
+    index->structure = kdtree_build(&index->points, NULL, by, error);
     return index->structure != NULL;
 }
 

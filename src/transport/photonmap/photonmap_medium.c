@@ -194,14 +194,14 @@ spectrum photonmap_gather_medium(const photonmap_pass *pass, photon_class c, con
         .length = length,
         .w = &pass->w,
         .kernel = pass->estimates[c].kernel,
-        .crossings = &own->crossings,
         .groups = own->groups,
         .n_groups = own->n_groups,
     };
     own->n_queries++;
     if (map) {
-        spectrum found = volume_map_radiance(map, &query, &own->failed);
-        own->n_weighed += own->crossings.n * N_WAVELENGTHS;
+        size_t n;
+        spectrum found = volume_map_radiance(map, &query, &n);
+        own->n_weighed += n * N_WAVELENGTHS;
         return found;
     }
     for (size_t i = 0; i < own->n_groups; i++)
