@@ -16,9 +16,10 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 RECORDS = HERE / "instructions.txt"
 GLASS = HERE / "equal_time/scenes/cornell-glass.pbrt"
+FOG = HERE / "equal_time/scenes/fog.pbrt"
 RING = HERE.parent / "scenes/ring/ring.pbrt"
 WORKS = [("photons", GLASS), ("photons", RING), ("map", GLASS), ("path", GLASS), ("auto", GLASS),
-         ("photonmap", GLASS), ("sppm", RING), ("vcm", GLASS)]
+         ("photonmap", GLASS), ("photonmap", FOG), ("sppm", RING), ("vcm", GLASS)]
 ALLOWED = 0.03
 
 

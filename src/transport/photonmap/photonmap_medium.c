@@ -201,7 +201,7 @@ spectrum photonmap_gather_medium(const photonmap_pass *pass, photon_class c, con
     if (map) {
         size_t n;
         spectrum found = volume_map_radiance(map, &query, &n);
-        own->n_weighed += n * N_WAVELENGTHS;
+        own->n_weighed += n;
         return found;
     }
     for (size_t i = 0; i < own->n_groups; i++)
