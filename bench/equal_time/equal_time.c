@@ -388,8 +388,9 @@ static void measure_scene(const char *path, const options *o)
     NephImage *tried = shot(scene, &all_kinds[VCM], (amount){1, 0.0}, 1, false, &spent);
     bool media = !tried;
     neph_image_free(tried);
-    /* vcm has the least noise where anything is hard; its bias goes with the passes. */
-    const kind *by[2] = {&all_kinds[media ? PATH : VCM], &all_kinds[SPPM]};
+    /* vcm has the least noise where anything is hard, and sppm in media, where vcm is
+       not; their bias goes with the passes. */
+    const kind *by[2] = {&all_kinds[media ? SPPM : VCM], &all_kinds[media ? PATH : SPPM]};
     NephImage *reference = long_shot(scene, name, by[0], o);
     NephImage *other = long_shot(scene, name, by[1], o);
     NephImageDifference floor = compare(other, beauty, reference);
