@@ -48,8 +48,9 @@ static double wanted_in_pass(const settings *how, photon_class c)
     return fmax(smooth / passes, 0.5 * sqrt(smooth));
 }
 
-/* In the ball around a photon in a medium: rays cross many. With twice as many relMSE of
-   fog is the same, in 1.09 of the time. */
+/* In the ball around a photon in a medium: rays cross many. With a tenth, a third, three
+   and ten times as many relMSE at equal time is 1.04, 1.02, 1.02 and 1.01 of what it is
+   (sppm in six fogs, 128 x 128, .5 to 2 s; shown 1.01, .99, 1.02 and 1.00). */
 static double wanted_in_ball(void)
 {
     return 0.5 * photons_wanted[PHOTON_CAUSTIC];
