@@ -1,7 +1,6 @@
 /*
  * What stands between Embree (3 or 4) and the rest: accel.c builds and asks, and
- * accel_geometry.c is what Embree calls back; disc_set.c has a scene of its own. No other
- * file includes Embree.
+ * accel_geometry.c is what Embree calls back. No other room includes Embree.
  *
  * Embree 3 passes a context with every query, Embree 4 optional arguments: the functions
  * embree_nearest… and embree_any… hold the whole difference.

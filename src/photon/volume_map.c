@@ -60,7 +60,10 @@ volume_map *volume_map_build(photon_store *store, const float *radii, unsigned t
     map->owned = *store;
     map->store = &map->owned;
     *store = (photon_store){0};
-    if (put_in_order(map, radii, by, error))
+    if (map->owned.n > UINT32_MAX)
+        error_set(error, ERROR_FAILED, "%zu photons in media are too many for a map",
+                  map->owned.n);
+    else if (put_in_order(map, radii, by, error))
         return with_tree(map, by, error);
     volume_map_free(map);
     return NULL;
