@@ -9,10 +9,7 @@
 #define LATE_SHARE 0.02
 #define LATE_SECONDS 0.1
 
-/* A pass for which there may be no time is rendered in parts, at least about so many: */
-enum { SOME_CELLS = 16 };
-
-/* unless there is so much more time than it will take. */
+/* A pass is rendered in parts, unless there is so much more time than it will take. */
 #define EASY_MARGIN 1.5
 
 /* Fewer passes do not tell their scatter well enough to trust it. */
@@ -28,14 +25,12 @@ double stop_grace(double time)
     return LATE_SHARE * time + LATE_SECONDS;
 }
 
-/* A pass that is expected to end too late is begun only if the time left is worth it, and
-   some of its pixels will be done. */
+/* A pass that is expected to end too late is begun if some of its pixels will be done. */
 static bool time_is_up(const settings *how, const stop_state *now)
 {
     double left = time_limit(how, now) - now->elapsed;
-    double some = now->last_photons + (now->last_pass - now->last_photons) / SOME_CELLS;
-    return left <= 0.0 ||
-           (left < now->last_pass && left < fmax(stop_grace(how->time), some));
+    double cell = (now->last_pass - now->last_photons) / FILM_CELLS;
+    return left <= 0.0 || left < now->last_photons + cell;
 }
 
 bool stop_at_once(const settings *how, const stop_state *now)

@@ -37,9 +37,10 @@ static void test_rules(void)
         {&second, {1000, 0.99, 0.001, INFINITY, 0, 0}, RENDER_GOES_ON},
         {&second, {1000, 1.0, 0.001, INFINITY, 0, 0}, RENDER_TIME_UP},
         {&second, {2, 0.6, 0.3, INFINITY, 0, 0}, RENDER_GOES_ON},
-        /* One that would take too long ends early, if it is worth it. */
+        /* One that would take too long ends early, if some of it will be done. */
         {&second, {1, 0.6, 0.6, INFINITY, 0, 0.3}, RENDER_GOES_ON},
-        {&second, {1, 0.95, 0.6, INFINITY, 0, 0}, RENDER_TIME_UP},
+        {&second, {1, 0.95, 0.6, INFINITY, 0, 0}, RENDER_GOES_ON},
+        {&second, {1, 0.995, 0.6, INFINITY, 0, 0}, RENDER_TIME_UP},
         {&second, {1, 0.6, 0.6, INFINITY, 0, 0.5}, RENDER_TIME_UP},
         {&still, {3, 1e9, 1, 0.01, 0, 0}, RENDER_GOES_ON}, /* too few to know */
         {&still, {4, 0, 1, 0.1, 0, 0}, RENDER_NOISE_REACHED},

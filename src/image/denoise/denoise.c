@@ -244,29 +244,29 @@ static void variance_row(int y, void *data)
     }
 }
 
-/* Puts a number among the n greatest, which fall. */
-static void put_among(float *greatest, int n, float number)
+/* Puts a number among the n greatest, which fall; in each lane. */
+static void put_among(lane_floats *greatest, int n, lane_floats number)
 {
     for (int i = 0; i < n; i++) {
-        float less = minf(greatest[i], number);
-        greatest[i] = maxf(greatest[i], number);
+        lane_floats less = min_lanes(greatest[i], number);
+        greatest[i] = max_lanes(greatest[i], number);
         number = less;
     }
 }
 
 /* The brightest around a pixel of half h, itself only in the other half, but for those
-   that are outliers with it. */
-static float brightest_around(const light_loop *loop, int h, size_t at)
+   that are outliers with it; of LANES pixels. */
+static lane_floats brightest_around(const light_loop *loop, int h, size_t at)
 {
-    float most[MOST_OUTLIERS] = {0.0f};
+    lane_floats most[MOST_OUTLIERS] = {{0.0f}};
     int n = 1 + CLAMP(loop->light->n_beside, 0, MOST_OUTLIERS - 1);
     for (int v = -OUTLIER_REACH; v <= OUTLIER_REACH; v++) {
         for (int u = -OUTLIER_REACH; u <= OUTLIER_REACH; u++) {
             size_t i =
                 (size_t)((ptrdiff_t)at + v * (ptrdiff_t)loop->d->g.stride + (ptrdiff_t)u);
-            put_among(most, n, loop->p.bright[1 - h][i]);
+            put_among(most, n, load_lanes(loop->p.bright[1 - h] + i));
             if (u != 0 || v != 0)
-                put_among(most, n, loop->p.bright[h][i]);
+                put_among(most, n, load_lanes(loop->p.bright[h] + i));
         }
     }
     return most[n - 1];
@@ -276,14 +276,16 @@ static void cut_row(int y, void *data)
 {
     const light_loop *loop = data;
     const grid *g = &loop->d->g;
-    for (int x = 0; x < g->width; x++) {
+    const lane_floats none = fill_lanes(0.0f), one = fill_lanes(1.0f);
+    for (int x = 0; x < g->width; x += LANES) {
         size_t at = plane_at(g, x, y);
         for (int h = 0; h < 2; h++) {
-            float most = OUTLIER * brightest_around(loop, h, at);
-            float bright = loop->p.bright[h][at];
-            float scale = bright > most ? most / bright : 1.0f;
+            lane_floats most = OUTLIER * brightest_around(loop, h, at);
+            lane_floats bright = max_lanes(load_lanes(loop->p.bright[h] + at), none);
+            lane_floats scale = min_lanes(most / bright, one); /* one, of none / none */
             for (int c = 0; c < 3; c++)
-                loop->p.color[h][c][at] = scale * loop->p.raw[h][c][at];
+                store_lanes(loop->p.color[h][c] + at,
+                            scale * load_lanes(loop->p.raw[h][c] + at));
         }
     }
 }

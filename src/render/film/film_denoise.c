@@ -218,6 +218,16 @@ static void add_light(size_t begin, size_t end, unsigned thread, void *data)
         loop->out[i] += loop->light[i];
 }
 
+/* Whether there is any light in what was read. */
+static bool shines(const layer_room *room, size_t n_numbers)
+{
+    for (int h = 0; h < 2; h++)
+        for (size_t i = 0; i < n_numbers; i++)
+            if (room->half[h][i] != 0.0f)
+                return true;
+    return false;
+}
+
 static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
                           unsigned threads, float *out, GError **error)
 {
@@ -230,6 +240,8 @@ static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
                                      l == GLINTS ? NULL : room->variance,
                                      l == GLINTS ? BESIDE_GLINT : 0};
         read_all(&loop, threads);
+        if (!shines(room, 3 * n_pixels(f)))
+            continue;
         if (!denoiser_filter(d, &layer, l >= LAYER_SPECULAR ? -1 : ALBEDO, room->out,
                              error))
             return false;
