@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "render/photon_share.h"
 
+#include <float.h>
 #include <math.h>
 
 enum {
@@ -181,11 +182,10 @@ settings pace_choose(const settings *how, const pace_costs *costs, double n_pixe
     if (whole > most) {
         out.spp = MAX((int64_t)((double)how->spp * most / whole), 1);
         look *= (double)out.spp;
-        /* Photons in proportion, and no longer than the camera; but where not even one
-           pass will be whole, there must be time for the eye to see something. */
+        /* Photons no longer than the camera; but where not even one pass will be whole,
+           there must be time for the eye to see something. */
         double time_for_photons = fmax(most, fmin(look, PHOTON_SHARE * left));
-        photons = fmin((double)out.spp / (double)how->spp,
-                       costs->photons > 0.0 ? time_for_photons / costs->photons : 1.0);
+        photons = fmin(time_for_photons / fmax(costs->photons, FLT_MIN), 1.0);
         photon_share_take(&out, photons);
         whole = costs->pass + photons * costs->photons + look;
     }

@@ -18,11 +18,11 @@ static bool may_gather(const transport_plan *plan)
 /* Photons as of photon mapping, but all of them together take no longer than the camera,
    unless the caustics alone have more without gathering: of those there are no fewer.
    One that is sent goes as far as a path, and wherever it lands it is kept and weighed.
-   With four times as many there were fewer passes of the camera's noise: shown errors at
-   equal time are .79 of that in five fogs (128 x 128, .5 to 2 s), .66 in a papered room,
-   .98 in six rooms together (256 x 256, .7 to 4 s); with half as many .79 and 1.06. By
-   what trials say of both kinds of noise and their costs, the number that would be best
-   as rendered is .6 to 1.5 of this in six rooms, .2 to 1.9 in six fogs. */
+   With twice as many there were fewer passes of the camera's noise: shown errors at equal
+   time are 1.11 of that in five fogs (128 x 128, .5 to 2 s), 1.01 in eleven rooms (256 x
+   256, .7 and 2 s); as rendered .74 and .90. By what trials say of both kinds of noise
+   and their costs, the number that would be best as rendered is .6 to 1.5 of this in six
+   rooms, .2 to 1.9 in six fogs. */
 static void set_photons(const transport_plan *plan, transport_plan *to)
 {
     double passes = settings_planned_passes(&plan->how);
