@@ -17,14 +17,14 @@ enum {
 
 static bool pixel_shines(const film *f, size_t i, int layer)
 {
-    const film_sum *sum = &f->pixels[i].sum;
-    const float *pass = f->pass ? f->pass[i].number + HALF_AT(color) : NULL;
     if (f->n_passes > 0)
         return layer == GLINTS ? f->halves[i].guides.glints[FILM_Y] != 0.0f
-                               : sum->color[layer][FILM_Y] != 0.0;
-    return film_pass_counts(f, i) &&
-           (layer == GLINTS ? f->pass_guides[i].glints[FILM_Y] != 0.0f
-                            : pass[3 * layer + FILM_Y] != 0.0f);
+                               : f->pixels[i].sum.color[layer][FILM_Y] != 0.0;
+    if (!film_pass_counts(f, i))
+        return false;
+    return layer == GLINTS
+               ? f->pass_guides[i].glints[FILM_Y] != 0.0f
+               : f->pass[i].number[HALF_AT(color) + 3 * layer + FILM_Y] != 0.0f;
 }
 
 static bool square_shines(const film *f, int x0, int y0, int layer)
