@@ -185,7 +185,7 @@ settings pace_choose(const settings *how, const pace_costs *costs, double n_pixe
         /* Photons no longer than the camera; but where not even one pass will be whole,
            there must be time for the eye to see something. */
         double time_for_photons = fmax(most, fmin(look, PHOTON_SHARE * left));
-        photons = fmin(time_for_photons / fmax(costs->photons, FLT_MIN), 1.0);
+        photons = fmin(time_for_photons / fmax(costs->photons, DBL_MIN), 1.0);
         photon_share_take(&out, photons);
         whole = costs->pass + photons * costs->photons + look;
     }
