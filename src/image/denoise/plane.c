@@ -43,22 +43,15 @@ static int mirrored(int i, int n)
     return i;
 }
 
-/* Mirrors the ends of a row. */
-static void mirror_ends(const grid *g, float *row)
-{
-    int beyond = (int)g->stride - MARGIN;
-    for (int x = -1; x >= -MARGIN; x--)
-        row[x] = row[-1 - x < g->width ? -1 - x : mirrored(x, g->width)];
-    for (int x = g->width; x < beyond; x++) {
-        int back = 2 * g->width - 1 - x;
-        row[x] = row[back >= 0 ? back : mirrored(x, g->width)];
-    }
-}
-
 void plane_mirror(const grid *g, float *plane)
 {
-    for (int y = 0; y < g->height; y++)
-        mirror_ends(g, plane + plane_at(g, 0, y));
+    int x_end = (int)g->stride - MARGIN;
+    for (int y = 0; y < g->height; y++) {
+        for (int x = -MARGIN; x < 0; x++)
+            plane[plane_at(g, x, y)] = plane[plane_at(g, mirrored(x, g->width), y)];
+        for (int x = g->width; x < x_end; x++)
+            plane[plane_at(g, x, y)] = plane[plane_at(g, mirrored(x, g->width), y)];
+    }
     for (int y = -MARGIN; y < g->height + MARGIN; y++) {
         if (y < 0 || y >= g->height)
             memcpy(plane + plane_at(g, -MARGIN, y),

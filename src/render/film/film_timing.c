@@ -1,5 +1,5 @@
 /*
- * How long it takes to denoise a film: tries a few rows.
+ * How long it takes to denoise a film: tries a few rows, and counts where else light is.
  */
 #include "base/clock.h"
 #include "base/memory.h"
