@@ -12,13 +12,58 @@ grid grid_make(int width, int height, unsigned threads, const cancel_flag *cance
     return g;
 }
 
+/* ---- Rows ---- */
+
+typedef struct row_loop {
+    row_body body;
+    void *data;
+    int first;
+} row_loop;
+
+static void do_rows(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    const row_loop *loop = data;
+    for (size_t i = begin; i < end; i++)
+        loop->body(loop->first + (int)i, loop->data);
+}
+
+bool plane_rows(const grid *g, row_body body, void *data)
+{
+    row_loop loop = {body, data, 0};
+    return parallel_for((size_t)g->height, ROWS_AT_ONCE, g->threads, g->cancel, do_rows,
+                        &loop);
+}
+
+/* Those of the margin too. */
+static void plane_all_rows(const grid *g, row_body body, void *data)
+{
+    row_loop loop = {body, data, -MARGIN};
+    parallel_for((size_t)g->height + 2 * MARGIN, ROWS_AT_ONCE, g->threads, g->cancel,
+                 do_rows, &loop);
+}
+
+typedef struct plane_loop {
+    const grid *g;
+    float *plane;
+} plane_loop;
+
+/* ---- New planes ---- */
+
+static void zero_row(int y, void *data)
+{
+    const plane_loop *loop = data;
+    float *row = loop->plane + plane_at(loop->g, -MARGIN, y);
+    memset(row, 0, loop->g->stride * sizeof *row);
+}
+
 float *plane_new(const grid *g, GError **error)
 {
     if (!g->spare || g->spare->n == 0)
         return big_alloc(g->n, sizeof(float), "denoising", error);
-    float *plane = g->spare->plane[--g->spare->n];
-    memset(plane, 0, g->n * sizeof *plane);
-    return plane;
+    plane_loop loop = {g, g->spare->plane[--g->spare->n]};
+    plane_all_rows(g, zero_row, &loop);
+    return loop.plane;
 }
 
 void plane_free(const grid *g, float *plane)
@@ -35,6 +80,8 @@ void spare_planes_clear(spare_planes *spare)
         big_free(spare->plane[--spare->n]);
 }
 
+/* ---- Margins ---- */
+
 /* Where in 0..n-1 the mirrored picture has what lies at i. */
 static int mirrored(int i, int n)
 {
@@ -43,42 +90,30 @@ static int mirrored(int i, int n)
     return i;
 }
 
+/* A row of the margin is like the one of the picture that it mirrors, of which only what
+   is in the picture is read. */
+static void mirror_row(int y, void *data)
+{
+    const plane_loop *loop = data;
+    const grid *g = loop->g;
+    const float *from = loop->plane + plane_at(g, 0, mirrored(y, g->height));
+    float *row = loop->plane + plane_at(g, 0, y);
+    int end = (int)g->stride - MARGIN;
+    if (row != from)
+        memcpy(row, from, (size_t)g->width * sizeof *row);
+    for (int x = -MARGIN; x < 0; x++)
+        row[x] = from[mirrored(x, g->width)];
+    for (int x = g->width; x < end; x++)
+        row[x] = from[mirrored(x, g->width)];
+}
+
 void plane_mirror(const grid *g, float *plane)
 {
-    int x_end = (int)g->stride - MARGIN;
-    for (int y = 0; y < g->height; y++) {
-        for (int x = -MARGIN; x < 0; x++)
-            plane[plane_at(g, x, y)] = plane[plane_at(g, mirrored(x, g->width), y)];
-        for (int x = g->width; x < x_end; x++)
-            plane[plane_at(g, x, y)] = plane[plane_at(g, mirrored(x, g->width), y)];
-    }
-    for (int y = -MARGIN; y < g->height + MARGIN; y++) {
-        if (y < 0 || y >= g->height)
-            memcpy(plane + plane_at(g, -MARGIN, y),
-                   plane + plane_at(g, -MARGIN, mirrored(y, g->height)),
-                   g->stride * sizeof(float));
-    }
+    plane_loop loop = {g, plane};
+    plane_all_rows(g, mirror_row, &loop);
 }
 
-typedef struct row_loop {
-    row_body body;
-    void *data;
-} row_loop;
-
-static void do_rows(size_t begin, size_t end, unsigned thread, void *data)
-{
-    (void)thread;
-    const row_loop *loop = data;
-    for (size_t y = begin; y < end; y++)
-        loop->body((int)y, loop->data);
-}
-
-bool plane_rows(const grid *g, row_body body, void *data)
-{
-    row_loop loop = {body, data};
-    return parallel_for((size_t)g->height, ROWS_AT_ONCE, g->threads, g->cancel, do_rows,
-                        &loop);
-}
+/* ---- Sums ---- */
 
 typedef struct box_loop {
     const grid *g;
