@@ -178,6 +178,12 @@ static float square_pixels(int radius)
     return (float)((2 * radius + 1) * (2 * radius + 1));
 }
 
+/* Those of a square that have noise of their own. */
+static float distinct_pixels(const blend_loop *loop)
+{
+    return maxf(loop->b->distinct * square_pixels(loop->radius), 1.0f);
+}
+
 /*
  * Of a truth u, picture u + n and filtered picture u + e, the best mean has
  *
@@ -197,7 +203,8 @@ static void product_row(int y, void *data)
         size_t at = plane_at(loop->g, x, y);
         float a = loop->mean[0][at] / n, b = loop->mean[1][at] / n;
         float follows = both * (a - b) * loop->mean[2][at] / n;
-        float lost2 = a * b + follows, noise = loop->noise[at] / (n * n);
+        float lost2 = a * b + follows;
+        float noise = loop->noise[at] / (n * distinct_pixels(loop));
         float noise_a = noise / share, noise_b = noise / (1.0f - share);
         float weight = error_weight(loop, at, maxf(lost2, 0.0f) + noise);
         loop->product[LOST2][at] = weight * lost2;
@@ -213,7 +220,8 @@ static void product_row(int y, void *data)
 /* Share of the picture as it was in the best mean of it and the filtered one. Noise is
    more than given where pixels share it, as those do that see the same photons. Means
    over squares share their pixels with as many others, so that a sum of their products
-   scatters more than one of as many that share none. A pixel that has more noise of its
+   scatters more than one of as many that share none, and so does one of pixels that have
+   the numbers of others. A pixel that has more noise of its
    own than its patch (a path that hardly anyone finds) gets no more than that allows, and
    less the more of its squared error is noise. */
 static float share_of_raw(const blend_loop *loop, size_t at)
@@ -222,7 +230,8 @@ static float share_of_raw(const blend_loop *loop, size_t at)
     float noise =
         maxf(maxf(loop->sum[APART][at], loop->sum[GIVEN][at]), PATCH_PIXELS * own);
     float sure = loop->radius > 0 ? SURE_MEANS : SURE_PIXELS;
-    float error = sqrtf(loop->sum[ERROR2][at] * square_pixels(loop->radius));
+    float times = square_pixels(loop->radius) / loop->b->distinct;
+    float error = sqrtf(loop->sum[ERROR2][at] * times);
     float lost2 = (1.0f - own) * (loop->sum[LOST2][at] - sure * error);
     float whole = noise - loop->sum[FOLLOWS][at];
     return lost2 > 0.0f ? lost2 / (lost2 + maxf(whole, 0.0f)) : 0.0f;

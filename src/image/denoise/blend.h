@@ -10,6 +10,7 @@
 typedef struct blend {
     const regression *done;
     float share;                   /**< of all samples that are in the first half */
+    float distinct;                /**< denoise_size.distinct */
     const float *variance;         /**< of the luminance of the mean, mirrored */
     const float *raw[N_HALVES][3]; /**< as rendered: before outliers were cut */
     float *const *albedo;          /**< light was divided by, three planes; or NULL */

@@ -37,10 +37,9 @@ enum { LIGHT_PLANES = sizeof(light_planes) / sizeof(float *) };
 
 struct denoiser {
     grid g;
-    spare_planes spare; /* of the grid */
-    float share;
-    float brightness;
-    int step; /* regression.step */
+    spare_planes spare;                /* of the grid */
+    float share, distinct, brightness; /* as in denoise_size */
+    int step;                          /* regression.step */
     int n_planes;
     float *plane[MOST_FEATURES];
     float *doubt[MOST_FEATURES]; /* of the plane's feature */
@@ -53,7 +52,7 @@ struct denoiser {
 denoiser *denoiser_new(const denoise_size *size, GError **error)
 {
     if (size->width < 1 || size->height < 1 || !(size->share > 0.0f) ||
-        !(size->share < 1.0f)) {
+        !(size->share < 1.0f) || !(size->distinct > 0.0f)) {
         error_set(error, ERROR_INPUT, "nothing to denoise");
         return NULL;
     }
@@ -61,6 +60,7 @@ denoiser *denoiser_new(const denoise_size *size, GError **error)
     d->g = grid_make(size->width, size->height, size->threads, size->cancel);
     d->g.spare = &d->spare;
     d->share = size->share;
+    d->distinct = size->distinct;
     d->brightness = size->brightness;
     d->step = size->coarse ? 4 : 2;
     return d;
@@ -379,6 +379,7 @@ static blend blend_of(const light_loop *loop, const regression *r)
 {
     blend b = {.done = r,
                .share = loop->d->share,
+               .distinct = loop->d->distinct,
                .variance = loop->p.variance,
                .albedo = loop->albedo,
                .brightness = loop->d->brightness};

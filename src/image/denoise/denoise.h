@@ -35,6 +35,8 @@ typedef struct denoise_layer {
 typedef struct denoise_size {
     int width, height;
     float share;      /**< of all samples that are in the first half, 0..1 exclusive */
+    float distinct;   /**< share of a half's pixels that have numbers of their own, 0..1;
+                         others have those of one beside */
     float brightness; /**< mean luminance of all that is filtered: the eye, made for it,
                          sees less in what is darker */
     unsigned threads;

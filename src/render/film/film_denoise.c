@@ -250,17 +250,25 @@ static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
     return true;
 }
 
-/* Of all samples, those of the even half. */
-static float share_of_even(const film *f)
+/* Of all samples those of the even half, and of the halves' pixels those that are not
+   lent by others. */
+typedef struct half_shares {
+    float even, distinct;
+} half_shares;
+
+static half_shares shares_of(const film *f)
 {
     double sum[2] = {0.0};
+    size_t own = 0;
     for (size_t i = 0; i < n_pixels(f); i++) {
         for (int h = 0; h < 2; h++) {
             half_place at = half_place_of(f, i, h);
+            own += at.i == i;
             sum[h] += at.i == i ? half_number(f, at, HALF_AT(weight)) : 0.0;
         }
     }
-    return (float)(sum[0] / (sum[0] + sum[1]));
+    return (half_shares){(float)(sum[0] / (sum[0] + sum[1])),
+                         (float)((double)own / (2.0 * (double)n_pixels(f)))};
 }
 
 /* Of all lights that are filtered, not yet divided by the weight. */
@@ -292,8 +300,8 @@ bool film_can_denoise(const film *f)
 {
     if (!f->halves || !halves_have(f) || f->no_time)
         return false;
-    float share = share_of_even(f);
-    return share > LEAST_SHARE && share < 1.0f - LEAST_SHARE;
+    float even = shares_of(f).even;
+    return even > LEAST_SHARE && even < 1.0f - LEAST_SHARE;
 }
 
 static bool open_room(const film *f, layer_room *room, GError **error)
@@ -332,10 +340,12 @@ static float *denoise(const film *f, const denoise_size *size, GError **error)
 float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
                     GError **error)
 {
-    float even = clampf(share_of_even(f), LEAST_SHARE, 1.0f - LEAST_SHARE);
+    const half_shares shares = shares_of(f);
     const denoise_size size = {.width = f->width,
                                .height = f->height,
-                               .share = even,
+                               .share =
+                                   clampf(shares.even, LEAST_SHARE, 1.0f - LEAST_SHARE),
+                               .distinct = shares.distinct,
                                .brightness = mean_luminance(f),
                                .threads = threads,
                                .cancel = cancel,
