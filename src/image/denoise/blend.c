@@ -221,9 +221,9 @@ static void product_row(int y, void *data)
    more than given where pixels share it, as those do that see the same photons. Means
    over squares share their pixels with as many others, so that a sum of their products
    scatters more than one of as many that share none, and so does one of pixels that have
-   the numbers of others. A pixel that has more noise of its
-   own than its patch (a path that hardly anyone finds) gets no more than that allows, and
-   less the more of its squared error is noise. */
+   the numbers of others. A pixel that has more noise of its own than its patch (a path
+   that hardly anyone finds) gets no more than that allows, and less the more of its
+   squared error is noise. */
 static float share_of_raw(const blend_loop *loop, size_t at)
 {
     float own = loop->product[GIVEN][at];
