@@ -8,12 +8,22 @@ double plan_rays_of_photons(const transport_counts *counts)
     return rays;
 }
 
-double plan_rays_of(const transport_scratch *scratch)
+double plan_rays_of_search(const transport_scratch *scratch)
 {
     const estimate_scratch *maps = &scratch->estimate;
-    double weighed = (double)maps->n_weighed / N_WAVELENGTHS;
     return (double)(scratch->camera_rays + scratch->shadow_rays) +
-           (double)maps->n_queries + LOOK_RAYS * ((double)maps->n_looks + 0.5 * weighed);
+           (double)maps->n_queries + LOOK_RAYS * (double)maps->n_looks;
+}
+
+double plan_rays_of_weighed(double n)
+{
+    return 0.5 * LOOK_RAYS * n / N_WAVELENGTHS;
+}
+
+double plan_rays_of(const transport_scratch *scratch)
+{
+    return plan_rays_of_search(scratch) +
+           plan_rays_of_weighed((double)scratch->estimate.n_weighed);
 }
 
 void plan_note_photons(transport_plan *plan, double n, double rays)

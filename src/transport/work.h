@@ -36,12 +36,10 @@
 /** What a short ray costs that looks for edges, in rays. A query whose looks are counted
  * costs one ray, and as many photons as there are wavelengths, or one that a BSDF weighs
  * at all of them, half of a look: so the rays of passes that gather all, over those of
- * passes by paths, come close to what both took of the processor (fourteen scenes, 192 x
- * 192, 1, 4 and 16 passes by photon mapping: 17 % in the mean square, from .7 to 1.5,
- * and 18 % of 1 and 4 passes since photons beside edges are weighed once;
- * with 0.4, half a ray for a query and a quarter of a look 13 %; with 0.1, two rays and
- * as much 35 %, from .7 to 2.3, with twice the cost in Sponza and on a laid table). */
-#define LOOK_RAYS 0.3
+ * passes by paths, come close to what both took of the clock: 17 % in the mean square,
+ * from .7 to 1.7, sixteen scenes, 128 to 512 pixels wide, 1 to 16 passes. With 0.3 and
+ * photons of wide discs it was 23 %, from .4 to 1.9. */
+#define LOOK_RAYS 0.2
 
 /** What is tried must be better than what is there by so much: variances are known within
  * a factor of two, and noise that is even disturbs least. With 1 in its place time x
@@ -51,14 +49,13 @@
 
 /** Squared error that is alike in neighbouring pixels weighs as much as so many times
  * that of grain where noise is taken out, which leaves what is alike as it is: of paths'
- * noise it left a 17th, 12th and 8th in a Cornell box, a 5th, 4th and 3rd in one with
- * glass, a 15th, 11th and 8th in a glossy one, a 7th in a papered one, a 7th to 9th by 24
- * lamps, a 15th to 7th by a glass ball, a 17th and 10th behind a prism, a 4th in water, a
- * 3rd to 2nd through a window and in a bulb of glass (128 x 128, 2, 4 and 16 passes).
- * With 16 maps are chosen in 2 and 17 of 30 trials in the papered one and by the lamps,
- * where they take 2 to 4 times as long as paths, with 24 in none and 8; in fog, where
- * they are worth about as much as paths, in 15 and 11. */
-#define BLOTCHES 24.0
+ * noise it left a 40th to a 90th in five rooms with walls of one colour, a 25th to a
+ * 60th with glass balls, by a glass ball and in fog, a 10th in a papered room, in water
+ * and through a window (256 x 256, 1 to 8 passes). By time x squared error of what is
+ * shown maps or paths are chosen wrongly for 1.05 of the best in the mean of 148 pictures
+ * (sixteen scenes, 128 to 512 pixels wide, 1 to 16 passes, four seeds each), with 24 for
+ * 1.07, with 48 for 1.06. */
+#define BLOTCHES 32.0
 
 /** Fewer trials of anything tell nothing, as fewer photons do of how close they lie: then
  * the decision is the cheap one. A thread takes as many at once, some hundred
@@ -86,6 +83,10 @@ double plan_rays_of_photons(const transport_counts *counts);
 
 /** @brief Rays that are worth what has been done with scratch. */
 double plan_rays_of(const transport_scratch *scratch);
+/** @brief The same, but for weighing photons that were found. */
+double plan_rays_of_search(const transport_scratch *scratch);
+/** @brief That weighing so many numbers of photons is worth. */
+double plan_rays_of_weighed(double n);
 
 /** @brief Notes photons of a trial, and the rays that were traced for them. */
 void plan_note_photons(transport_plan *plan, double n, double rays);

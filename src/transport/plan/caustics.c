@@ -37,10 +37,11 @@ static double gather_rays(const transport_plan *plan, const path_effort *paths)
     return PHOTON_RAYS * (fmin(paths->surfaces, 1.0) + later);
 }
 
-/* The photons of a pass: sending and storing one takes as long as a ray more. */
+/* The photons of a pass: sending and storing one takes as long as a ray more, weighing it
+   against paths as another. */
 static double photon_rays(const aim_result *found, double n)
 {
-    return n * (found->rays + 1.0);
+    return n * (found->rays + 1.0 + 1.0);
 }
 
 static double samples_a_pass(const transport_plan *plan)

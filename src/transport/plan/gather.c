@@ -93,6 +93,14 @@ static void take(transport_plan *plan, gather_trial *t)
     plan->photon_rays = t->photon_rays * per_sample;
 }
 
+/* What maps must beat: of noise that stays paths' is even and disturbs least; where it is
+   taken out, that is in the costs. */
+static double least_of_paths(const transport_plan *plan, plan_cost paths)
+{
+    bool stays = !(plan_weight_alike(plan) > 1.0);
+    return (stays ? CLEARLY_BETTER : 1.0) * paths.variance * paths.rays;
+}
+
 /* The trial of a plan to gather. */
 static bool compare(transport_plan *plan, const path_pass *paths, gather_trial *t,
                     const cancel_flag *cancel, GError **error)
@@ -102,8 +110,7 @@ static bool compare(transport_plan *plan, const path_pass *paths, gather_trial *
         return false;
     plan_cost without, with;
     gather_costs(plan, t, &without, &with);
-    bool pays =
-        with.variance * with.rays < CLEARLY_BETTER * without.variance * without.rays;
+    bool pays = with.variance * with.rays < least_of_paths(plan, without);
     plan_note(plan, "gathered indirect light", without, with, pays);
     if (pays)
         take(plan, t);

@@ -124,39 +124,48 @@ static double bias_of_passes(double alpha, double passes)
     return pow(passes, alpha - 1.0) / tgamma(1.0 + alpha);
 }
 
-/* Squared error of n samples a pixel times n, which are told within a factor of two: of
-   the pixels for which half as many do not suffice all may stay empty, and show the next.
- */
-static double variance_of_samples(double variance, const gather_errors *e, double n)
+/* What n samples a pixel show, times n, of the squared error of one: all, but that fewer
+   than one show no more of it where noise stays. */
+static double share_of_samples(const transport_plan *plan, double n)
+{
+    return plan_weight_alike(plan) > 1.0 ? 1.0 : fmin(n, 1.0);
+}
+
+/* Squared error of n samples a pixel, times n, that paths and maps have in common: light
+   straight from lamps is as noisy in both. n is told within a factor of two: of the
+   pixels for which half as many do not suffice all may stay empty, and show the next. */
+static double common_error(const transport_plan *plan, const gather_errors *e, double n)
 {
     double empty = fmax(1.0 - 0.5 * n, 0.0);
-    return fmin(n, 1.0) * variance + n * empty * e->contrast;
+    return share_of_samples(plan, n) * e->samples + n * empty * e->contrast;
 }
 
-/* Squared error of the picture times the samples of a pixel, comparable to the variance
-   of one of them; there is time for so many passes by maps. Noise that is taken out of
-   less than one pass, where paths have one, or less than theirs, stays as well as not. */
-static double error_of(const transport_plan *plan, const gather_errors *e, double in_time)
+/* Squared error that maps have of their own, times the passes. */
+static double error_of_maps(const transport_plan *plan, const gather_errors *e,
+                            double passes)
 {
-    double passes = settings_planned_passes(&plan->how), alpha = plan->how.alpha;
-    double spp = (double)plan->how.spp, whole = fmax(in_time, 1.0);
+    double alpha = plan->how.alpha, whole = fmax(passes, 1.0);
     double bias = bias_of_passes(alpha, whole);
-    double alike = e->photons * variance_of_passes(alpha, whole) + e->bias2 * bias * bias;
-    bool short_of_time = in_time < fmin(passes, 1.0);
-    double weight = plan_weight_alike(plan);
-    double weight_of_grain = short_of_time ? weight : 1.0;
-    return weight_of_grain * variance_of_samples(e->samples, e, in_time * spp) +
-           weight * in_time * spp * alike;
+    return passes *
+           (e->photons * variance_of_passes(alpha, whole) + e->bias2 * bias * bias);
 }
 
+/* All is comparable to the variance of one sample. Where noise is taken out it is paths'
+   own grain that goes, and all else weighs as what is alike in neighbouring pixels does:
+   shadows are where their grain is. */
 void gather_costs(const transport_plan *plan, const gather_trial *t, plan_cost *without,
                   plan_cost *with)
 {
     const gather_errors e = errors_of(t, plan->path_noise);
+    double weight = plan_weight_alike(plan);
     double passes = settings_planned_passes(&plan->how), spp = (double)plan->how.spp;
     without->rays = t->path_rays + plan->photon_rays;
-    without->variance = variance_of_samples(e.path, &e, passes * spp);
+    without->variance =
+        share_of_samples(plan, passes * spp) * fmax(e.path - e.samples, 0.0) +
+        weight * common_error(plan, &e, passes * spp);
     with->rays =
         gather_trial_sample_rays(t) + t->photon_rays * passes / plan_samples(plan);
-    with->variance = error_of(plan, &e, passes * without->rays / with->rays);
+    double in_time = passes * without->rays / with->rays;
+    with->variance = weight * (common_error(plan, &e, in_time * spp) +
+                               spp * error_of_maps(plan, &e, in_time));
 }

@@ -177,22 +177,41 @@ static void see(const gather_task *all, vec2 raster, const sampler by[2],
     at->beside = sample(photonmap_radiance, smooth, all->plan, beside, by[0], scratch);
 }
 
-/* What gathering takes at a place, as if there were all photons. */
+/* What gathering takes at a place, as if there were all photons, but for weighing them.
+ */
 static void find_price(const gather_task *all, vec2 raster, sampler random,
                        transport_scratch *scratch, gather_place *at)
 {
     const photonmap_pass *pass = all->trial->priced;
-    double before = plan_rays_of(scratch);
+    double before = plan_rays_of_search(scratch);
     looked_around_forget(&scratch->estimate.looked);
     sample(photonmap_radiance, pass, all->plan, raster, random, scratch);
-    double between = plan_rays_of(scratch);
+    double between = plan_rays_of_search(scratch);
     at->first_rays = between - before;
     if (all->plan->how.spp == 1)
         return;
     vec2 u = sampler_2d(&random);
     vec2 beside = {raster.x + u.x - 0.5f, raster.y + u.y - 0.5f};
     sample(photonmap_radiance, pass, all->plan, beside, random, scratch);
-    at->later_rays = plan_rays_of(scratch) - between;
+    at->later_rays = plan_rays_of_search(scratch) - between;
+}
+
+/* What the narrower discs say there, and what weighing their photons takes where there
+   are as many as the plan's: those of wide ones reach beyond walls, and hold fewer. */
+static void see_near(const gather_task *all, vec2 raster, sampler random,
+                     transport_scratch *scratch, gather_place *at)
+{
+    const gather_trial *t = all->trial;
+    for (int k = 0; k < 2; k++) {
+        const photonmap_pass *near = t->near[k], *twice = t->twice[k];
+        uint64_t before = scratch->estimate.n_weighed;
+        at->near[k] =
+            sample(photonmap_radiance, near, all->plan, raster, random, scratch);
+        double weighed = (double)(scratch->estimate.n_weighed - before) * t->area;
+        at->weigh_rays += 0.5 * plan_rays_of_weighed(weighed);
+        at->twice[k] =
+            sample(photonmap_radiance, twice, all->plan, raster, random, scratch);
+    }
 }
 
 /* Asks at a place. What is looked at for one map counts for all; paths look for edges
@@ -209,11 +228,7 @@ static void ask(const gather_task *all, uint32_t i, transport_scratch *scratch)
     find_price(all, raster, by[0], scratch, at);
     looked_around_forget(&scratch->estimate.looked);
     see(all, raster, by, scratch, at);
-    for (int k = 0; k < 2; k++) {
-        const photonmap_pass *near = t->near[k], *twice = t->twice[k];
-        at->near[k] = sample(photonmap_radiance, near, plan, raster, by[0], scratch);
-        at->twice[k] = sample(photonmap_radiance, twice, plan, raster, by[0], scratch);
-    }
+    see_near(all, raster, by[0], scratch, at);
     double between = plan_rays_of(scratch);
     for (int k = 0; k < 2; k++) {
         looked_around_forget(&scratch->estimate.looked);
@@ -248,6 +263,7 @@ static void sum_rays(gather_trial *t, transport_plan *plan)
     for (uint32_t i = 0; i < t->n; i++) {
         t->first_rays += t->places[i].first_rays / t->n;
         t->later_rays += t->places[i].later_rays / t->n;
+        t->weigh_rays += t->places[i].weigh_rays / t->n;
         t->path_rays += t->places[i].path_rays / t->n;
         plan->planning += t->places[i].all_rays;
     }
@@ -305,7 +321,7 @@ bool gather_trial_run(gather_trial *t, transport_plan *plan, const path_pass *pa
 double gather_trial_sample_rays(const gather_trial *t)
 {
     double spp = (double)t->plan.how.spp;
-    return (t->first_rays + (spp - 1.0) * t->later_rays) / spp;
+    return (t->first_rays + (spp - 1.0) * t->later_rays) / spp + t->weigh_rays;
 }
 
 void gather_trial_clear(gather_trial *t)

@@ -16,8 +16,9 @@ typedef struct gather_place {
     double seen;               /* with the caustics that those leave out */
     double lone;               /* square of what one photon adds, times its disc, m² */
     double area;               /* of a pixel, m² */
-    double first_rays;         /* of a pixel's first sample */
+    double first_rays;         /* of a pixel's first sample, photons not weighed yet */
     double later_rays;         /* of another one, which shares the first one's looks */
+    double weigh_rays;         /* and of either what weighing photons takes */
     double path_rays;          /* of a path */
     double all_rays;
 } gather_place;
@@ -32,11 +33,11 @@ typedef struct gather_trial {
        plan's; and priced as smooth, but looked around as the plan's. */
     photonmap_pass *near[2], *twice[2], *smooth, *priced;
     double area;
-    double fewer;                             /* photons than the plan's, over them */
-    double flux;                              /* of a photon of the plan's, W nm⁻¹ */
-    double photon_rays;                       /* of a whole pass */
-    double first_rays, later_rays, path_rays; /* means of the places' */
-    uint32_t n;                               /* places */
+    double fewer;       /* photons than the plan's, over them */
+    double flux;        /* of a photon of the plan's, W nm⁻¹ */
+    double photon_rays; /* of a whole pass */
+    double first_rays, later_rays, weigh_rays, path_rays; /* means of the places' */
+    uint32_t n;                                           /* places */
     gather_place *places;
 } gather_trial;
 
