@@ -15,7 +15,8 @@
  * From these follows the squared error of a picture of all the passes that are planned:
  * the paths' falls as 1 / passes, the photons' more slowly, since radii shrink (Knaus &
  * Zwicker 2011). So a quick picture is the photons' and one that is given its time the
- * paths', and either goes to the truth.
+ * paths', and either goes to the truth. Where noise is taken out it is paths' own grain
+ * that goes: all other error, also what both have of lamps' light, weighs more.
  */
 #pragma once
 
