@@ -63,10 +63,14 @@ uint32_t plan_trials_for(const transport_plan *plan, double shares, double rays_
     return (uint32_t)CLAMP(n, (double)LEAST_TRIALS, shares * (double)most);
 }
 
+bool plan_takes_noise_out(const transport_plan *plan)
+{
+    return settings_takes_noise_out(&plan->how, settings_planned_passes(&plan->how));
+}
+
 double plan_weight_alike(const transport_plan *plan)
 {
-    double passes = settings_planned_passes(&plan->how);
-    return settings_takes_noise_out(&plan->how, passes) ? BLOTCHES : 1.0;
+    return plan_takes_noise_out(plan) ? BLOTCHES : 1.0;
 }
 
 bool plan_is_tiny(const transport_plan *plan)

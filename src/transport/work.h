@@ -51,10 +51,10 @@
  * that of grain where noise is taken out, which leaves what is alike as it is: of paths'
  * noise it left a 40th to a 90th in five rooms with walls of one colour, a 25th to a
  * 60th with glass balls, by a glass ball and in fog, a 10th in a papered room, in water
- * and through a window (256 x 256, 1 to 8 passes). By time x squared error of what is
- * shown maps or paths are chosen wrongly for 1.05 of the best in the mean of 148 pictures
- * (sixteen scenes, 128 to 512 pixels wide, 1 to 16 passes, four seeds each), with 24 for
- * 1.07, with 48 for 1.06. */
+ * and through a window (256 x 256, 1 to 8 passes). Of maps and paths what is chosen
+ * costs, by time x squared error of what is shown, 1.05 of the best in the mean of 148
+ * pictures (sixteen scenes, 128 to 512 pixels wide, 1 to 16 passes, four seeds each);
+ * with 24 it is 1.07, with 48 1.06. */
 #define BLOTCHES 32.0
 
 /** Fewer trials of anything tell nothing, as fewer photons do of how close they lie: then
@@ -107,6 +107,9 @@ double plan_grant(const transport_plan *plan, double shares);
  * at least, and never more than most a share. */
 uint32_t plan_trials_for(const transport_plan *plan, double shares, double rays_each,
                          uint32_t most);
+
+/** @brief Whether noise is taken out of a picture of all passes that are planned. */
+bool plan_takes_noise_out(const transport_plan *plan);
 
 /** @brief What error that is alike in neighbouring pixels weighs over grain, in a picture
  * of all passes that are planned: BLOTCHES, or 1 where noise stays. */

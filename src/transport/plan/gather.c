@@ -97,8 +97,8 @@ static void take(transport_plan *plan, gather_trial *t)
    taken out, that is in the costs. */
 static double least_of_paths(const transport_plan *plan, plan_cost paths)
 {
-    bool stays = !(plan_weight_alike(plan) > 1.0);
-    return (stays ? CLEARLY_BETTER : 1.0) * paths.variance * paths.rays;
+    double least = plan_takes_noise_out(plan) ? 1.0 : CLEARLY_BETTER;
+    return least * paths.variance * paths.rays;
 }
 
 /* The trial of a plan to gather. */

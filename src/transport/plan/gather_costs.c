@@ -128,7 +128,7 @@ static double bias_of_passes(double alpha, double passes)
    than one show no more of it where noise stays. */
 static double share_of_samples(const transport_plan *plan, double n)
 {
-    return plan_weight_alike(plan) > 1.0 ? 1.0 : fmin(n, 1.0);
+    return plan_takes_noise_out(plan) ? 1.0 : fmin(n, 1.0);
 }
 
 /* Squared error of n samples a pixel, times n, that paths and maps have in common: light
