@@ -329,20 +329,29 @@ static double measure(const NephScene *scene, const char *name, const kind *k, a
     return raw.raw;
 }
 
+/* One algorithm with one seed: twice as much each time. */
 static void measure_kind(const NephScene *scene, const char *name, const kind *k,
-                         const NephImage *reference, const options *o)
+                         int seed, const NephImage *reference, const options *o)
 {
-    for (int seed = FIRST_SEED; seed < FIRST_SEED + o->seeds; seed++) {
-        double took = 0.0;
-        amount of = {1, o->by_time ? SHORTEST : 0.0};
-        while (o->by_time ? of.time <= o->seconds : took * STEP < 1.5 * o->seconds) {
-            took = measure(scene, name, k, of, seed, reference);
-            if (took < 0.0)
-                return;
-            of.passes *= STEP;
-            of.time *= STEP;
-        }
+    double took = 0.0;
+    amount of = {1, o->by_time ? SHORTEST : 0.0};
+    while (o->by_time ? of.time <= o->seconds : took * STEP < 1.5 * o->seconds) {
+        took = measure(scene, name, k, of, seed, reference);
+        if (took < 0.0)
+            return;
+        of.passes *= STEP;
+        of.time *= STEP;
     }
+}
+
+/* The algorithms take turns, so that all have of what the machine does beside them. */
+static void measure_all(const NephScene *scene, const char *name,
+                        const NephImage *reference, bool media, const options *o)
+{
+    for (int seed = FIRST_SEED; seed < FIRST_SEED + o->seeds; seed++)
+        for (int i = 0; i < o->n_kinds; i++)
+            if (!media || strcmp(o->kinds[i].name, "vcm") != 0)
+                measure_kind(scene, name, &o->kinds[i], seed, reference, o);
 }
 
 /* Of a name, or of a name and settings in one word, as "few indirect_photons=1000". */
@@ -396,9 +405,7 @@ static void measure_scene(const char *path, const options *o)
     NephImageDifference floor = compare(other, beauty, reference);
     printf("%s\tfloor\t0\t0\t0\t%.6f\t%.5f\t%.6f\n", name, floor.relmse, floor.flip,
            caustic_error(other, beauty, reference));
-    for (int i = 0; i < o->n_kinds; i++)
-        if (!media || strcmp(o->kinds[i].name, "vcm") != 0)
-            measure_kind(scene, name, &o->kinds[i], reference, o);
+    measure_all(scene, name, reference, media, o);
     neph_image_free(reference);
     neph_image_free(other);
     neph_scene_free(scene);

@@ -76,19 +76,20 @@ def read(path):
 
 
 def time_to(curve, level, column):
-    """Seconds to an error, between points of a log-log curve; beyond the last one by the
-    slope of those before it, which is told apart; None: it is nowhere near."""
+    """Seconds to an error and how it is known: " ": between points of a log-log curve; "<":
+    its first picture is no worse; "~": by the slope of its last points, beyond them. None: it
+    is nowhere near."""
     points = [(math.log(p[0]), math.log(p[column])) for p in curve]
     wanted = math.log(level)
     if points[0][1] <= wanted:
-        return curve[0][0], False
+        return curve[0][0], "<"
     for (t0, e0), (t1, e1) in zip(points, points[1:]):
         if e1 <= wanted < e0:
-            return math.exp(t0 + (t1 - t0) * (e0 - wanted) / (e0 - e1)), False
+            return math.exp(t0 + (t1 - t0) * (e0 - wanted) / (e0 - e1)), " "
     (t0, e0), (t1, e1) = points[-2:] if len(points) > 1 else (points[0],) * 2
     if e1 >= e0 or e1 - wanted > 1.5 * (e0 - e1):
-        return None, True
-    return math.exp(t1 + (t1 - t0) * (e1 - wanted) / (e0 - e1)), True
+        return None, "~"
+    return math.exp(t1 + (t1 - t0) * (e1 - wanted) / (e0 - e1)), "~"
 
 
 def table(curves, floors, shown):
@@ -112,16 +113,16 @@ def whole_text(curves, floors):
     return "\n".join([
         "as rendered", "", table(curves, floors, False), "",
         "without noise, with the time to take it out", "", table(curves, floors, True), "",
+        "<: its first picture is no worse; ~: by its last points, beyond them", "",
         "between the two references, relMSE and FLIP:"] + [
             f"    {s:16} {f[0]:.5f} {f[1]:.3f}" for s, f in floors.items()])
 
 
 def row(scene, by_kind, kinds, level, column):
-    found = {k: time_to(by_kind[k], level, column) if by_kind.get(k) else (None, True)
+    found = {k: time_to(by_kind[k], level, column) if by_kind.get(k) else (None, "~")
              for k in kinds}
     cells = "".join(
-        "        -" if t is None else f"{t:8.2f}{'~' if guessed else ' '}"
-        for t, guessed in found.values())
+        "        -" if t is None else f"{t:8.2f}{mark}" for t, mark in found.values())
     mine = found[kinds[0]][0]
     rest = [found[k][0] for k in kinds[1:] if found[k][0]]
     def ratio(t):

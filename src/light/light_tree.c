@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 typedef struct tree_node {
-    vec3 center;
+    vec3 center, half; /* of its box */
     float radius2, power;
     int child;  /* index of the first of two, 0: a leaf */
     int parent; /* -1: the root */
@@ -68,6 +68,7 @@ static void fill_node(light_tree *tree, int at, int parent, tree_item *items, in
     }
     float radius = box3_radius(box);
     *node_at(tree, at) = (tree_node){.center = box3_center(box),
+                                     .half = 0.5f * (box.high - box.low),
                                      .radius2 = radius * radius,
                                      .power = power,
                                      .parent = parent,
@@ -205,4 +206,39 @@ float light_tree_probability(const light_tree *tree, vec3 ref, int i)
         node = parent;
     }
     return p;
+}
+
+typedef struct tree_question {
+    const light_tree *tree;
+    vec3 ref, place;
+    float (*ask)(const void *data, int light);
+    const void *data;
+} tree_question;
+
+static bool holds(const tree_node *node, vec3 place)
+{
+    return max_component3(abs3(place - node->center) - node->half) <= 0.0f;
+}
+
+/* Below a node that is come to with probability p. */
+static float sum_below(const tree_question *q, const tree_node *node, float p)
+{
+    if (!node->child)
+        return p * q->ask(q->data, node->light);
+    const tree_node *a = node_at(q->tree, node->child), *b = a + 1;
+    bool in_a = holds(a, q->place), in_b = holds(b, q->place);
+    if (!in_a && !in_b)
+        return 0.0f;
+    float first = first_share(q->tree, node, q->ref);
+    return (in_a ? sum_below(q, a, p * first) : 0.0f) +
+           (in_b ? sum_below(q, b, p * (1.0f - first)) : 0.0f);
+}
+
+float light_tree_sum_at(const light_tree *tree, vec3 ref, vec3 place,
+                        float (*ask)(const void *data, int light), const void *data)
+{
+    const tree_question q = {tree, ref, place, ask, data};
+    if (tree->nodes->len == 0 || !holds(node_at(tree, 0), place))
+        return 0.0f;
+    return sum_below(&q, node_at(tree, 0), 1.0f - distant_share(tree, ref));
 }

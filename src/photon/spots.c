@@ -24,10 +24,11 @@ typedef struct disc {
 struct photon_spots {
     size_t n;
     disc *discs;      /* MOST_SPOTS at most */
-    point_set *index; /* over their centres */
-    light_tree *tree; /* over the discs */
-    float reach;      /* how far from a spot's centre a ray may land, at most */
+    light_tree *tree; /* over them and where rays to them may land */
 };
+
+/* math: how far from its centre a ray to a disc may land, in radii; see disc_pdf. */
+#define LANDING_REACH ((float)G_SQRT2)
 
 /* ---- Building ---- */
 
@@ -89,24 +90,15 @@ static bool choose_all(const spot_source *sources, size_t n, photon_spots *spots
     return spots->n > 0;
 }
 
-static bool index_discs(photon_spots *spots, GError **error)
-{
-    vec3 centres[MOST_SPOTS];
-    for (size_t i = 0; i < spots->n; i++)
-        centres[i] = spots->discs[i].p;
-    spots->index = point_set_build(centres, spots->n, 1, error);
-    return spots->index != NULL;
-}
-
 /* The way to the furthest of the neighbours of each place. */
-static bool measure_ways(const photon_spots *spots, float ways[MOST_SPOTS])
+static bool measure_ways(const photon_spots *spots, const point_set *index,
+                         float ways[MOST_SPOTS])
 {
     point_hits hits = {0};
     bool ok = true;
     for (size_t i = 0; i < spots->n && ok; i++) {
         float d2 = 0.0f;
-        ok = point_set_nearest(spots->index, spots->discs[i].p, NEIGHBOURS, INFINITY,
-                               &hits);
+        ok = point_set_nearest(index, spots->discs[i].p, NEIGHBOURS, INFINITY, &hits);
         for (size_t k = 0; k < hits.n; k++)
             d2 = maxf(d2, hits.distance2[k]);
         ways[i] = sqrtf(d2);
@@ -115,14 +107,27 @@ static bool measure_ways(const photon_spots *spots, float ways[MOST_SPOTS])
     return ok;
 }
 
+static bool find_ways(const photon_spots *spots, float ways[MOST_SPOTS], GError **error)
+{
+    vec3 centres[MOST_SPOTS];
+    for (size_t i = 0; i < spots->n; i++)
+        centres[i] = spots->discs[i].p;
+    point_set *index = point_set_build(centres, spots->n, 1, error);
+    if (!index)
+        return false;
+    bool ok = measure_ways(spots, index, ways);
+    if (!ok)
+        error_set(error, ERROR_FAILED, "out of memory: bright spots");
+    point_set_free(index);
+    return ok;
+}
+
 /* @return false: memory is refused or, without an error, all lie in one place */
 static bool set_radii(photon_spots *spots, GError **error)
 {
     float ways[MOST_SPOTS] = {0}, sorted[MOST_SPOTS], widest = 0.0f;
-    if (!measure_ways(spots, ways)) {
-        error_set(error, ERROR_FAILED, "out of memory: bright spots");
+    if (!find_ways(spots, ways, error))
         return false;
-    }
     memcpy(sorted, ways, sizeof sorted);
     float most = WIDEST_OVER_TYPICAL * median(sorted, spots->n);
     for (size_t i = 0; i < spots->n; i++) {
@@ -130,7 +135,6 @@ static bool set_radii(photon_spots *spots, GError **error)
         d->radius = maxf(minf(ways[i], most), d->radius);
         widest = maxf(widest, d->radius);
     }
-    spots->reach = sqrtf(2.0f) * widest;
     return widest > 0.0f;
 }
 
@@ -140,7 +144,8 @@ static void plant_tree(photon_spots *spots)
     light_bound *bounds = g_aligned_alloc0(n, sizeof *bounds, 16);
     for (size_t i = 0; i < n; i++) {
         const disc *d = &spots->discs[i];
-        vec3 reach = vec3_make(d->radius, d->radius, d->radius);
+        float r = LANDING_REACH * d->radius;
+        vec3 reach = vec3_make(r, r, r);
         box3 box = {d->p - reach, d->p + reach};
         bounds[i] = (light_bound){.is_local = true, .box = box, .power = d->power};
     }
@@ -152,8 +157,7 @@ photon_spots *photon_spots_new(const spot_source *sources, size_t n, GError **er
 {
     g_autoptr(photon_spots) spots = g_new0(photon_spots, 1);
     spots->discs = g_aligned_alloc0(MOST_SPOTS, sizeof *spots->discs, 16);
-    if (!choose_all(sources, n, spots) || !index_discs(spots, error) ||
-        !set_radii(spots, error))
+    if (!choose_all(sources, n, spots) || !set_radii(spots, error))
         return NULL;
     plant_tree(spots);
     return g_steal_pointer(&spots);
@@ -163,7 +167,6 @@ void photon_spots_free(photon_spots *spots)
 {
     if (!spots)
         return;
-    point_set_free(spots->index);
     light_tree_free(spots->tree);
     g_aligned_free(spots->discs);
     g_free(spots);
@@ -206,16 +209,19 @@ bool photon_spots_landed(const photon_spots *spots, int spot, vec3 from, vec3 wi
     return disc_pdf(&spots->discs[spot], from, wi, landed) > 0.0f;
 }
 
-float photon_spots_pdf(const photon_spots *spots, vec3 from, vec3 wi, vec3 landed,
-                       point_hits *hits)
+typedef struct landing {
+    const disc *discs;
+    vec3 from, wi, landed;
+} landing;
+
+static float pdf_of_disc(const void *data, int spot)
 {
-    float sum = 0.0f;
-    if (!point_set_within(spots->index, landed, spots->reach, hits))
-        return 0.0f;
-    for (size_t i = 0; i < hits->n; i++) {
-        float pdf = disc_pdf(&spots->discs[hits->index[i]], from, wi, landed);
-        if (pdf > 0.0f)
-            sum += pdf * light_tree_probability(spots->tree, from, (int)hits->index[i]);
-    }
-    return sum;
+    const landing *at = data;
+    return disc_pdf(&at->discs[spot], at->from, at->wi, at->landed);
+}
+
+float photon_spots_pdf(const photon_spots *spots, vec3 from, vec3 wi, vec3 landed)
+{
+    const landing at = {spots->discs, from, wi, landed};
+    return light_tree_sum_at(spots->tree, from, landed, pdf_of_disc, &at);
 }

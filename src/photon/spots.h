@@ -55,7 +55,5 @@ bool photon_spots_landed(const photon_spots *spots, int spot, vec3 from, vec3 wi
 
 /** @brief pdf_solid_angle with which photon_spots_sample gives direction wi and the ray
  *  then lands there.
- *  @param landed where the ray meets a surface
- *  @param hits scratch */
-float photon_spots_pdf(const photon_spots *spots, vec3 from, vec3 wi, vec3 landed,
-                       point_hits *hits);
+ *  @param landed where the ray meets a surface */
+float photon_spots_pdf(const photon_spots *spots, vec3 from, vec3 wi, vec3 landed);

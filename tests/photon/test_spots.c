@@ -65,15 +65,13 @@ static double by_sampling(const photon_spots *spots, vec3 from, int part, int n)
 
 static double by_density(const photon_spots *spots, vec3 from, int part, int n)
 {
-    point_hits hits = {0};
     double sum = 0.0;
     for (int i = 0; i < n; i++) {
         sampler random = sampler_make(5, (uint64_t)i);
         vec3 landed, wi = warp_sphere(sampler_2d(&random));
         if (land(from, wi, &landed) && is_counted(landed, part))
-            sum += (double)photon_spots_pdf(spots, from, wi, landed, &hits);
+            sum += (double)photon_spots_pdf(spots, from, wi, landed);
     }
-    point_hits_clear(&hits);
     return 4.0 * G_PI * sum / n;
 }
 

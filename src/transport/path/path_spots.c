@@ -79,8 +79,7 @@ static bool look_at_spot(path_walk *walk, const camera_path *path, const surface
         !is_seen_alike(bsdf_has_both(b), &out->bsdf) ||
         !photon_spots_landed(spots, spot, hit->p, out->wi, out->hit.p))
         return false;
-    out->pdf = photon_spots_pdf(spots, hit->p, out->wi, out->hit.p,
-                                &walk->scratch->estimate.hits);
+    out->pdf = photon_spots_pdf(spots, hit->p, out->wi, out->hit.p);
     return true;
 }
 
@@ -168,7 +167,6 @@ float path_weight_beside_spots(path_walk *walk, const camera_path *path,
     const photon_spots *spots = path->looked > 0.0f ? spots_of(walk, hit->time) : NULL;
     if (!spots || !(path->pdf > 0.0f) || !is_seen_alike(path->by_either, b))
         return 1.0f;
-    float pdf = photon_spots_pdf(spots, path->from, path->at.ray.direction, hit->p,
-                                 &walk->scratch->estimate.hits);
+    float pdf = photon_spots_pdf(spots, path->from, path->at.ray.direction, hit->p);
     return followed_weight(path->pdf, pdf * path->looked);
 }
