@@ -57,7 +57,7 @@ static double unseen_bias(const transport_plan *plan)
 
 /* Sums over the places. */
 typedef struct gather_sums {
-    square_sum sample, photons;
+    square_sum path, sample, photons;
     bias_sum bias;
     double off, beside;
     double lone, area;
@@ -67,8 +67,10 @@ typedef struct gather_sums {
 static void add_place(gather_sums *to, const gather_place *at, double weight, double n)
 {
     double w = weight / n, half = 0.5 * w;
+    double paths = at->path[0] - at->path[1];
     double samples = at->smooth[0] - at->smooth[1];
     double photons = at->near[0] - at->near[1];
+    square_add(&to->path, half * paths * paths);
     square_add(&to->sample, half * samples * samples);
     square_add(&to->photons, half * photons * photons);
     bias_add(&to->bias, w * (at->twice[0] - at->near[0]) * (at->twice[1] - at->near[1]));
@@ -92,17 +94,25 @@ static double unseen_photons(const gather_trial *t, double lone, double pixel_ar
     return lone > 0.0 ? arrive * lone / seen : 0.0;
 }
 
+/* Where noise stays most of it may be what both have in common, such as glints in few
+   pixels: it must be that of the same places then. Where it is taken out all paths that
+   were tried tell more. */
+static double path_variance(const transport_plan *plan, const gather_sums *sums)
+{
+    return plan_takes_noise_out(plan) ? plan->path_noise : square_total(&sums->path);
+}
+
 /* Where no path found the light that photons came from their noise tells nothing, but how
    far they are off the map does: its mean, since its square is at the mercy of one place.
    Fewer photons have as many times the variance. */
-static gather_errors errors_of(const gather_trial *t, double path_noise)
+static gather_errors errors_of(const gather_trial *t, const transport_plan *plan)
 {
     gather_sums sums = {0};
     double mean = mean_of(t);
     for (uint32_t i = 0; i < t->n && mean > 0.0; i++)
         add_place(&sums, &t->places[i], relative_weight(t->places[i].seen, mean), t->n);
     return (gather_errors){
-        .path = fmax(path_noise, sums.off * sums.off),
+        .path = fmax(path_variance(plan, &sums), sums.off * sums.off),
         .samples = square_total(&sums.sample),
         .photons = square_total(&sums.photons) * t->area / t->fewer +
                    unseen_photons(t, sums.lone, sums.area),
@@ -156,7 +166,7 @@ static double error_of_maps(const transport_plan *plan, const gather_errors *e,
 void gather_costs(const transport_plan *plan, const gather_trial *t, plan_cost *without,
                   plan_cost *with)
 {
-    const gather_errors e = errors_of(t, plan->path_noise);
+    const gather_errors e = errors_of(t, plan);
     double weight = plan_weight_alike(plan);
     double passes = settings_planned_passes(&plan->how), spp = (double)plan->how.spp;
     without->rays = t->path_rays + plan->photon_rays;
