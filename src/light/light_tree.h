@@ -34,8 +34,7 @@ void light_tree_free(light_tree *tree);
 int light_tree_sample(const light_tree *tree, vec3 ref, float u, float *probability);
 /** @brief The probability with which light_tree_sample picks light i at ref. */
 float light_tree_probability(const light_tree *tree, vec3 ref, int i);
-/** @brief Sum over the local lights that may hold a place of what is said of each, times
- *  the probability with which light_tree_sample picks it at ref.
- *  @param ask is told all lights with the place in their box, and some others */
+/** @brief Sum over the local lights whose box holds a place of what `ask` says of each,
+ *  times the probability with which light_tree_sample picks it at ref. */
 float light_tree_sum_at(const light_tree *tree, vec3 ref, vec3 place,
                         float (*ask)(const void *data, int light), const void *data);
