@@ -184,8 +184,9 @@ static void pack_piece(size_t begin, size_t end, unsigned thread, void *data)
     }
 }
 
-bool photon_store_pack(photon_store *store, const size_t *order, workers by,
-                       GError **error)
+/* In this order, too. */
+static bool pack_flux(photon_store *store, const size_t *order, workers by,
+                      GError **error)
 {
     packing job = {store->flux, NULL, order};
     job.to = big_alloc(points_padded(store->n), sizeof *job.to, "photons", error);
@@ -210,12 +211,13 @@ bool photon_store_follow(photon_store *store, const size_t *order, workers by,
         bool kept;
     } all[] = {
         {&store->wi, sizeof *store->wi, true},
-        {&store->flux, sizeof *store->flux, store->flux != NULL},
         {&store->number, sizeof *store->number, store->numbered},
         {&store->normal, sizeof *store->normal, store->oriented},
         {&store->tag, sizeof *store->tag, store->tagged},
         {&store->home, sizeof *store->home, store->homed},
     };
+    if (store->flux && !pack_flux(store, order, by, error))
+        return false;
     if (!order)
         return true;
     for (size_t i = 0; i < G_N_ELEMENTS(all); i++)

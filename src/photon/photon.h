@@ -116,14 +116,10 @@ static inline spectrum photon_store_flux(const photon_store *store, size_t i)
     return store->packed ? flux_unpack(store->packed + i) : store->flux[i];
 }
 
-/** @brief Puts flux in this order (as photon_store_follow, which then leaves it alone),
- * and keeps of it what packed_flux does. Nothing can be put into the store any more. */
-bool photon_store_pack(photon_store *store, const size_t *order, workers by,
-                       GError **error);
-
 /** @brief After positions were put in an order (point_index_build), what lies at them
- * follows: photon i is the one that was order[i]. NULL: they stayed as they were. One
- * array at a time, so the extra memory is that of flux. On failure the store may only be
+ * follows: photon i is the one that was order[i]. NULL: they stayed as they were. Of flux
+ * it keeps what packed_flux does, so nothing can be put into the store any more. One array
+ * at a time, so the extra memory is that of flux. On failure the store may only be
  * cleared. */
 bool photon_store_follow(photon_store *store, const size_t *order, workers by,
                          GError **error);

@@ -18,9 +18,7 @@ static bool index_store(photon_map *map, map_choice choice, float radius, worker
     store->x = points.x;
     store->y = points.y;
     store->z = points.z;
-    bool ok = map->index &&
-              (!store->flux || photon_store_pack(store, order, by, error)) &&
-              photon_store_follow(store, order, by, error);
+    bool ok = map->index && photon_store_follow(store, order, by, error);
     big_free(order);
     return ok;
 }

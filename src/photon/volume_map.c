@@ -46,8 +46,7 @@ static bool put_in_order(volume_map *map, const float *radii, workers by, GError
     store->z = points.z;
     for (size_t i = 0; i < store->n && ok; i++)
         map->radii[i] = radii[order[i]];
-    ok = ok && (!store->flux || photon_store_pack(store, order, by, error)) &&
-         photon_store_follow(store, order, by, error);
+    ok = ok && photon_store_follow(store, order, by, error);
     big_free(order);
     return ok;
 }

@@ -87,6 +87,9 @@ static void test_kinds_and_parameters(void)
            "%s:4:16: unknown parameter 'radious' of shape \"sphere\"");
     refuse(WORLD "Shape \"sphere\" \"texture alpha\" \"leaf\"\n",
            "%s:4:16: parameter 'alpha': there is no float texture 'leaf'");
+    refuse(WORLD "Shape \"blob\" \"float radius\" 2\n",
+           "%s:4:1: expected a shape of kind plymesh, trianglemesh, sphere, disk, "
+           "cylinder, bilinearmesh, loopsubdiv, curve, found 'blob'");
     refuse("Option \"seed\" many\n" WORLD,
            "%s:1:8: expected a value for option 'seed', found 'many'");
     refuse("Option \"seed\" [\n" WORLD, "%s:1:15: expected a value, found '['");

@@ -6,6 +6,7 @@
 
 #include "format/lenient.h"
 #include "format/ply/ply.h"
+#include "params/kinds.h"
 
 #include <string.h>
 
@@ -363,10 +364,19 @@ static bool pass_displacement(pbrt_parser *parser, const params *p, GError **err
     return true;
 }
 
+/** Kinds of shapes, that of files among them. */
+static const char *shape_name(size_t i)
+{
+    return i == 0 ? "plymesh" : shape_kind_name(i - 1);
+}
+
 static bool add_still_shape(pbrt_parser *parser, const arguments *a,
                             const shape_place *at, GError **error)
 {
-    bool is_ply = strcmp(a->kind, "plymesh") == 0;
+    int kind = kind_find(shape_name, "a shape", a->kind, a->p->place, error);
+    if (kind < 0)
+        return false;
+    bool is_ply = kind == 0;
     return is_ply ? pass_displacement(parser, a->p, error) &&
                         add_ply(parser, a->p, at, error)
                   : builder_add_shape(parser->builder, a->kind, a->p, at, error);

@@ -96,7 +96,9 @@ static double unseen_photons(const gather_trial *t, double lone, double pixel_ar
 
 /* Where noise stays most of it may be what both have in common, such as glints in few
    pixels: it must be that of the same places then. Where it is taken out all paths that
-   were tried tell more. */
+   were tried tell more: what is chosen costs 1.05 of the better of the two, by the same
+   places 1.09 (148 pictures of 16 scenes, 128 to 512 pixels square, 1 to 16 passes, four
+   seeds). */
 static double path_variance(const transport_plan *plan, const gather_sums *sums)
 {
     return plan_takes_noise_out(plan) ? plan->path_noise : square_total(&sums->path);
