@@ -6,6 +6,7 @@
 #define _GNU_SOURCE /* RTLD_NEXT */
 #include "ray_count.h"
 #include "rooms.h"
+#include "transport/plan/gather_costs.h"
 
 #define FLOOR                                                                            \
     "LightSource \"infinite\" Material \"diffuse\" Shape \"disk\" \"float radius\" 9\n"
@@ -167,6 +168,47 @@ static void test_shown(void)
     }
 }
 
+/* What the trial tells of paths, of places where they see what maps do and some noise,
+   when pairs elsewhere met so much more. */
+static double told_of_paths(const char *words, double elsewhere)
+{
+    enum { N = 64 };
+    static gather_place places[N];
+    for (int i = 0; i < N; i++)
+        places[i] = (gather_place){.path = {0.8, 1.2},
+                                   .smooth = {1.0, 1.1},
+                                   .near = {1.0, 1.1},
+                                   .twice = {1.0, 1.1},
+                                   .beside = 1.0,
+                                   .seen = 1.0};
+    const scene lit = {.radius = 1.0f, .settings = settings_default()};
+    const view from = {.film = {.width = 64, .height = 64}};
+    const transport_plan plan = {.scene = &lit,
+                                 .view = &from,
+                                 .how = settings_with(&lit, words),
+                                 .path_noise = elsewhere};
+    const gather_trial t = {.plan = plan,
+                            .area = 1.0,
+                            .fewer = 1.0,
+                            .n = N,
+                            .places = places,
+                            .path_rays = 1.0,
+                            .first_rays = 4.0};
+    plan_cost without, with;
+    gather_costs(&plan, &t, &without, &with);
+    return without.variance;
+}
+
+/* Glints in few pixels, which pairs of paths met and places did not, are in maps'
+   pictures too: where their noise stays they are no reason to gather. */
+static void test_met_elsewhere(void)
+{
+    const char *raw = "integrator=auto passes=16 denoise=off";
+    const char *shown = "integrator=auto passes=16 denoise=on";
+    g_assert_cmpfloat(told_of_paths(raw, 100.0), ==, told_of_paths(raw, 0.0));
+    g_assert_cmpfloat(told_of_paths(shown, 100.0), >, 2.0 * told_of_paths(shown, 0.0));
+}
+
 /* A wall of squares about as large as pixels. */
 #define SQUARES                                                                          \
     "Texture \"squares\" \"spectrum\" \"checkerboard\"\n"                                \
@@ -308,6 +350,7 @@ int main(int argc, char **argv)
     }
     g_test_add_func("/gather/told", test_told);
     g_test_add_func("/gather/shown", test_shown);
+    g_test_add_func("/gather/met-elsewhere", test_met_elsewhere);
     g_test_add_func("/gather/gaps", test_gaps);
     g_test_add_func("/gather/bulb", test_bulb);
     g_test_add_func("/gather/behind-glass", test_behind_glass);
