@@ -36,8 +36,8 @@ void accel_intersect_packet(const accel *a, const ray *rays, int n, surface_hit 
 /** @brief Fills in what a nearest hit of the ray is beyond its t, time, shape, instance,
  * primitive and corners. */
 void accel_fill_hit(const accel *a, const ray *r, surface_hit *hit);
-/** @brief True if anything but interfaces (shapes without a material) lies in (0,
- * r->t_max). Thread-safe. */
+/** @brief True if anything lies in (0, r->t_max) but what lets light through (shape).
+ * Thread-safe. */
 bool accel_occluded(const accel *a, const ray *r);
 /** @brief Where an instance is at a time of the shutter, 0..1. */
 transform accel_instance_at(const accel *a, int i, float time);

@@ -195,7 +195,7 @@ static void user_occluded(const struct RTCOccludedFunctionNArguments *args)
     const given_shape *given = args->geometryUserPtr;
     struct RTCRay *query = (struct RTCRay *)args->ray;
     float tuv[3];
-    if (args->valid[0] && given->shape->material != NO_INDEX &&
+    if (args->valid[0] && !given->shape->lets_through &&
         user_meets(given, args->primID, query, tuv))
         query->tfar = -INFINITY;
 }
@@ -228,7 +228,7 @@ static RTCGeometry triangle_geometry(RTCDevice device, const given_shape *given,
         rtcSetGeometryIntersectFilterFunction(g, filter_cut_out);
         rtcSetGeometryOccludedFilterFunction(g, filter_cut_out);
     }
-    if (s->material == NO_INDEX)
+    if (s->lets_through)
         rtcSetGeometryOccludedFilterFunction(g, let_through);
     return g;
 }

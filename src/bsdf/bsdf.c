@@ -131,6 +131,7 @@ bool bsdf_sample_direction(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigne
     out->wavelength =
         b->wavelength; /* a model sets the rest, these only if it changes them */
     out->eta = 1.0f;
+    out->straight = false;
     if (b->is_phase)
         return b->ops->sample(b, wo, u_lobe, u, lobes, mode, out);
     if (!to_local(b, wo, &o))
@@ -187,6 +188,14 @@ spectrum bsdf_albedo(const bsdf *b, vec3 wo, unsigned lobes)
     if (!to_local(b, wo, &o))
         return (spectrum){0};
     return b->ops->albedo(b, o.w, lobes);
+}
+
+spectrum bsdf_straight(const bsdf *b, vec3 wo)
+{
+    local_direction o;
+    if (b->is_phase || !b->ops->straight || !to_local(b, wo, &o))
+        return (spectrum){0};
+    return b->ops->straight(b, o.w);
 }
 
 spectrum bsdf_delta_eval(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,

@@ -13,6 +13,9 @@
  *   DIFFUSE   wide: photons are stored here and the radiance estimate is made with it
  * A material may have several: plastic is a specular or glossy coat over a diffuse base.
  *
+ * Light that goes straight through a thin pane, unbent, has not been scattered: whoever
+ * looks for light looks through, and paths go on as if the pane had not been there.
+ *
  * Non-symmetry (Veach 1997, chapter 5): refraction scales radiance but not flux by
  * (η_o/η_i)², and with a shading normal photons are weighed by |wo·n||wi·n_geom| /
  * (|wo·n_geom||wi·n|). Both are in here, so callers multiply by `weight` and think no
@@ -71,6 +74,7 @@ typedef struct bsdf_sample {
         lobe; /**< the class and side that was sampled, e.g. SPECULAR | TRANSMISSION */
     int wavelength; /**< the wavelength kept from here on, or ALL_WAVELENGTHS */
     float eta;      /**< η of the far side over this side if transmitted, else 1 */
+    bool straight;  /**< through a thin pane: wi is -wo */
 } bsdf_sample;
 
 /** @brief f(wo, wi), sr⁻¹, of the lobes chosen by mask (classes and sides; specular ones
@@ -89,6 +93,10 @@ float bsdf_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes, transport_mode m
  *  @param u_lobe,u uniform in [0,1); @return false: absorbed or nothing in mask. */
 bool bsdf_sample_direction(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned lobes,
                            transport_mode mode, bsdf_sample *out);
+
+/** @brief Share of light that goes straight through, to -wo, unbent; 0 but of thin panes,
+ * of which it is what sampling that direction would weigh times its probability. */
+spectrum bsdf_straight(const bsdf *b, vec3 wo);
 
 /** @brief True if light may go by a DIFFUSE and by a GLOSSY lobe from one direction to
  * another. */
@@ -141,4 +149,5 @@ typedef struct bsdf_ops {
     bool (*sample)(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned lobes,
                    transport_mode mode, bsdf_sample *out);
     spectrum (*albedo)(const bsdf *b, vec3 wo, unsigned lobes);
+    spectrum (*straight)(const bsdf *b, vec3 wo); /**< NULL: nothing goes */
 } bsdf_ops;

@@ -366,6 +366,13 @@ static float gltf_pdf(const bsdf *b, vec3 wo, vec3 wi, unsigned lobes,
     return layers_pdf(d, &c, o, turned(d, wi, flip, 1.0f));
 }
 
+/* What a smooth pane lets through. */
+static spectrum pane_share(const gltf_surface *s, const facing *f, float mu)
+{
+    float passed = 1.0f - schlick(s->plain_f0, s->plain_f90, mu);
+    return s->through * (passed * square(f->coat));
+}
+
 /* A smooth layer's one direction. */
 static void follow_smooth(const gltf_surface *s, int layer, const facing *f, vec3 o,
                           bsdf_sample *out)
@@ -378,8 +385,8 @@ static void follow_smooth(const gltf_surface *s, int layer, const facing *f, vec
     else if (layer == LAYER_FACETS)
         out->weight = facets_fresnel(s, mu) * under;
     else
-        out->weight =
-            s->through * ((1.0f - schlick(s->plain_f0, s->plain_f90, mu)) * under);
+        out->weight = pane_share(s, f, mu);
+    out->straight = through;
     out->weight /= out->pdf;
 }
 
@@ -446,6 +453,14 @@ static spectrum gltf_albedo(const bsdf *b, vec3 wo, unsigned lobes)
     return sum;
 }
 
+static spectrum gltf_straight(const bsdf *b, vec3 wo)
+{
+    const gltf_data *d = data_of(b);
+    float mu = fabsf(wo[2]);
+    facing f = facing_of(d, mu);
+    return d->facets.i == SMOOTH_ROW ? pane_share(&d->s, &f, mu) : (spectrum){0};
+}
+
 void bsdf_make_gltf(bsdf *b, const gltf_surface *surface)
 {
     static const bsdf_ops ops = {
@@ -454,6 +469,7 @@ void bsdf_make_gltf(bsdf *b, const gltf_surface *surface)
         .pdf = gltf_pdf,
         .sample = gltf_sample,
         .albedo = gltf_albedo,
+        .straight = gltf_straight,
     };
     gltf_data *d = (void *)b->data;
     *d = (gltf_data){.s = *surface,

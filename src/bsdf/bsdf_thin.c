@@ -34,6 +34,7 @@ static bool plate_sample(const bsdf *b, vec3 wo, float u_lobe, vec2 u, unsigned 
     out->pdf = mirror ? p : 1.0f - p;
     out->weight = (mirror ? r : 1.0f - r) / out->pdf;
     out->lobe = LOBE_SPECULAR | (mirror ? LOBE_REFLECTION : LOBE_TRANSMISSION);
+    out->straight = !mirror;
     return true;
 }
 
@@ -47,6 +48,11 @@ static spectrum plate_albedo(const bsdf *b, vec3 wo, unsigned lobes)
     return sum;
 }
 
+static spectrum plate_straight(const bsdf *b, vec3 wo)
+{
+    return 1.0f - plate_reflectance(b, wo);
+}
+
 void bsdf_make_thin_dielectric(bsdf *b, spectrum eta)
 {
     static const bsdf_ops ops = {
@@ -55,6 +61,7 @@ void bsdf_make_thin_dielectric(bsdf *b, spectrum eta)
         .pdf = bsdf_delta_pdf,
         .sample = plate_sample,
         .albedo = plate_albedo,
+        .straight = plate_straight,
     };
     *(plate *)(void *)b->data = (plate){eta};
     b->ops = &ops;

@@ -82,6 +82,11 @@ bool material_encloses(const material *m)
     return m->kind->encloses && m->kind->encloses(m->self);
 }
 
+bool material_is_pane(const material *m)
+{
+    return m->kind->is_pane && m->kind->is_pane(m->self);
+}
+
 unsigned material_possible_lobes(const material *m)
 {
     return m->kind->possible_lobes(m->self);

@@ -34,6 +34,9 @@ typedef struct material_kind {
     const struct medium *(*interior)(const void *self);
     /** True if its surfaces bound a body that refracts. May be NULL: they do not. */
     bool (*encloses)(const void *self);
+    /** True if light may go straight through at some place (bsdf_straight). May be NULL:
+     * nowhere. */
+    bool (*is_pane)(const void *self);
 } material_kind;
 
 typedef struct material {
@@ -59,6 +62,8 @@ void material_bsdf(const material *m, const surface_hit *hit, const wavelengths 
 
 /** @brief True if its surfaces bound a body that refracts. */
 bool material_encloses(const material *m);
+/** @brief True if light may go straight through it somewhere (bsdf_straight). */
+bool material_is_pane(const material *m);
 /** @brief Lobe classes and sides that may occur anywhere on it. */
 unsigned material_possible_lobes(const material *m);
 /** @brief What fills a solid made of it; NULL: none. */

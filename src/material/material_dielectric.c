@@ -101,6 +101,12 @@ static unsigned pane_lobes(const void *self)
     return LOBE_SPECULAR | LOBE_ANY_SIDE;
 }
 
+static bool is_pane(const void *self)
+{
+    (void)self;
+    return true;
+}
+
 const material_kind material_dielectric = {
     .name = "dielectric",
     .parameters =
@@ -120,4 +126,5 @@ const material_kind material_thin_dielectric = {
     .free = glass_free,
     .make_bsdf = pane_bsdf,
     .possible_lobes = pane_lobes,
+    .is_pane = is_pane,
 };

@@ -311,6 +311,13 @@ static bool gltf_encloses(const void *self)
     return !m->thin && may_be_above_0(&m->transmission);
 }
 
+static bool gltf_is_pane(const void *self)
+{
+    const gltf_material *m = self;
+    return m->thin && may_be_above_0(&m->transmission) &&
+           (glass_classes(&m->roughness) & LOBE_SPECULAR);
+}
+
 const material_kind material_gltf = {
     .name = "gltf",
     .parameters = "basecolor metallic roughness eta specular specularcolor clearcoat "
@@ -324,4 +331,5 @@ const material_kind material_gltf = {
     .is_metal = gltf_is_metal,
     .interior = gltf_interior,
     .encloses = gltf_encloses,
+    .is_pane = gltf_is_pane,
 };

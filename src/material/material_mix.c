@@ -17,6 +17,7 @@ typedef struct mixture {
     float_input amount;
     unsigned depth; /* 1: of no mixes */
     unsigned lobes;
+    bool is_pane; /* a part is */
 } mixture;
 
 static const material *find_part(const build_context *context, const param *q,
@@ -63,6 +64,7 @@ static bool measure(mixture *m, const params *p, GError **error)
         const mixture *inner = part->kind == &material_mix ? part->self : NULL;
         m->depth = MAX(m->depth, inner ? inner->depth + 1 : 1);
         m->lobes |= part->kind->possible_lobes(part->self);
+        m->is_pane |= material_is_pane(part);
     }
     if (m->depth <= DEEPEST)
         return true;
@@ -108,6 +110,11 @@ static unsigned mixture_lobes(const void *self)
     return ((const mixture *)self)->lobes;
 }
 
+static bool mixture_is_pane(const void *self)
+{
+    return ((const mixture *)self)->is_pane;
+}
+
 const material_kind material_mix = {
     .name = "mix",
     .parameters = "materials amount",
@@ -115,4 +122,5 @@ const material_kind material_mix = {
     .free = g_free,
     .make_bsdf = mixture_bsdf,
     .possible_lobes = mixture_lobes,
+    .is_pane = mixture_is_pane,
 };

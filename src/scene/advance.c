@@ -35,6 +35,32 @@ static void weaken_in_solid(const scene_traveller *who, path_segment *path, floa
         path->throughput *= scene_solid_transmittance(who->scene, in, way, who->w);
 }
 
+static bool lets_through(const scene *s, const surface_hit *hit)
+{
+    const shape *on = s->shapes->pdata[hit->shape];
+    return on->lets_through;
+}
+
+/* Share of light that a surface which may let it through leaves of what goes to wo. */
+static spectrum straight_share(const scene *s, const surface_hit *hit, vec3 wo,
+                               const wavelengths *w, const bsdf_options *options)
+{
+    bsdf b;
+    bool is_interface = !scene_bsdf(s, hit, w, ALL_WAVELENGTHS, options, &b);
+    return is_interface ? spectrum_fill(1.0f) : bsdf_straight(&b, wo);
+}
+
+/* Straight through a pane. */
+static bool goes_through(const scene_traveller *who, path_segment *path,
+                         const surface_hit *hit)
+{
+    if (!who->through_panes || !lets_through(who->scene, hit))
+        return false;
+    path->throughput *=
+        straight_share(who->scene, hit, -path->ray.direction, who->w, who->through_panes);
+    return true;
+}
+
 scene_event scene_advance(const scene_traveller *who, path_segment *path,
                           surface_hit *hit)
 {
@@ -55,7 +81,7 @@ scene_event scene_advance(const scene_traveller *who, path_segment *path,
         weaken_in_solid(who, path, hit->t);
         if (hit->light != NO_INDEX && who->meet_light)
             who->meet_light(who->path, hit);
-        if (hit->material != NO_INDEX)
+        if (hit->material != NO_INDEX && !goes_through(who, path, hit))
             return EVENT_SURFACE;
         go_behind(&path->ray, hit);
     }
@@ -137,15 +163,52 @@ spectrum scene_transmittance(const scene *s, const ray *r, const wavelengths *w)
            scene_solid_transmittance(s, &r->media, r->t_max, w);
 }
 
-spectrum scene_transmittance_to(const scene *s, const surface_hit *from, vec3 direction,
-                                float distance, const wavelengths *w)
+/* Share of light that panes leave. Cut-outs that the whole ray passed stay passed. */
+static spectrum through_panes(const scene_look *look, ray r)
 {
-    bool is_clear = !scene_has_media(s) && !from->media.solid[0] && !from->solid;
-    if (is_clear)
-        return spectrum_fill(1.0f);
+    const scene *s = look->scene;
+    spectrum out = spectrum_fill(1.0f);
+    surface_hit hit;
+    int64_t n = 0;
+    for (int i = 0; i < MOST_CROSSINGS && !spectrum_is_black(out); i++) {
+        if (!scene_intersect(s, &r, &hit))
+            return out;
+        bool is_pane = hit.material != NO_INDEX && lets_through(s, &hit);
+        if (is_pane && look->most_panes >= 0 && n++ >= look->most_panes)
+            break;
+        if (is_pane)
+            out *= straight_share(s, &hit, -r.direction, look->w, look->options);
+        go_behind(&r, &hit);
+    }
+    return (spectrum){0};
+}
+
+/* @param distance m, all of it: the ray ends short of what it looks for */
+static bool sees(const scene_look *look, const ray *r, float distance, spectrum *share)
+{
+    const scene *s = look->scene;
+    *share = spectrum_fill(1.0f);
+    if (scene_occluded(s, r))
+        return false;
+    if (s->has_panes)
+        *share = through_panes(look, *r);
+    if (scene_has_media(s))
+        *share *= participating_transmittance(s, *r, look->w);
+    if (r->media.solid[0])
+        *share *= scene_solid_transmittance(s, &r->media, distance, look->w);
+    return !spectrum_is_black(*share);
+}
+
+bool scene_sees(const scene_look *look, const ray *r, spectrum *share)
+{
+    return sees(look, r, r->t_max, share);
+}
+
+bool scene_sees_from(const scene_look *look, const surface_hit *from, vec3 direction,
+                     float distance, spectrum *share)
+{
     const ray r = hit_ray_to(from, direction, distance);
-    return participating_transmittance(s, r, w) *
-           scene_solid_transmittance(s, &r.media, distance, w);
+    return sees(look, &r, distance, share);
 }
 
 /* Where a line leaves the sphere at which media end; < 0: it does not meet it, or before
@@ -184,8 +247,10 @@ static spectrum come_in(const scene *s, float begins, const wavelengths *w, ray 
     r->media.participating = medium_beyond(s, r);
     ray back = *r;
     back.direction = -r->direction;
-    return scene_occluded(s, &back) ? spectrum_fill(0.0f)
-                                    : scene_transmittance(s, &back, w);
+    static const bsdf_options options = {0};
+    const scene_look look = {s, w, &options, -1};
+    spectrum share;
+    return scene_sees(&look, &back, &share) ? share : spectrum_fill(0.0f);
 }
 
 spectrum scene_leave_light(const scene *s, int i, vec3 n, const wavelengths *w, ray *r)

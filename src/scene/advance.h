@@ -1,6 +1,7 @@
 /*
  * The one step that every path takes, of photons and from the eye: from where it is to
- * its next event, through interfaces, nested media and cut-outs.
+ * its next event, through interfaces, nested media and cut-outs. And whether one point
+ * sees another, through these and thin panes.
  *
  *        ray                 interface          ray goes on          surface
  *   ─────────────► · · · · ►│· · · · · · · · · · · · · · · · · · · ►█ EVENT_SURFACE
@@ -70,6 +71,9 @@ typedef struct scene_traveller {
                                 surface_hit *at);
     /** It came to a surface that shines. */
     void (*meet_light)(void *path, const surface_hit *hit);
+    /** It looks for lights: straight through panes, weakened. How their bsdfs are made;
+     * NULL: it stops there. */
+    const bsdf_options *through_panes;
 } scene_traveller;
 
 /** @brief Takes a path to its next event.
@@ -103,11 +107,22 @@ enum { MOST_CROSSINGS = 10000 };
  *  @param length m: to the surface that the ray meets; INFINITY: it meets none */
 float scene_medium_end(const scene *s, const ray *r, float length);
 
-/** @brief Share of light that media leave on a ray on which no surface scatters
- * (scene_occluded): it goes through interfaces. */
+/** @brief Share of light that media leave on a ray, whatever surfaces stand on it. */
 spectrum scene_transmittance(const scene *s, const ray *r, const wavelengths *w);
 
-/** @brief The same from a hit to a point that it sees (hit_ray_to). @param distance m;
- * INFINITY: beyond the scene */
-spectrum scene_transmittance_to(const scene *s, const surface_hit *from, vec3 direction,
-                                float distance, const wavelengths *w);
+/** @brief How something is looked for. */
+typedef struct scene_look {
+    const scene *scene;
+    const wavelengths *w;
+    const bsdf_options *options; /**< for panes */
+    int64_t most_panes;          /**< to look through; negative: any number */
+} scene_look;
+
+/** @brief Share of light that comes along a ray: media and thin panes weaken it, all
+ * other surfaces but interfaces stop it. @return false: none comes */
+bool scene_sees(const scene_look *look, const ray *r, spectrum *share);
+
+/** @brief The same from a hit (hit_ray_to). @param distance m; INFINITY: beyond the scene
+ */
+bool scene_sees_from(const scene_look *look, const surface_hit *from, vec3 direction,
+                     float distance, spectrum *share);

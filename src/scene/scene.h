@@ -62,6 +62,7 @@ typedef struct scene {
     bool is_animated;      /**< it may look otherwise at another time */
     bool moves;            /**< some instance does while the shutter is open */
     bool camera_facing;    /**< some shape may (surface_hit.camera_facing) */
+    bool has_panes;        /**< light may go straight through some shape's material */
 } scene;
 
 /** @brief Those of a pass. */
@@ -109,7 +110,7 @@ static inline bool scene_intersect_solid(const scene *s, const ray *r, surface_h
     return true;
 }
 
-/** @brief True if something stands on the ray. */
+/** @brief True if something stands on the ray that lets no light through (scene_sees). */
 static inline bool scene_occluded(const scene *s, const ray *r)
 {
     return accel_occluded(s->accel, r);

@@ -188,6 +188,20 @@ double scene_area_change(const scene *s, const surface_hit *hit, float time)
 
 /* ---- The acceleration structure ---- */
 
+/* Which shapes do not stop rays that look for light. */
+static void find_panes(scene *s)
+{
+    s->has_panes = false;
+    for (guint i = 0; i < s->shapes->len; i++) {
+        shape *on = s->shapes->pdata[i];
+        bool is_interface = on->material == NO_INDEX;
+        bool is_pane =
+            !is_interface && material_is_pane(s->materials->pdata[on->material]);
+        on->lets_through = is_interface || is_pane;
+        s->has_panes |= is_pane;
+    }
+}
+
 bool scene_build_accel(scene *s, unsigned threads, GError **error)
 {
     const accel_input in = {
@@ -198,6 +212,7 @@ bool scene_build_accel(scene *s, unsigned threads, GError **error)
         .n_objects = s->n_objects,
         .shutter = {(double)s->shutter[0], (double)s->shutter[1]},
     };
+    find_panes(s);
     s->accel = accel_build(&in, threads, error);
     s->moves = s->camera_facing = false;
     for (guint i = 0; i < s->shapes->len; i++)

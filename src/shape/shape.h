@@ -97,6 +97,8 @@ struct shape {
     medium_interface media; /**< around it when it was added */
     bool parts_media;       /**< they differ */
     bool is_invisible; /**< alpha is 0 everywhere: no ray meets it, but it may shine */
+    bool lets_through; /**< it has no material, or light may go straight through that one
+                          (bsdf_straight): rays that look for light are not stopped */
     bool has_alpha;
     float_input alpha;
     int object; /**< index in scene->objects it is a part of, or NO_INDEX: the world */

@@ -1,15 +1,15 @@
 #include "transport/direct.h"
 
 /* What arrives of the light. @return false: something stands before it */
-static bool visible(const direct_query *query, const light_sample *to_light,
+static bool visible(const direct_query *query, vec3 wi, float distance,
                     spectrum *transmittance, uint64_t *shadow_rays_traced)
 {
-    const ray shadow = hit_ray_to(query->hit, to_light->wi, to_light->distance);
+    const scene_look look = {query->scene, query->w, query->options, query->most_panes};
     *shadow_rays_traced += query->shadow_rays;
-    if (query->shadow_rays && scene_occluded(query->scene, &shadow))
-        return false;
-    *transmittance = scene_transmittance_to(query->scene, query->hit, to_light->wi,
-                                            to_light->distance, query->w);
+    if (query->shadow_rays)
+        return scene_sees_from(&look, query->hit, wi, distance, transmittance);
+    const ray r = hit_ray_to(query->hit, wi, distance);
+    *transmittance = scene_transmittance(query->scene, &r, query->w);
     return true;
 }
 
@@ -91,7 +91,8 @@ static bool radiance_of(const direct_query *query, const light_sample *to_light,
     if (spectrum_is_black(diffuse + glossy))
         return false;
     spectrum transmittance;
-    if (!visible(query, to_light, &transmittance, shadow_rays_traced))
+    if (!visible(query, to_light->wi, to_light->distance, &transmittance,
+                 shadow_rays_traced))
         return false;
     float cosine = bsdf_cosine(query->bsdf, to_light->wi);
     spectrum arriving = to_light->radiance * (cosine / to_light->pdf) * transmittance;
@@ -232,11 +233,11 @@ void direct_environments(const direct_query *query, sampler *random,
     if (!bsdf_sample_direction(query->bsdf, query->wo, u_lobe, u,
                                query->looked | LOBE_ANY_SIDE, TRANSPORT_RADIANCE, &drawn))
         return;
-    const ray away = hit_ray_to(query->hit, drawn.wi, INFINITY);
-    ++*shadow_rays_traced;
-    if (scene_occluded(s, &away))
-        return;
     environment_look look = {query, &drawn, drawn.weight, tell, path};
-    look.arriving *= scene_transmittance_to(s, query->hit, drawn.wi, INFINITY, query->w);
+    spectrum transmittance;
+    if (!visible(query, drawn.wi, INFINITY, &transmittance, shadow_rays_traced))
+        return;
+    const ray away = hit_ray_to(query->hit, drawn.wi, INFINITY);
+    look.arriving *= transmittance;
     direct_meet(s, query->w, &away, NULL, weigh_environment, &look);
 }

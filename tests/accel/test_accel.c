@@ -25,6 +25,7 @@ static void scenery_make(scenery *s)
 {
     for (size_t i = 0; i < N_SHAPES; i++) {
         s->shapes[i] = shape_number(i);
+        s->shapes[i]->lets_through = s->shapes[i]->material == NO_INDEX;
         s->alone[i] = accel_of(&s->shapes[i], 1);
     }
     s->all = accel_of(s->shapes, N_SHAPES);

@@ -191,7 +191,7 @@ static void test_aimed_emission_has_the_same_flux(void)
             g_strconcat(CAMERA "WorldBegin\n", walls, CASTERS, lights[i], NULL);
         g_autoptr(view) v = view_of(text);
         how.caustic_emission = EMISSION_UNIFORM;
-        flux_mean plain = stored_flux(v->scene, &how, PHOTON_CAUSTIC, 1 << 18);
+        flux_mean plain = stored_flux(v->scene, &how, PHOTON_CAUSTIC, 1 << 19);
         how.caustic_emission = EMISSION_SPECULAR_AREA;
         flux_mean aimed = stored_flux(v->scene, &how, PHOTON_CAUSTIC, 1 << 16);
         double error = sqrt(plain.error * plain.error + aimed.error * aimed.error);

@@ -27,7 +27,7 @@ typedef struct photon_path {
     uint32_t primitive;  /* of the light */
     bool from_delta;     /* the light cannot be hit by a ray */
     bool specular_only;  /* no lobe but SPECULAR so far */
-    unsigned n_followed; /* specular or glossy bounces */
+    unsigned n_followed; /* specular or glossy bounces; straight through panes is none */
     unsigned n_diffuse;
     unsigned n_after;    /* followed bounces since the last diffuse one */
     unsigned n_in_media; /* scatterings in media */
@@ -74,7 +74,8 @@ bool photon_path_start(photon_path *path);
 void photon_path_land(photon_path *path, const surface_hit *hit, const bsdf *b);
 
 /** @brief The lobes that a photon of this class may take on its way: a caustic one has
- * only met specular and glossy ones, or goes on after it has landed; a direct one none.
+ * only met specular and glossy ones, or goes on after it has landed; a direct one goes
+ * straight through panes.
  */
 unsigned photon_path_lobes(const photon_path *path);
 

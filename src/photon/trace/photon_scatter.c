@@ -4,8 +4,8 @@ unsigned photon_path_lobes(const photon_path *path)
 {
     const settings *how = path->task->how;
     switch (path->task->photon_class) {
-    case PHOTON_DIRECT:
-        return 0;
+    case PHOTON_DIRECT: /* straight through panes */
+        return LOBE_SPECULAR | LOBE_TRANSMISSION;
     case PHOTON_CAUSTIC:
         return photon_path_goes_on(path) && path->n_after > 0
                    ? LOBE_ALL
@@ -53,10 +53,29 @@ bool photon_path_survives_landing(photon_path *path, const surface_hit *hit,
     return false;
 }
 
+static void count(photon_path *path, unsigned lobe)
+{
+    const unsigned gathered = photon_gathered_lobes(path->task->how);
+    bool diffuse = (lobe & gathered & ~(unsigned)LOBE_ANY_SIDE) != 0;
+    path->specular_only &= (lobe & LOBE_SPECULAR) != 0;
+    path->n_diffuse += diffuse;
+    path->n_followed += !diffuse;
+    path->n_after = diffuse ? 0 : path->n_after + 1;
+}
+
+/* True if no lobe takes the photon on; a direct one none but through panes. */
+static bool ends(const photon_path *path, const bsdf *b, unsigned lobes)
+{
+    if (!(b->lobes & lobes & ~(unsigned)LOBE_ANY_SIDE))
+        return true;
+    return path->task->photon_class == PHOTON_DIRECT &&
+           spectrum_is_black(bsdf_straight(b, -path->at.ray.direction));
+}
+
 bool photon_path_scatter(photon_path *path, const surface_hit *hit, const bsdf *b)
 {
     unsigned lobes = photon_path_lobes(path);
-    if (!(b->lobes & lobes & ~(unsigned)LOBE_ANY_SIDE)) {
+    if (ends(path, b, lobes)) {
         photon_path_tell(path, PHOTON_ENDED, hit, 0);
         return false;
     }
@@ -75,7 +94,7 @@ bool photon_path_scatter(photon_path *path, const surface_hit *hit, const bsdf *
     if (path->task->how->photon_survivors)
         survival = 1.0f; /* it had its roulette where it landed */
     survival = minf(most_survival(path->n_followed + path->n_diffuse), survival);
-    if (scattered) {
+    if (scattered && !next.straight) {
         float weight = mis_weight_at(path, hit, b, &next);
         path->mis_weight *= weight;
         flux *= weight;
@@ -87,12 +106,8 @@ bool photon_path_scatter(photon_path *path, const surface_hit *hit, const bsdf *
     }
     path->at.wavelength = next.wavelength;
     path->at.ray = hit_ray(hit, next.wi);
-    path->specular_only &= (next.lobe & LOBE_SPECULAR) != 0;
-    const unsigned gathered = photon_gathered_lobes(path->task->how);
-    bool diffuse = (next.lobe & gathered & ~(unsigned)LOBE_ANY_SIDE) != 0;
-    path->n_diffuse += diffuse;
-    path->n_followed += !diffuse;
-    path->n_after = diffuse ? 0 : path->n_after + 1;
+    if (!next.straight)
+        count(path, next.lobe);
     photon_path_tell(path, PHOTON_SCATTERED, hit, next.lobe);
     return true;
 }

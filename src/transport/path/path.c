@@ -60,6 +60,33 @@ static void note_density(const path_walk *walk, camera_path *path, const surface
         bsdf_pdf(all, -path->at.ray.direction, next->wi, LOBE_ALL, TRANSPORT_RADIANCE);
 }
 
+static void leave(path_walk *walk, camera_path *path, const surface_hit *hit,
+                  const bsdf *b, const bsdf_sample *next, float probability)
+{
+    note_density(walk, path, hit, b, next);
+    path->looked = path_looks(walk, path, b);
+    path_segment_leave(&path->at, hit, next, probability);
+    path->eta2 *= next->eta * next->eta;
+    path->pdf = (next->lobe & LOBE_SPECULAR) ? 0.0f : next->pdf;
+    path->from = hit->p;
+    path->lights_met = false;
+    path->every_light = path_samples_every_light(path);
+    path->by_either = path->looked > 0.0f && bsdf_has_both(b);
+    camera_path_count(path, next->lobe);
+}
+
+/* Through a pane, as light that is sampled comes: it comes from where it scattered last.
+   Spots are not looked at through panes. */
+static void leave_straight(camera_path *path, const surface_hit *hit,
+                           const bsdf_sample *next, float probability)
+{
+    path_segment_leave(&path->at, hit, next, probability);
+    path->lights_met = false;
+    path->looked = 0.0f;
+    path->bounces++;
+    path->n_before += path->n_diffuse == 0;
+}
+
 /* By lobes that are followed with some probability. */
 static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
                    const bsdf *b, unsigned lobes, float probability)
@@ -73,16 +100,10 @@ static bool bounce(path_walk *walk, camera_path *path, const surface_hit *hit,
     if (bsdf_has_both(b))
         bsdf_settle_class(b, -path->at.ray.direction, TRANSPORT_RADIANCE,
                           sampler_1d(walk->random), &next);
-    note_density(walk, path, hit, b, &next);
-    path->looked = path_looks(walk, path, b);
-    path_segment_leave(&path->at, hit, &next, probability);
-    path->eta2 *= next.eta * next.eta;
-    path->pdf = (next.lobe & LOBE_SPECULAR) ? 0.0f : next.pdf;
-    path->from = hit->p;
-    path->lights_met = false;
-    path->every_light = path_samples_every_light(path);
-    path->by_either = path->looked > 0.0f && bsdf_has_both(b);
-    camera_path_count(path, next.lobe);
+    if (next.straight)
+        leave_straight(path, hit, &next, probability);
+    else
+        leave(walk, path, hit, b, &next, probability);
     if (path->bounces < ROULETTE_BOUNCES)
         return !spectrum_is_black(path->at.throughput);
     float p = minf(most_survival(path->bounces),

@@ -75,6 +75,14 @@ bool path_is_cut(const path_walk *walk, const camera_path *path, unsigned more)
     return limit >= 0 && path->bounces + more > limit;
 }
 
+/* Panes that light may come through to a surface which has been come to; negative: any.
+ */
+static int64_t panes_left(const path_walk *walk, const camera_path *path)
+{
+    int64_t limit = walk->how->max_backward_bounces;
+    return limit < 0 ? limit : MAX(limit - (int64_t)path->bounces - 1, 0);
+}
+
 void path_add_from(path_walk *walk, const camera_path *path, spectrum radiance,
                    int source)
 {
@@ -135,6 +143,8 @@ void path_sample_lights(path_walk *walk, const camera_path *path, const surface_
         .wo = -path->at.ray.direction,
         .every_light = path_samples_every_light(path),
         .shadow_rays = walk->how->shadow_rays,
+        .options = &walk->pass->options,
+        .most_panes = panes_left(walk, path),
         .followed = LOBE_ALL,
         .mis = share ? &walk->pass->caustics->mis : NULL,
         .all_wavelengths = share ? path_all_wavelengths(walk, path, hit, b, &room) : NULL,

@@ -101,9 +101,12 @@ static landing land_in_medium(const trials *all, const surface_hit *hit)
         !(eye.raster.y >= 0.0f && eye.raster.y < (float)film->height))
         return (landing){0};
     ray r = hit_ray_to(hit, eye.direction, eye.distance);
-    if (scene_occluded(task->scene, &r))
+    static const bsdf_options options = {0};
+    const scene_look look = {task->scene, &task->w, &options, -1};
+    spectrum share;
+    if (!scene_sees(&look, &r, &share))
         return (landing){0};
-    float transmittance = spectrum_mean(scene_transmittance(task->scene, &r, &task->w));
+    float transmittance = spectrum_mean(share);
     float pixels = (float)all->pixels_each;
     if (transmittance < DEFENSIVE_SHARE)
         return (landing){0};

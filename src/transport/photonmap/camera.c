@@ -28,7 +28,7 @@ typedef struct camera_branch {
                    roulette */
     float glossy_pdf; /* pdf_solid_angle of a glossy direction; 0: specular or from the
                          camera */
-    vec3 from;        /* the point the ray left */
+    vec3 from;        /* the point the ray left; what it went straight through apart */
     bool guided;      /* it has met what the denoiser is guided by */
 } camera_branch;
 
@@ -136,6 +136,8 @@ static void shade_direct(camera_tree *tree, camera_branch *branch, const surface
         .wo = -branch->at.ray.direction,
         .every_light = true,
         .shadow_rays = pass->how->shadow_rays,
+        .options = &pass->options,
+        .most_panes = pass->how->max_forward_bounces,
         .followed = pass->followed,
         .looked = LOBE_DIFFUSE & ~pass->followed,
         .by_side = true,
@@ -247,8 +249,10 @@ static bool bounce(camera_tree *tree, camera_branch *branch, const surface_hit *
         return false;
     path_segment_leave(&branch->at, hit, &next, probability);
     branch->eta2 *= next.eta * next.eta;
-    branch->glossy_pdf = (next.lobe & LOBE_GLOSSY) ? next.pdf * probability : 0.0f;
-    branch->from = hit->p;
+    if (!next.straight) {
+        branch->glossy_pdf = (next.lobe & LOBE_GLOSSY) ? next.pdf * probability : 0.0f;
+        branch->from = hit->p;
+    }
     branch->n_followed++;
     return !spectrum_is_black(branch->at.throughput);
 }

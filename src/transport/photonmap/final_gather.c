@@ -292,6 +292,8 @@ static spectrum outgoing(const photonmap_pass *pass, const shading_point *at,
             .bsdf = at->bsdf,
             .wo = at->wo,
             .shadow_rays = pass->how->shadow_rays,
+            .options = &pass->options,
+            .most_panes = pass->how->max_forward_bounces,
         };
         direct_radiance found[FEW_LIGHTS];
         if (direct_light(&query, random, found, &scratch->shadow_rays) > 0) {

@@ -24,9 +24,9 @@ static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
         vec3 p = vec3_make(s->x[i], s->y[i], s->z[i]);
         float typical = (float)loop->typical;
         loop->radii[i] =
-            loop->shrunk * (loop->of_pass_0
-                                ? radius_cache_at(loop->of_pass_0, p, typical, NULL, &hits)
-                                : typical);
+            loop->shrunk *
+            (loop->of_pass_0 ? radius_cache_at(loop->of_pass_0, p, typical, NULL, &hits)
+                             : typical);
     }
     if (hits.refused)
         atomic_store(&loop->refused, true);
@@ -87,6 +87,8 @@ static void sample_lights(const medium_look *look, const surface_hit *at, const 
         .wo = -look->ray->direction,
         .every_light = look->every_light,
         .shadow_rays = pass->how->shadow_rays,
+        .options = &pass->options,
+        .most_panes = pass->how->max_forward_bounces,
         .followed = LOBE_ALL,
     };
     direct_radiance found[FEW_LIGHTS];
@@ -131,7 +133,8 @@ static void meet_lights(const medium_look *look, const surface_hit *at,
                                  .w = &sum->pass->w,
                                  .n_rays = &scratch->shadow_rays,
                                  .path = &path,
-                                 .meet_light = meet_surface};
+                                 .meet_light = meet_surface,
+                                 .through_panes = &sum->pass->options};
     surface_hit hit;
     if (scene_advance(&who, &path.at, &hit) == EVENT_ESCAPE)
         meet_surface(&path, NULL);

@@ -59,8 +59,9 @@ typedef struct vcm_strategies {
 
 /** @brief What scattered on a subpath, in the order from the eye. */
 typedef struct scattering_counts {
-    unsigned n : 16,
-        n_diffuse : 15;     /**< roulette ends paths long before these are full */
+    unsigned n : 12,
+        n_diffuse : 12,     /**< roulette ends paths long before these are full */
+        n_panes : 7;        /**< gone straight through, besides */
     bool first_diffuse : 1; /**< of a camera subpath: the first was a diffuse lobe */
 } scattering_counts;
 
@@ -200,9 +201,10 @@ typedef struct vcm_walk {
     path_segment at;
     vec3 from;  /**< where it scattered last, or started */
     float eta2; /**< takes refraction's scale of radiance out of roulette */
-    partial_weights weights;
+    partial_weights weights, before; /**< there, and before it came there */
     scattering_counts counts;
     unsigned lobe; /**< that it left its last vertex by */
+    bool straight; /**< it left through a pane, which is no vertex */
     transport_mode mode;
 } vcm_walk;
 
@@ -218,25 +220,39 @@ radiance_layer vcm_layer(scattering_counts counts);
 /** @brief Counts one more event behind those from the eye. */
 scattering_counts vcm_count(scattering_counts from_eye, bool diffuse);
 
+/** As many as are counted. */
+enum { MOST_PANES = 127 };
+
 /** @brief Counts from the eye, then those of a light subpath. */
 static inline scattering_counts vcm_join(scattering_counts eye, scattering_counts source)
 {
     eye.n += source.n;
     eye.n_diffuse += source.n_diffuse;
+    eye.n_panes = MIN(eye.n_panes + source.n_panes, MOST_PANES);
     return eye;
 }
 
-/** @brief True if a path of n scattering events is not longer than asked for. */
-static inline bool vcm_length_allowed(const vcm_pass *pass, unsigned n)
+/** @brief How many events more than these, and so many more, a path may have; negative:
+ * it would be longer than asked for. */
+static inline int64_t vcm_events_left(const vcm_pass *pass, scattering_counts counts,
+                                      unsigned more)
 {
     int64_t limit = pass->plan->how.max_backward_bounces;
-    return limit < 0 || n <= limit;
+    return (limit < 0 ? INT64_MAX : limit) - counts.n - counts.n_panes - more;
 }
 
-/** @brief Transmittance between a hit and a point at distance in direction.
- * @return false: something stands between them */
+/** @brief True if a path of so many events, and so many more, is not longer than asked
+ * for. */
+static inline bool vcm_length_allowed(const vcm_pass *pass, scattering_counts counts,
+                                      unsigned more)
+{
+    return vcm_events_left(pass, counts, more) >= 0;
+}
+
+/** @brief Share of light that comes from a point at distance in direction to a hit.
+ * @param most_panes that may stand between them @return false: none does */
 bool vcm_visible(const vcm_pass *pass, const surface_hit *from, vec3 direction,
-                 float distance, spectrum *transmittance);
+                 float distance, int64_t most_panes, spectrum *transmittance);
 
 /** @brief Follows a camera ray (transport_kind.radiance). */
 void vcm_radiance(const void *pass, const ray *r, sampler *random,

@@ -9,10 +9,10 @@ typedef struct camera_walk {
     sampler *random;
     transport_scratch *scratch;
     radiance_sample *out;
-    size_t first_light, end_light; /* the light subpath that it connects to */
-    partial_weights at_curve;      /* see leave_curve */
-    vec3 eye;                      /* where the camera ray began */
-    bool guided;                   /* a surface that it came to guides the denoiser */
+    size_t first_light, end_light;          /* the light subpath that it connects to */
+    partial_weights at_curve, before_curve; /* see leave_curve */
+    vec3 eye;                               /* where the camera ray began */
+    bool guided; /* a surface that it came to guides the denoiser */
 } camera_walk;
 
 static void add(camera_walk *c, scattering_counts counts, int source, spectrum radiance)
@@ -134,7 +134,8 @@ static void connect_to_light(camera_walk *c, const vcm_vertex *v)
         return;
     c->scratch->shadow_rays++;
     spectrum transmittance;
-    if (!vcm_visible(c->pass, v->hit, to_light.wi, to_light.distance, &transmittance))
+    if (!vcm_visible(c->pass, v->hit, to_light.wi, to_light.distance,
+                     vcm_events_left(c->pass, c->walk.counts, 1), &transmittance))
         return;
     float weight = light_weight(c, v, index, &to_light);
     add_scattered(c, &f, (arrival){.source = index},
@@ -172,8 +173,9 @@ static void add_pair(camera_walk *c, const vertex_pair *p)
         return;
     c->scratch->shadow_rays++;
     spectrum transmittance;
+    scattering_counts all = vcm_join(c->walk.counts, p->light->before);
     if (!vcm_visible(c->pass, p->eye->hit, p->direction, sqrtf(p->distance2),
-                     &transmittance))
+                     vcm_events_left(c->pass, all, 2), &transmittance))
         return;
     spectrum scale = transmittance * (pair_weight(c, p) / p->distance2);
     for (int i = 0; i < 2; i++) {
@@ -190,7 +192,7 @@ static void connect_to_vertex(camera_walk *c, const vcm_vertex *v, const light_v
 {
     static const bsdf_options options = {0};
     const vcm_pass *pass = c->pass;
-    if (!vcm_length_allowed(pass, c->walk.counts.n + l->before.n + 2u))
+    if (!vcm_length_allowed(pass, vcm_join(c->walk.counts, l->before), 2))
         return;
     const surface_hit hit = scene_restore_hit(pass->scene, &l->hit);
     vec3 to = hit.p - v->hit->p;
@@ -268,7 +270,8 @@ static void merge_with(camera_walk *c, const vcm_vertex *v, size_t k,
     if (!direction_of(pass, v, k, &wi))
         return;
     float cosine = hit_cosine(v->hit, wi);
-    if (!(cosine > 0.0f) || !vcm_length_allowed(pass, c->walk.counts.n + l->before.n + 1))
+    if (!(cosine > 0.0f) ||
+        !vcm_length_allowed(pass, vcm_join(c->walk.counts, l->before), 1))
         return;
     lobe_pair f = vcm_scatter(v, wi, TRANSPORT_RADIANCE);
     if (lobe_pair_is_black(&f))
@@ -326,6 +329,7 @@ static void shade(camera_walk *c, const vcm_vertex *v)
    fails; without those on leaving, or where all is merged, /flat-curves/sky/vcm. */
 static void arrive_past_curve(camera_walk *c, const surface_hit *hit, float cosine)
 {
+    c->before_curve = c->at_curve;
     weights_arrive(&c->at_curve, length3_2(hit->p - c->walk.from), cosine);
     if (vcm_ends_light(c->pass, hit))
         c->walk.weights = c->at_curve = (partial_weights){0};
@@ -334,6 +338,10 @@ static void arrive_past_curve(camera_walk *c, const surface_hit *hit, float cosi
 static void leave_curve(camera_walk *c, const vcm_vertex *v)
 {
     partial_weights *w = &c->walk.weights;
+    if (c->walk.straight) {
+        c->at_curve = c->before_curve;
+        return;
+    }
     if (!(w->vcm > 0.0f)) {
         weights_bounce_specular(&c->at_curve,
                                 hit_cosine(v->hit, c->walk.at.ray.direction));
@@ -421,8 +429,9 @@ static void follow(camera_walk *c)
         c->guided =
             c->guided || radiance_sample_guide(c->out, &hit, &v.bsdf, v.wo, c->eye,
                                                spectrum_mean(walk->at.throughput));
-        if (!vcm_length_allowed(pass, walk->counts.n + 1) || !(cosine > 0.0f))
+        if (!vcm_length_allowed(pass, walk->counts, 1) || !(cosine > 0.0f))
             return;
+        walk->before = walk->weights;
         weights_arrive(&walk->weights, length3_2(hit.p - walk->from), cosine);
         arrive_past_curve(c, &hit, cosine);
         v.alone = walk->at.mirrors_only

@@ -106,12 +106,12 @@ static bool hidden(const scene *s, const surface_hit *hit)
     return on->camera_hidden;
 }
 
-/* True if the eye sees the hit, past what it does not see and through interfaces. */
+/* True if the eye sees the hit, past what it does not see and through interfaces, but not
+   through panes. */
 static bool seen(const vcm_pass *pass, const surface_hit *hit,
-                 const camera_connection *eye)
+                 const camera_connection *eye, spectrum *share)
 {
-    const ray to = hit_ray_to(hit, eye->direction, eye->distance);
-    if (!scene_occluded(pass->scene, &to))
+    if (vcm_visible(pass, hit, eye->direction, eye->distance, 0, share))
         return true;
     if (!pass->camera_hides)
         return false;
@@ -123,6 +123,8 @@ static bool seen(const vcm_pass *pass, const surface_hit *hit,
                                     .t_max = distance_short_of(eye->distance),
                                     .time = hit->time},
                             .eye = pass->plan->view};
+    const ray to = hit_ray_to(hit, eye->direction, eye->distance);
+    *share = scene_transmittance(pass->scene, &to, &pass->w);
     surface_hit between;
     return scene_advance(&who, &segment, &between) == EVENT_ESCAPE;
 }
@@ -154,10 +156,9 @@ static void connect_to_eye(light_walk *l, const vcm_vertex *v)
     if (lobe_pair_is_black(&f))
         return;
     l->out->n_shadow_rays++;
-    if (!seen(pass, v->hit, &eye))
+    spectrum transmittance;
+    if (!seen(pass, v->hit, &eye, &transmittance))
         return;
-    spectrum transmittance = scene_transmittance_to(pass->scene, v->hit, eye.direction,
-                                                    eye.distance, &pass->w);
     float density = eye.pdf / square(eye.distance);
     float cosine = hit_cosine(v->hit, eye.direction);
     float weight = weight_to_eye(l, v, &eye, density * cosine);
@@ -244,6 +245,7 @@ static void arrive(light_walk *l, const surface_hit *hit)
 {
     float cosine = hit_cosine(hit, l->walk.at.ray.direction);
     float distance2 = length3_2(hit->p - l->walk.from);
+    l->walk.before = l->walk.weights;
     if (l->walk.counts.n == 0)
         arrive_first(l, hit, cosine, distance2);
     else
@@ -263,7 +265,7 @@ static void land(light_walk *l, const vcm_vertex *v)
 {
     unsigned lobes = scene_lobes_around(l->pass->scene, v->hit, &v->bsdf);
     if (!(lobes & (LOBE_DIFFUSE | LOBE_GLOSSY)) ||
-        !vcm_length_allowed(l->pass, l->walk.counts.n + 1))
+        !vcm_length_allowed(l->pass, l->walk.counts, 1))
         return;
     bool ends = vcm_ends_light(l->pass, v->hit);
     if ((l->pass->strategies.connect && !ends) || l->pass->strategies.merge) {
@@ -279,7 +281,7 @@ static bool go_on(light_walk *l, const vcm_vertex *v)
 {
     const vcm_pass *pass = l->pass;
     spectrum before = l->walk.at.throughput;
-    if (vcm_ends_light(pass, v->hit) || !vcm_length_allowed(pass, l->walk.counts.n + 2)) {
+    if (vcm_ends_light(pass, v->hit) || !vcm_length_allowed(pass, l->walk.counts, 2)) {
         tell(l, PHOTON_ENDED, v->hit);
         return false;
     }

@@ -37,14 +37,11 @@ radiance_layer vcm_layer(scattering_counts counts)
 }
 
 bool vcm_visible(const vcm_pass *pass, const surface_hit *from, vec3 direction,
-                 float distance, spectrum *transmittance)
+                 float distance, int64_t most_panes, spectrum *transmittance)
 {
-    const ray r = hit_ray_to(from, direction, distance);
-    if (scene_occluded(pass->scene, &r))
-        return false;
-    *transmittance =
-        scene_transmittance_to(pass->scene, from, direction, distance, &pass->w);
-    return true;
+    static const bsdf_options options = {0};
+    const scene_look look = {pass->scene, &pass->w, &options, most_panes};
+    return scene_sees_from(&look, from, direction, distance, transmittance);
 }
 
 /* By the bsdf that samples: v's own, or that of the wavelength which the path has kept.
@@ -69,6 +66,17 @@ static bool sample_direction(const vcm_pass *pass, const vcm_walk *walk,
     return true;
 }
 
+/* Light vertices and lights are connected through panes, so it is as if none stood there.
+   To the eye they are not: what it sees through a pane is found as what mirrors show. */
+static void leave_straight(vcm_walk *walk, const vcm_vertex *v, const bsdf_sample *next,
+                           float probability)
+{
+    path_segment_leave(&walk->at, v->hit, next, probability);
+    walk->lobe = next->lobe;
+    walk->weights = walk->before;
+    walk->counts.n_panes = MIN(walk->counts.n_panes + 1u, MOST_PANES);
+}
+
 bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsigned lobes,
                 float probability, sampler *random)
 {
@@ -76,6 +84,11 @@ bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsig
     if (!sample_direction(pass, walk, v, lobes, random, &next))
         return false;
     float cosine = hit_cosine(v->hit, next.wi);
+    walk->straight = next.straight && !walk->at.mirrors_only;
+    if (walk->straight) {
+        leave_straight(walk, v, &next, probability);
+        return cosine > 0.0f && !spectrum_is_black(walk->at.throughput);
+    }
     if (next.lobe & LOBE_SPECULAR)
         weights_bounce_specular(&walk->weights, cosine);
     else
