@@ -220,15 +220,12 @@ radiance_layer vcm_layer(scattering_counts counts);
 /** @brief Counts one more event behind those from the eye. */
 scattering_counts vcm_count(scattering_counts from_eye, bool diffuse);
 
-/** As many as are counted. */
-enum { MOST_PANES = 127 };
-
 /** @brief Counts from the eye, then those of a light subpath. */
 static inline scattering_counts vcm_join(scattering_counts eye, scattering_counts source)
 {
     eye.n += source.n;
     eye.n_diffuse += source.n_diffuse;
-    eye.n_panes = MIN(eye.n_panes + source.n_panes, MOST_PANES);
+    eye.n_panes += source.n_panes;
     return eye;
 }
 

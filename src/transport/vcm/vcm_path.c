@@ -74,7 +74,7 @@ static void leave_straight(vcm_walk *walk, const vcm_vertex *v, const bsdf_sampl
     path_segment_leave(&walk->at, v->hit, next, probability);
     walk->lobe = next->lobe;
     walk->weights = walk->before;
-    walk->counts.n_panes = MIN(walk->counts.n_panes + 1u, MOST_PANES);
+    walk->counts.n_panes++;
 }
 
 bool vcm_bounce(const vcm_pass *pass, vcm_walk *walk, const vcm_vertex *v, unsigned lobes,
