@@ -41,13 +41,13 @@ static bool lets_through(const scene *s, const surface_hit *hit)
     return on->lets_through;
 }
 
-/* Share of light that a surface which may let it through leaves of what goes to wo. */
+/* Share of light that a surface with a material leaves of what goes straight to wo. */
 static spectrum straight_share(const scene *s, const surface_hit *hit, vec3 wo,
                                const wavelengths *w, const bsdf_options *options)
 {
     bsdf b;
-    bool is_interface = !scene_bsdf(s, hit, w, ALL_WAVELENGTHS, options, &b);
-    return is_interface ? spectrum_fill(1.0f) : bsdf_straight(&b, wo);
+    scene_bsdf(s, hit, w, ALL_WAVELENGTHS, options, &b);
+    return bsdf_straight(&b, wo);
 }
 
 /* Straight through a pane. */

@@ -20,14 +20,13 @@ typedef struct direct_query {
     bool every_light; /**< sample each light, where they are few, instead of one: where
                          grain shows */
     bool shadow_rays; /**< false: light passes through everything */
-    const bsdf_options
-        *options;       /**< how bsdfs are made: of panes that it comes through */
-    int64_t most_panes; /**< so many of them at most; negative: any number */
-    unsigned followed;  /**< the mask that the path goes on with: those classes share the
-                           work with light sampling, for the others it is the only way */
-    unsigned looked;    /**< likewise, classes that direct_environments is asked with */
-    bool by_side;       /**< the path takes each side apart ... */
-    float p_side[2];    /**< ... with this probability: reflection, transmission */
+    const bsdf_options *options; /**< for panes that light comes through */
+    int64_t most_panes;          /**< so many at most; negative: any number */
+    unsigned followed; /**< the mask that the path goes on with: those classes share the
+                          work with light sampling, for the others it is the only way */
+    unsigned looked;   /**< likewise, classes that direct_environments is asked with */
+    bool by_side;      /**< the path takes each side apart ... */
+    float p_side[2];   /**< ... with this probability: reflection, transmission */
     /** What glossy lobes send photons bring too, by this MIS weight; NULL: never. */
     const caustic_mis *mis;
     const bsdf *all_wavelengths; /**< for that weight: the bsdf, whatever wavelength the

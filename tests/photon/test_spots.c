@@ -109,11 +109,11 @@ static void test_density_is_that_of_directions(void)
 /* A slab of glass close to the lamp, so that little of what the spot sends on comes
  * through it again. */
 #define PANE                                                                             \
-    "Material \"dielectric\" Shape \"trianglemesh\" \"point3 P\" [1.45 -3.05 1.8 "       \
-    "1.55 -3.05 1.8 1.55 -2.95 1.8 1.45 -2.95 1.8 1.45 -3.05 1.79 1.55 -3.05 1.79 1.55 " \
-    "-2.95 1.79 1.45 -2.95 1.79] \"integer indices\" [0 1 2 0 2 3 4 6 5 4 7 6 0 4 5 0 "  \
-    "5 "                                                                                 \
-    "1 2 6 7 2 7 3 1 5 6 1 6 2 0 3 7 0 7 4]\n"
+    "Material \"dielectric\" Shape \"trianglemesh\"\n"                                   \
+    "\"point3 P\" [1.45 -3.05 1.8 1.55 -3.05 1.8 1.55 -2.95 1.8 1.45 -2.95 1.8\n"        \
+    "1.45 -3.05 1.79 1.55 -3.05 1.79 1.55 -2.95 1.79 1.45 -2.95 1.79]\n"                 \
+    "\"integer indices\" [0 1 2 0 2 3 4 6 5 4 7 6 0 4 5 0 5 1\n"                         \
+    "2 6 7 2 7 3 1 5 6 1 6 2 0 3 7 0 7 4]\n"
 #define IN_SIGHT(material)                                                               \
     "Material " material " Translate 0 0 0.6 Shape \"sphere\" \"float radius\" 0.5\n"
 

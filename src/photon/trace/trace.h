@@ -10,12 +10,12 @@
  *   light ─► ... D ... ─► D          indirect
  *
  * (D, G, S: a diffuse, glossy, specular lobe; see bsdf/bsdf.h; a point in a medium where
- * light is scattered is as a D). A glossy lobe alone
- * takes photons only from delta lights by way of S*: all else that it reflects, camera
- * paths find by following it. So every path of light is counted once. By the setting
- * photon_lobes it may take none, or all, and is then as a D. By one_map the photons of
- * all classes are traced and stored at once, as indirect ones: the direct ones if lights
- * are not sampled.
+ * light is scattered is as a D, and going straight through a thin pane is nothing). A
+ * glossy lobe alone takes photons only from delta lights by way of S*: all else that it
+ * reflects, camera paths find by following it. So every path of light is counted once. By
+ * the setting photon_lobes it may take none, or all, and is then as a D. By one_map the
+ * photons of all classes are traced and stored at once, as indirect ones: the direct ones
+ * if lights are not sampled.
  *
  * Where something moves, every photon has a time of its own: the i-th of N in a slice of
  * the shutter's time that of the i-th N-th part of it, so that times, and the other

@@ -19,6 +19,9 @@
  * see what stands in a mirror; the others are complete. Where several strategies find a
  * path they share it by the balance heuristic, so that their weights sum to one.
  *
+ * A thin pane that light goes straight through is no vertex, and is connected through;
+ * but not to the eye, to which it is as a mirror.
+ *
  * To an orthographic camera light vertices are not connected; the other strategies then
  * share its paths.
  *
