@@ -173,7 +173,9 @@ static char *first_radius(const NephPlan *plan)
 
 static char *emission(const NephPlan *plan)
 {
-    bool sends = plan->photons[NEPH_PHOTON_CAUSTIC] > 0;
+    bool sends = false;
+    for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++)
+        sends |= plan->photons[c] > 0;
     return g_strdup(!sends ? "–" : plan->guided ? "guided" : "not guided");
 }
 

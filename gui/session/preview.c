@@ -25,6 +25,8 @@ NephSettings *preview_settings(const NephSettings *wanted, double extent)
         {"indirect_nearest", "0"},
         {"edges", "false"},
         {"denoise", "false"},
+        {"direct_emission", "uniform"},
+        {"indirect_emission", "uniform"},
         {"caustic_emission", "specular-area"},
     };
     NephSettings *s = neph_settings_copy(wanted);

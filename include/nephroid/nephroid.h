@@ -514,7 +514,7 @@ typedef struct NephPlan {
     double radius[NEPH_N_PHOTON_CLASSES];    /**< m, in the first pass: everywhere, or the
                                                 median */
     bool radius_is_set;                      /**< by the settings; else it is measured */
-    bool guided;            /**< caustic photons start where they were seen to arrive */
+    bool guided;            /**< some photons start where trial ones arrived from */
     double discs;           /**< m²: by discs π r² N over the camera's samples photons
                                share caustics with paths; 0: they do not share */
     double spots;           /**< probability of looking at bright spots from a surface */
@@ -525,6 +525,7 @@ typedef struct NephPlan {
     double planning;        /**< rays that trials cost */
     NephPlanTrial trials[NEPH_MOST_PLAN_TRIALS];
     int n_trials;
+    bool guided_classes[NEPH_N_PHOTON_CLASSES]; /**< which of them do */
 } NephPlan;
 
 /** @brief What the render will do, or does: planned now if it has not begun. Not while

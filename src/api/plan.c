@@ -11,6 +11,8 @@ static void put_photons(GString *out, const NephPlan *plan)
             continue;
         g_string_append_printf(out, "%-12s%-9s %12" G_GUINT64_FORMAT " a pass",
                                any ? "" : "photons", class_names[c], plan->photons[c]);
+        if (plan->guided_classes[c])
+            g_string_append(out, ", guided");
         if (plan->radius[c] > 0.0)
             g_string_append_printf(out, ", radius %.5g m at first", plan->radius[c]);
         g_string_append_c(out, '\n');
@@ -27,8 +29,7 @@ static void put_photons(GString *out, const NephPlan *plan)
 static void put_ways(GString *out, const NephPlan *plan)
 {
     if (plan->photons[NEPH_PHOTON_CAUSTIC] > 0)
-        g_string_append_printf(out, "%-12s%s\n%-12s%g of the blurred ones\n", "emission",
-                               plan->guided ? "guided" : "not guided", "gathers",
+        g_string_append_printf(out, "%-12s%g of the blurred ones\n", "gathers",
                                plan->blurred_gathers);
     if (plan->discs > 0.0)
         g_string_append_printf(out, "%-12sof caustics with paths, by discs of %.4g m2\n",

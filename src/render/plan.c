@@ -20,7 +20,6 @@ render_plan render_plan_of(const transport_plan *plan)
     render_plan out = {
         .integrator = (integrator_choice)plan->how.integrator,
         .radius_is_set = plan->how.radius > 0.0,
-        .guided = plan->guide && plan->n_photons[PHOTON_CAUSTIC] > 0,
         .p_spots = (double)plan->p_spots,
         .p_blurred = plan->uses_mis ? (double)plan->p_blurred : 1.0,
         .time_slices = time_slices_of(plan->scene, &plan->how),
@@ -32,6 +31,7 @@ render_plan render_plan_of(const transport_plan *plan)
         out.discs = (double)caustic_discs(plan, plan->radius[PHOTON_CAUSTIC]);
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         out.photons[c] = plan->n_photons[c];
+        out.guided[c] = plan->n_photons[c] > 0 && plan->guide[c];
         out.radius[c] = plan->n_photons[c] > 0 ? plan->radius[c] : 0.0;
     }
     for (int i = 0; i < plan->n_trials; i++)
@@ -42,11 +42,11 @@ render_plan render_plan_of(const transport_plan *plan)
 char *render_plan_digest(const render_plan *plan)
 {
     GString *out = g_string_new(NULL);
-    g_string_append_printf(out, "%d %d %d %d", (int)plan->integrator, plan->radius_is_set,
-                           plan->guided, plan->time_slices);
+    g_string_append_printf(out, "%d %d %d", (int)plan->integrator, plan->radius_is_set,
+                           plan->time_slices);
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        g_string_append_printf(out, " %" G_GUINT64_FORMAT " %a", plan->photons[c],
-                               plan->radius[c]);
+        g_string_append_printf(out, " %" G_GUINT64_FORMAT " %a %d", plan->photons[c],
+                               plan->radius[c], plan->guided[c]);
     g_string_append_printf(out, " %a %a %a %a", plan->discs, plan->p_spots,
                            plan->p_blurred, plan->work);
     for (int i = 0; i < plan->n_trials; i++)

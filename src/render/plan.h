@@ -11,7 +11,7 @@ typedef struct render_plan {
     uint64_t photons[N_PHOTON_CLASSES]; /**< sent each pass */
     double radius[N_PHOTON_CLASSES];    /**< m, in pass 0: everywhere, or the median */
     bool radius_is_set;                 /**< by the settings; else measured */
-    bool guided;  /**< caustic photons are started where they arrive */
+    bool guided[N_PHOTON_CLASSES];      /**< they start where trials arrived from */
     double discs; /**< m²: caustics are shared by photons' discs π r² N over the samples
                      that see them (caustic_mis); 0: photons or paths have them all */
     double p_spots;   /**< of looking at bright spots from a surface */

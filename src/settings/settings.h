@@ -32,8 +32,8 @@ typedef enum denoise_choice { WINDOWS_AUTO, WINDOWS_FINE, WINDOWS_COARSE } denoi
 typedef enum roulette_choice { ROULETTE_MEAN, ROULETTE_MAX } roulette_choice;
 typedef enum emission_choice {
     EMISSION_UNIFORM,
-    EMISSION_SPECULAR_AREA,
-    EMISSION_GUIDED
+    EMISSION_GUIDED,
+    EMISSION_SPECULAR_AREA /**< of caustics alone */
 } emission_choice;
 /** On what surfaces photons are stored: see photon/trace/trace.h. */
 typedef enum photon_lobes_choice {
@@ -82,11 +82,11 @@ typedef struct settings {
     int photon_map; /**< map_choice */
     double flatten; /**< height of the neighbourhood over its radius, 0..1; 1: a ball */
     bool edges;     /**< estimates are corrected at edges, corners and thin walls */
-    bool gather_indirect; /**< auto may take indirect light from photons */
-    bool bright_spots;    /**< auto looks aside at brightly lit places */
-    int64_t time_slices;  /**< of the shutter, where something moves */
-    int roulette;         /**< roulette_choice */
-    int caustic_emission; /**< emission_choice */
+    bool gather_indirect;          /**< auto may take indirect light from photons */
+    bool bright_spots;             /**< auto looks aside at brightly lit places */
+    int64_t time_slices;           /**< of the shutter, where something moves */
+    int roulette;                  /**< roulette_choice */
+    int class_emission[N_CLASSES]; /**< emission_choice */
     bool multiple_samples;
     int vcm_strategies;  /**< vcm_choice */
     double alpha;        /**< Knaus & Zwicker 2011 */

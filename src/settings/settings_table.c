@@ -24,7 +24,7 @@ static const char *const map_words[] = {
     "auto", NULL};
 static const char *const window_words[] = {"auto", "fine", "coarse", NULL};
 static const char *const roulette_words[] = {"mean", "max", NULL};
-static const char *const emission_words[] = {"uniform", "specular-area", "guided", NULL};
+static const char *const emission_words[] = {"uniform", "guided", "specular-area", NULL};
 static const char *const lobe_words[] = {"diffuse", "needed", "glossy", NULL};
 static const char *const vcm_words[] = {"all", "bpt", "bpm", "ppm", "light", NULL};
 static const char *const unlimited[] = {"unlimited", NULL};
@@ -110,8 +110,8 @@ static const setting_row table[] = {
     {"photons_per_light", SETTING_BOOL, AT(photons_per_light), "", 0, 1, 0, NULL, "",
      "photonmap",
      "The numbers of photons are those of each light, dim or bright; off: of all lights "
-     "together, each getting as many as its power deserves. Where guided, photons for "
-     "caustics go to the lights that the guide finds."},
+     "together, each getting as many as its power deserves. Where guided, photons go to "
+     "the lights that the guide finds."},
     {"one_map", SETTING_BOOL, AT(one_map), "", 0, 1, 0, NULL, "", "photonmap",
      "Photons are emitted once and kept in one map, whatever they did before they landed "
      "(estimated and counted as indirect); off: a map for each class. Final gathering "
@@ -191,10 +191,18 @@ static const setting_row table[] = {
      "", "photonmap auto",
      "What of a photon's flux decides its survival: the mean or the largest over "
      "wavelengths."},
-    {"caustic_emission", SETTING_CHOICE, AT(caustic_emission), "", 0, 2, EMISSION_GUIDED,
-     emission_words, "", "photonmap auto",
-     "Where photons for caustics are sent: as the light shines, toward what focuses "
-     "light, or where trial photons were seen to cast caustics."},
+    {"direct_emission", SETTING_CHOICE, AT(class_emission[0]), "", 0, EMISSION_GUIDED,
+     EMISSION_GUIDED, emission_words, "", "photonmap",
+     "Where direct photons are sent: as the light shines, or where trial photons landed, "
+     "if that is clearly better."},
+    {"indirect_emission", SETTING_CHOICE, AT(class_emission[1]), "", 0, EMISSION_GUIDED,
+     EMISSION_GUIDED, emission_words, "", "photonmap auto",
+     "Where indirect photons are sent: as the light shines, or where trial photons "
+     "landed, such as through the window of a room, if that is clearly better."},
+    {"caustic_emission", SETTING_CHOICE, AT(class_emission[2]), "", 0,
+     EMISSION_SPECULAR_AREA, EMISSION_GUIDED, emission_words, "", "photonmap auto",
+     "Where photons for caustics are sent: as the light shines, where trial photons were "
+     "seen to cast caustics, or toward what focuses light."},
     {"multiple_samples", SETTING_BOOL, AT(multiple_samples), "", 0, 1, 1, NULL,
      "MULTIPLE_SAMPLES", "photonmap auto path",
      "Samples roughness and Fresnel's split; off: one deterministic path, without "

@@ -109,8 +109,8 @@ bool transport_plan_find_casters(transport_plan *plan, GError **error)
 void transport_plan_clear(transport_plan *plan)
 {
     g_clear_pointer(&plan->casters, caustic_casters_free);
-    emission_guide_free(plan->guide);
-    plan->guide = NULL;
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        g_clear_pointer(&plan->guide[c], emission_guide_free);
     g_clear_pointer(&plan->boost, g_free);
     g_clear_pointer(&plan->sight, g_aligned_free);
     plan->n_sight = 0;

@@ -214,11 +214,14 @@ typedef struct transport_plan {
     /** vcm: how far the nearest vertices of some light subpaths lie, place by place;
      * owned. NULL: not known. */
     radius_cache *vertex_radii;
-    size_t n_vertex_paths; /**< light subpaths that these are of */
-    emission_guide *guide; /**< owned; NULL: none was learned */
-    bool uses_mis;         /**< photons share caustics with paths from the eye */
-    caustic_mis mis;       /**< their MIS weights before radii are known, for trials */
-    float *boost;          /**< caustic_mis.boost; owned */
+    size_t n_vertex_paths;                   /**< light subpaths that these are of */
+    emission_guide *guide[N_PHOTON_CLASSES]; /**< owned; NULL: none pays */
+    double brought[N_PHOTON_CLASSES]; /**< mean square flux, W² nm⁻², that a photon alone
+                                         brings, as trials told (aim_photons) ... */
+    double price[N_PHOTON_CLASSES]; /**< ... and what it takes, in rays */
+    bool uses_mis;                  /**< photons share caustics with paths from the eye */
+    caustic_mis mis; /**< their MIS weights before radii are known, for trials */
+    float *boost;    /**< caustic_mis.boost; owned */
     const photon_supply *supply; /**< borrowed; NULL: photons are traced */
     lit_place *lit; /**< that light sampling found (path_effort_measure); owned */
     size_t n_lit;

@@ -182,7 +182,7 @@ static double beam_through(const char *from, const char *bodies, const char *flo
         from, floor, bodies);
     g_autoptr(scene) s = scene_of(text);
     settings how = s->settings;
-    how.caustic_emission = EMISSION_UNIFORM;
+    how.class_emission[PHOTON_CAUSTIC] = EMISSION_UNIFORM;
     g_autoptr(caustic_casters) casters = caustic_casters_new(s, NULL);
     trace_task task = {.scene = s,
                        .how = &how,

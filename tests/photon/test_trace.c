@@ -8,6 +8,7 @@
 #include "photon/trace/trace.h"
 #include "scene_text.h"
 #include "transport/photonmap/aim.h"
+#include "transport/work.h"
 
 #include <string.h>
 
@@ -89,7 +90,7 @@ static void test_emitted_flux_is_the_power(void)
         for (uint32_t k = 0; k < N; k++) {
             sampler random = sampler_make(i, k);
             photon_start start = {0};
-            if (photon_emit(s, &w, &random, &start))
+            if (photon_emit(s, &w, NULL, &random, &start))
                 sum += start.flux / N;
         }
         for (int wavelength = 0; wavelength < N_WAVELENGTHS; wavelength++)
@@ -190,15 +191,15 @@ static void test_aimed_emission_has_the_same_flux(void)
         g_autofree char *text =
             g_strconcat(CAMERA "WorldBegin\n", walls, CASTERS, lights[i], NULL);
         g_autoptr(view) v = view_of(text);
-        how.caustic_emission = EMISSION_UNIFORM;
+        how.class_emission[PHOTON_CAUSTIC] = EMISSION_UNIFORM;
         flux_mean plain = stored_flux(v->scene, &how, PHOTON_CAUSTIC, 1 << 19);
-        how.caustic_emission = EMISSION_SPECULAR_AREA;
+        how.class_emission[PHOTON_CAUSTIC] = EMISSION_SPECULAR_AREA;
         flux_mean aimed = stored_flux(v->scene, &how, PHOTON_CAUSTIC, 1 << 16);
         double error = sqrt(plain.error * plain.error + aimed.error * aimed.error);
         g_test_message("light %zu: uniform %g +- %g, aimed %g +- %g", i, plain.mean,
                        plain.error, aimed.mean, aimed.error);
         transport_plan plan = {.scene = v->scene, .view = v, .how = how};
-        plan.how.caustic_emission = EMISSION_GUIDED;
+        plan.how.class_emission[PHOTON_CAUSTIC] = EMISSION_GUIDED;
         plan.n_photons[PHOTON_CAUSTIC] = 1;
         plan.work = (double)INFINITY;
         g_assert_true(aim_caustics(&plan, NULL, NULL, NULL));
@@ -216,6 +217,47 @@ static void test_aimed_emission_has_the_same_flux(void)
 
 /* Point light Φ in the middle of a diffuse sphere: the indirect irradiance is everywhere
    Φ/(4πR²) ρ/(1-ρ). A ball of radius r cuts a cap of area exactly πr² from a sphere. */
+/* Where few photons land a guide sends most of them, and the flux is the same. */
+static void test_guided_emission_has_the_same_flux(void)
+{
+    static const char cup[] = "Shape \"sphere\" \"float radius\" .4 \"float zmax\" 0\n";
+    int n_guided = 0;
+    for (size_t i = 0; i < 2 * G_N_ELEMENTS(lights); i++) {
+        photon_class c = i % 2 == 0 ? PHOTON_DIRECT : PHOTON_INDIRECT;
+        g_autofree char *text = g_strconcat(CAMERA "WorldBegin\n", lights[i / 2],
+                                            "Translate .1 0 -1.5\n", cup, NULL);
+        g_autoptr(view) v = view_of(text);
+        transport_plan plan = {.scene = v->scene, .view = v, .how = quick_settings()};
+        plan.work = (double)INFINITY;
+        flux_mean plain = stored_flux(v->scene, &plan.how, c, 1 << 20);
+        g_assert_true(aim_photons(&plan, c, NULL, NULL));
+        flux_mean guided = flux_left(&plan, c, false, 1 << 17);
+        n_guided += plan.guide[c] != NULL;
+        transport_plan_clear(&plan);
+        g_test_message("light %zu, class %d: %g +- %g, %g +- %g", i / 2, c, plain.mean,
+                       plain.error, guided.mean, guided.error);
+        g_assert_cmpfloat(plain.mean, >, 20 * plain.error);
+        g_assert_cmpfloat(fabs(plain.mean - guided.mean), <,
+                          5 * hypot(plain.error, guided.error));
+    }
+    g_assert_cmpint(n_guided, >, (int)G_N_ELEMENTS(lights));
+}
+
+/* In a closed box that scatters a half one is sent, scattered once more in the mean, and
+   lands once behind a diffuse bounce. */
+static void test_price(void)
+{
+    g_autofree char *text = g_strconcat(CAMERA "WorldBegin\n", BOX, lights[0], NULL);
+    g_autoptr(view) v = view_of(text);
+    transport_plan plan = {.scene = v->scene, .view = v, .how = quick_settings()};
+    plan.work = (double)INFINITY;
+    g_assert_true(aim_photons(&plan, PHOTON_INDIRECT, NULL, NULL));
+    double price = plan.price[PHOTON_INDIRECT], expected = 1 + 2 + SAMPLE_RAYS;
+    g_test_message("%g rays, expected %g", price, expected);
+    g_assert_cmpfloat(fabs(price / expected - 1), <, .02);
+    transport_plan_clear(&plan);
+}
+
 static void test_integrating_sphere(void)
 {
     settings how = quick_settings();
@@ -427,6 +469,8 @@ int main(int argc, char **argv)
     g_test_add_func("/trace/bounce-limit", test_bounce_limit_counts_scattering);
     g_test_add_func("/trace/long-ways", test_long_ways);
     g_test_add_func("/trace/aimed-flux", test_aimed_emission_has_the_same_flux);
+    g_test_add_func("/trace/guided-flux", test_guided_emission_has_the_same_flux);
+    g_test_add_func("/trace/price", test_price);
     g_test_add_func("/trace/integrating-sphere", test_integrating_sphere);
     g_test_add_func("/trace/mirrors", test_indirect_photons_take_mirrors);
     g_test_add_func("/trace/growing", test_photons_on_what_grows);

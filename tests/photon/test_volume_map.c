@@ -209,7 +209,7 @@ static void test_ways_to_send(void)
         for (int mode = 0; mode < 3; mode++) {
             transport_plan plan = {
                 .scene = v->scene, .view = v, .how = settings_default()};
-            plan.how.caustic_emission = mode;
+            plan.how.class_emission[PHOTON_CAUSTIC] = mode;
             plan.n_photons[PHOTON_CAUSTIC] = 20000;
             plan.work = (double)INFINITY;
             g_assert_true(aim_caustics(&plan, NULL, NULL, NULL));

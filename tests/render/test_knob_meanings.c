@@ -202,6 +202,32 @@ static void test_caustic_emission(void)
     }
 }
 
+/* Few photons of a bare lamp meet a cup, and fewer are scattered on inside it. */
+#define CUP                                                                              \
+    ROOM_CAMERA SIZE(16) "WorldBegin LightSource \"point\" \"point3 from\" [0 0 2] "     \
+                         "Shape \"sphere\" \"float radius\" .3 \"float zmax\" .1\n"
+
+static void test_emission(void)
+{
+    g_autoptr(view) v = view_of(CUP);
+    static const char *const ways[] = {"uniform", "guided"};
+    render_statistics n[2];
+    for (size_t i = 0; i < G_N_ELEMENTS(ways); i++) {
+        g_autofree char *words = g_strdup_printf(
+            "integrator=photonmap passes=1 planned_passes=400 spp=1 radius=.1 "
+            "direct_illumination=false direct_photons=20000 indirect_photons=20000 "
+            "direct_emission=%s indirect_emission=%s",
+            ways[i], ways[i]);
+        n[i] = counted(v, words);
+    }
+    for (int c = PHOTON_DIRECT; c <= PHOTON_INDIRECT; c++) {
+        double few = (double)n[0].stored[c], many = (double)n[1].stored[c];
+        g_test_message("class %d: %g of 20000 land, guided %g", c, few, many);
+        g_assert_cmpfloat(few, >, 0);
+        g_assert_cmpfloat(many, >, 30 * few);
+    }
+}
+
 /* A pane before the sky: what Fresnel's formula lets through at 0°, or all. */
 static void test_multiple_samples(void)
 {
@@ -332,6 +358,8 @@ static const struct {
     {"gather_indirect", "/gather/pays/room /gather/converges"},
     {"time_slices", "/knob-pictures/time-slices"},
     {"roulette", "/knob-meanings/roulette"},
+    {"direct_emission", "/knob-meanings/emission"},
+    {"indirect_emission", "/knob-meanings/emission"},
     {"caustic_emission", "/knob-meanings/caustic-emission"},
     {"multiple_samples", "/knob-meanings/multiple-samples"},
     {"vcm_strategies", "/vcm/strategies"},
@@ -355,6 +383,7 @@ static const struct {
     {"/knob-meanings/photons", test_photons},
     {"/knob-meanings/alpha", test_radius_shrinks},
     {"/knob-meanings/roulette", test_roulette},
+    {"/knob-meanings/emission", test_emission},
     {"/knob-meanings/caustic-emission", test_caustic_emission},
     {"/knob-meanings/multiple-samples", test_multiple_samples},
     {"/knob-meanings/seed", test_seed},

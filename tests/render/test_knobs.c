@@ -66,12 +66,22 @@ static const struct {
 };
 
 /* What changes when or how fast the same picture is there, or what is beside it; and
-   three that act where it pays, see test_spots.c, test_pace.c and test_gather.c. */
-static const char *const others[] = {
-    "integrator",     "passes",          "time",
-    "noise",          "threads",         "photon_map",
-    "planned_passes", "bright_spots",    "gather_indirect",
-    "denoise",        "denoise_windows", NULL};
+   five that act where it pays, see test_spots.c, test_pace.c, test_gather.c and
+   test_knob_meanings.c. */
+static const char *const others[] = {"integrator",
+                                     "passes",
+                                     "time",
+                                     "noise",
+                                     "threads",
+                                     "photon_map",
+                                     "planned_passes",
+                                     "bright_spots",
+                                     "gather_indirect",
+                                     "denoise",
+                                     "denoise_windows",
+                                     "direct_emission",
+                                     "indirect_emission",
+                                     NULL};
 
 static image *picture(const view *v, const char *integrator, const char *with)
 {

@@ -48,8 +48,8 @@ static void same_plan(const render_plan *a, const render_plan *b)
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         g_assert_cmpuint(a->photons[c], ==, b->photons[c]);
         g_assert_cmpfloat(a->radius[c], ==, b->radius[c]);
+        g_assert_cmpint(a->guided[c], ==, b->guided[c]);
     }
-    g_assert_cmpint(a->guided, ==, b->guided);
     g_assert_cmpfloat(a->discs, ==, b->discs);
     g_assert_cmpfloat(a->p_spots, ==, b->p_spots);
     g_assert_cmpfloat(a->p_blurred, ==, b->p_blurred);
@@ -92,6 +92,29 @@ static void test_photons_are_planned(gconstpointer data)
         g_assert_cmpuint(did.stored[c], ==, photons->statistics.stored[c]);
         if (plan.photons[c] > 0)
             g_assert_cmpfloat(did.radius[c], ==, plan.radius[c]);
+    }
+}
+
+/* Of classes that share photons one that brings nothing has few: all that are sent to a
+   mirror behind the wall are lost. */
+static void test_shares(void)
+{
+    static const char mirror[] =
+        "Material \"conductor\" Translate 0 0 %g Shape \"sphere\" \"float radius\" .5\n";
+    for (int behind = 0; behind < 2; behind++) {
+        g_autofree char *ball = g_strdup_printf(mirror, behind ? 9.0 : .6);
+        g_autofree char *text = g_strconcat(STUDIO(32) SMALL_LAMP, ball, NULL);
+        g_autoptr(view) v = view_of(text);
+        const render_plan plan =
+            plan_with(v, "integrator=photonmap passes=64 photons=8000", "");
+        double caustic = (double)plan.photons[PHOTON_CAUSTIC];
+        double part = caustic / (caustic + (double)plan.photons[PHOTON_INDIRECT]);
+        double least = .05 / 1.05;
+        g_test_message("behind %d: %g, the least is %g", behind, part, least);
+        if (behind)
+            g_assert_cmpfloat(fabs(part - least), <, .001);
+        else
+            g_assert_cmpfloat(part, >, 2 * least);
     }
 }
 
@@ -161,6 +184,7 @@ int main(int argc, char **argv)
         add("threads", &cases[i], test_threads);
         add("photons", &cases[i], test_photons_are_planned);
     }
+    g_test_add_func("/plan/shares", test_shares);
     g_test_add_func("/plan/asked-before", test_asked_before);
     for (size_t i = 0; i < G_N_ELEMENTS(costs); i++)
         add("costs-little", &costs[i], test_costs_little);

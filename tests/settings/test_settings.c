@@ -97,7 +97,7 @@ static void test_default_is_the_table(void)
     g_assert_true(s.direct_illumination && s.shadow_rays && !s.final_gather);
     g_assert_cmpint(s.photon_map, ==, MAP_AUTO);
     g_assert_cmpint(s.class_kernel[2], ==, KERNEL_EPANECHNIKOV);
-    g_assert_cmpint(s.caustic_emission, ==, EMISSION_GUIDED);
+    g_assert_cmpint(s.class_emission[2], ==, EMISSION_GUIDED);
     g_assert_true(fabs(s.alpha - 2.0 / 3.0) < 1e-15);
 }
 

@@ -33,7 +33,7 @@ static inline flux_mean flux_left(const transport_plan *plan, photon_class c,
                                  .pass = batch,
                                  .photon_class = c,
                                  .casters = casters,
-                                 .guide = plan->guide,
+                                 .guide = plan->guide[c],
                                  .n_photons = n / BATCHES};
         trace_result result;
         g_assert_true(photon_trace(&task, false, &result, NULL));

@@ -188,7 +188,7 @@ static void test_glass_ball_flux(void)
         "\"point3 to\" [0 0 0]\n" BALL(1.5) WIDE_FLOOR);
     settings how = settings_default();
     how.max_forward_bounces = 2;
-    how.caustic_emission = EMISSION_SPECULAR_AREA;
+    how.class_emission[PHOTON_CAUSTIC] = EMISSION_SPECULAR_AREA;
     trace_result r = caustic_photons(s, &how, 200000);
     double found = 0;
     for (size_t i = 0; i < r.photons.n; i++)
@@ -216,7 +216,7 @@ static void check_focus(double n, const char *ball)
     g_autoptr(scene) s = scene_of(text);
     settings how = settings_default();
     how.max_forward_bounces = 2;
-    how.caustic_emission = EMISSION_UNIFORM;
+    how.class_emission[PHOTON_CAUSTIC] = EMISSION_UNIFORM;
     trace_result r = caustic_photons(s, &how, 20000);
     /* each photon's line x + t d crosses the axis nearest at the focus: least squares in
      * z */

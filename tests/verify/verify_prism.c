@@ -134,7 +134,7 @@ static void test_prism(gconstpointer data)
     experiment e = {.glass = data, .w = wavelengths_at(0.5f)};
     g_autoptr(scene) s = prism_of(e.glass);
     settings how = settings_default();
-    how.caustic_emission = EMISSION_UNIFORM;
+    how.class_emission[PHOTON_CAUSTIC] = EMISSION_UNIFORM;
     trace_task task = {.scene = s,
                        .how = &how,
                        .w = e.w,

@@ -104,7 +104,6 @@ static NephPlan plan_export(const render_plan *from)
 {
     NephPlan out = {.integrator = transport_find((int)from->integrator)->name,
                     .radius_is_set = from->radius_is_set,
-                    .guided = from->guided,
                     .discs = from->discs,
                     .spots = from->p_spots,
                     .blurred_gathers = from->p_blurred,
@@ -115,6 +114,7 @@ static NephPlan plan_export(const render_plan *from)
     for (int c = 0; c < NEPH_N_PHOTON_CLASSES; c++) {
         out.photons[c] = from->photons[c];
         out.radius[c] = from->radius[c];
+        out.guided |= out.guided_classes[c] = from->guided[c];
     }
     for (int i = 0; i < from->n_trials; i++) {
         const plan_trial *t = &from->trials[i];

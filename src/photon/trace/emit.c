@@ -87,13 +87,14 @@ bool photon_emit_aimed(const caustic_casters *c, const wavelengths *w, sampler *
     return density > 0.0 && finish(&emission, (float)density, out);
 }
 
-bool photon_emit(const scene *s, const wavelengths *w, sampler *random, photon_start *out)
+bool photon_emit(const scene *s, const wavelengths *w, const emission_guide *guide,
+                 sampler *random, photon_start *out)
 {
     float u[EMISSION_DIMENSIONS];
     light_emission emission;
     if (!scene_is_lit(s))
         return false;
-    float density = emission_guide_draw(NULL, random, u);
+    float density = emission_guide_draw(guide, random, u);
     const light *l = choose_light(s, &s->light_power, &u[0], out);
     if (!l || !l->kind->emit(l->self, w, u[1], (vec2){u[2], u[3]}, (vec2){u[4], u[5]},
                              &emission))

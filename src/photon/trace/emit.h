@@ -30,10 +30,11 @@ typedef struct photon_start {
     uint32_t primitive;
 } photon_start;
 
-/** @brief Emits one photon by its light's own density.
+/** @brief Emits one photon by its light's own density and the guide's numbers.
+ *  @param guide NULL: uniform ones
  *  @return false: nothing is carried (it still counts as emitted) */
-bool photon_emit(const scene *s, const wavelengths *w, sampler *random,
-                 photon_start *out);
+bool photon_emit(const scene *s, const wavelengths *w, const emission_guide *guide,
+                 sampler *random, photon_start *out);
 
 /** @brief Emits one caustic photon by the guide's numbers, only into the sphere around
  * what casts caustics. As above. */

@@ -11,12 +11,14 @@ sampler photon_stream(const trace_task *task, uint64_t index)
     return sampler_make(stream_key(task), index);
 }
 
-/* The guide serves the caustic photons that it was made for. */
+static emission_choice emission_of(const trace_task *task)
+{
+    return (emission_choice)task->how->class_emission[task->photon_class];
+}
+
 static const emission_guide *guide_of(const trace_task *task)
 {
-    bool guided = task->photon_class == PHOTON_CAUSTIC &&
-                  task->how->caustic_emission == EMISSION_GUIDED;
-    return guided ? task->guide : NULL;
+    return emission_of(task) == EMISSION_GUIDED ? task->guide : NULL;
 }
 
 float photon_start_point(const trace_task *task, uint64_t index,
@@ -28,10 +30,10 @@ float photon_start_point(const trace_task *task, uint64_t index,
 
 static bool start(const trace_task *task, sampler *random, photon_start *out)
 {
-    if (task->photon_class != PHOTON_CAUSTIC ||
-        task->how->caustic_emission == EMISSION_UNIFORM)
-        return photon_emit(task->scene, &task->w, random, out);
-    if (task->how->caustic_emission == EMISSION_SPECULAR_AREA)
+    emission_choice emission = emission_of(task);
+    if (task->photon_class != PHOTON_CAUSTIC || emission == EMISSION_UNIFORM)
+        return photon_emit(task->scene, &task->w, guide_of(task), random, out);
+    if (emission == EMISSION_SPECULAR_AREA)
         return photon_emit_aimed(task->casters, &task->w, random, out);
     return photon_emit_caustic(task->casters, &task->w, guide_of(task), random, out);
 }

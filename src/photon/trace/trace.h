@@ -76,7 +76,7 @@ typedef struct trace_task {
     uint32_t pass;
     photon_class photon_class;      /**< of one map for all: PHOTON_INDIRECT */
     const caustic_casters *casters; /**< for caustics that are not EMISSION_UNIFORM */
-    const emission_guide *guide;    /**< for EMISSION_GUIDED caustics; NULL: uniform */
+    const emission_guide *guide;    /**< for EMISSION_GUIDED; NULL: uniform */
     const caustic_mis *mis; /**< of caustics: what they leave to paths from the eye;
                                    NULL: nothing. With it, photons that landed go on and
                                    land again where specular or glossy bounces take them

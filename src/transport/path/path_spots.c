@@ -65,12 +65,20 @@ static bool meet_surface(path_walk *walk, const camera_path *path,
                       &pass->options, &out->bsdf);
 }
 
+/* Of a look from p at q; as dear as a query of a map. */
+static float density(path_walk *walk, const photon_spots *spots, vec3 p, vec3 wi, vec3 q)
+{
+    walk->scratch->estimate.n_queries++;
+    return photon_spots_pdf(spots, p, wi, q);
+}
+
 static bool look_at_spot(path_walk *walk, const camera_path *path, const surface_hit *hit,
                          const bsdf *b, const light_numbers *u, look *out)
 {
     int spot;
     const photon_spots *spots = spots_of(walk, hit->time);
     vec3 wo = -path->at.ray.direction;
+    walk->scratch->estimate.n_queries++;
     if (!spots ||
         !photon_spots_sample(spots, hit->p, u->light, u->place, &spot, &out->wi))
         return false;
@@ -79,7 +87,7 @@ static bool look_at_spot(path_walk *walk, const camera_path *path, const surface
         !is_seen_alike(bsdf_has_both(b), &out->bsdf) ||
         !photon_spots_landed(spots, spot, hit->p, out->wi, out->hit.p))
         return false;
-    out->pdf = photon_spots_pdf(spots, hit->p, out->wi, out->hit.p);
+    out->pdf = density(walk, spots, hit->p, out->wi, out->hit.p);
     return true;
 }
 
@@ -137,12 +145,10 @@ static void look_aside(path_walk *walk, const camera_path *path, const surface_h
         note_look(walk, &before, &seen, importance(path), weight);
 }
 
-/* What it cost: the rays, asking for the density and, where there are photons, for them.
- */
-static void note_cost(const path_walk *walk, const camera_path *path, uint64_t before)
+/* What it cost. */
+static void note_cost(const path_walk *walk, const camera_path *path, double before)
 {
-    double queries = walk->pass->caustics ? 2.0 : 1.0;
-    double rays = (double)(walk->scratch->shadow_rays - before) + queries * PHOTON_RAYS;
+    double rays = plan_rays_of(walk->scratch) - before;
     walk->pass->trial->rays += rays * (double)importance(path);
 }
 
@@ -150,12 +156,12 @@ void path_look_at_spots(path_walk *walk, const camera_path *path, const surface_
                         const bsdf *b)
 {
     float p = path_looks(walk, path, b);
-    uint64_t before = walk->scratch->shadow_rays;
     if (!(p > 0.0f))
         return;
     const light_numbers u = sampler_light(walk->random);
     if (!(u.primitive < p))
         return;
+    double before = plan_rays_of(walk->scratch);
     look_aside(walk, path, hit, b, &u, p);
     if (walk->pass->trial)
         note_cost(walk, path, before);
@@ -167,6 +173,6 @@ float path_weight_beside_spots(path_walk *walk, const camera_path *path,
     const photon_spots *spots = path->looked > 0.0f ? spots_of(walk, hit->time) : NULL;
     if (!spots || !(path->pdf > 0.0f) || !is_seen_alike(path->by_either, b))
         return 1.0f;
-    float pdf = photon_spots_pdf(spots, path->from, path->at.ray.direction, hit->p);
+    float pdf = density(walk, spots, path->from, path->at.ray.direction, hit->p);
     return followed_weight(path->pdf, pdf * path->looked);
 }

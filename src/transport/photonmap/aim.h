@@ -1,6 +1,8 @@
 /*
- * Learning where to emit: rounds of trial photons, before the first pass, teach the guide
- * which starts lead to caustics that the camera sees.
+ * Learning where to emit: rounds of trial photons, before the first pass, teach a guide
+ * which starts lead where the photons of a class are wanted: caustics in sight of the
+ * camera, other light on any surface of the scene, for the next bounce brings it in
+ * sight.
  */
 #pragma once
 
@@ -22,11 +24,15 @@ typedef struct aim_result {
                      photons are sent; the caller frees it with g_free */
 } aim_result;
 
-/** @brief Sends trial photons of the caustic class; from them makes plan->guide where the
- * settings ask for it and photons with it are less noisy for their rays than those
- * without. false when cancelled or out of memory. Deterministic: it depends on scene and
- * settings only.
- * @param result NULL: not asked for; unchanged where no photons are sent
- */
+/** @brief Sends trial photons of the class, which tell plan->brought and plan->price.
+ * Where the settings ask for it, makes plan->guide if photons with it are clearly less
+ * noisy for their rays than those without; of caustics, if they are less noisy at all.
+ * false when cancelled or out of memory. Deterministic: it depends on scene and settings
+ * only. */
+bool aim_photons(transport_plan *plan, photon_class c, const cancel_flag *cancel,
+                 GError **error);
+
+/** @brief The same of caustics, also where no guide is asked for, and what paths have of
+ * them. @param result unchanged where no photons are sent */
 bool aim_caustics(transport_plan *plan, aim_result *result, const cancel_flag *cancel,
                   GError **error);

@@ -30,20 +30,60 @@ static bool class_needed(const transport_plan *plan, photon_class c)
     }
 }
 
+static bool class_shares(const transport_plan *plan, photon_class c)
+{
+    return class_needed(plan, c) && plan->how.class_photons[c] == 0;
+}
+
+/* What the photons of a class that shares them bring, over those of all: by the root of
+   the mean square, since of an estimate that is the noise. 1 before trials have told. */
+static double brings(const transport_plan *plan, photon_class c)
+{
+    double all = 0.0;
+    for (int i = 0; i < N_PHOTON_CLASSES; i++) {
+        bool shares = class_shares(plan, (photon_class)i);
+        if (shares && plan->how.class_emission[i] != EMISSION_GUIDED)
+            return 1.0;
+        all += shares ? sqrt(plan->brought[i]) : 0.0;
+    }
+    return all > 0.0 ? sqrt(plan->brought[c]) / all : 1.0;
+}
+
+/* Classes that share photons get equal parts, for what brings little may be sharp; but
+   what brings next to nothing as much less. With parts in proportion to what they bring
+   photon mapping has 1.06 times the squared error, shown (.73 to 1.7, twelve scenes, 256
+   x 256, 2 s, three seeds); with equal ones auto's maps have 1.3 to 1.4 through a window,
+   where no caustics are, and 1.1 in a long hall. */
+static double weight_of(const transport_plan *plan, photon_class c)
+{
+    const double least = (double)DEFENSIVE_SHARE;
+    return class_shares(plan, c) ? CLAMP(brings(plan, c) / least, least, 1.0) : 0.0;
+}
+
 void photonmap_share_photons(transport_plan *plan)
 {
-    unsigned n_sharing = 0;
     uint64_t times = plan->how.photons_per_light ? plan->scene->lights->len : 1;
-    int64_t shared = settings_photons(&plan->how);
+    double shared = (double)settings_photons(&plan->how), all = 0.0;
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
-        n_sharing +=
-            class_needed(plan, (photon_class)c) && plan->how.class_photons[c] == 0;
+        all += weight_of(plan, (photon_class)c);
     for (int c = 0; c < N_PHOTON_CLASSES; c++) {
         int64_t own = plan->how.class_photons[c];
         bool needed = class_needed(plan, (photon_class)c);
-        int64_t n = own > 0 ? own : n_sharing > 0 ? shared / n_sharing : 0;
+        double part = shared * weight_of(plan, (photon_class)c);
+        int64_t n = own > 0 ? own : needed ? (int64_t)(part / all) : 0;
         plan->n_photons[c] = needed ? (uint64_t)MAX(n, 1) * times : 0;
     }
+}
+
+/* Trials of each class that is sent, by which photons are shared. */
+static bool aim_all(transport_plan *plan, const cancel_flag *cancel, GError **error)
+{
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        if (plan->n_photons[c] > 0 && plan->how.class_emission[c] == EMISSION_GUIDED &&
+            !aim_photons(plan, (photon_class)c, cancel, error))
+            return false;
+    photonmap_share_photons(plan);
+    return true;
 }
 
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
@@ -55,7 +95,7 @@ static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **er
     for (int c = 0; c < N_PHOTON_CLASSES; c++)
         n_photons += (double)plan->n_photons[c];
     plan_ask(plan, n_photons);
-    return (plan_is_tiny(plan) || aim_caustics(plan, NULL, cancel, error)) &&
+    return (plan_is_tiny(plan) || aim_all(plan, cancel, error)) &&
            photonmap_choose_radii(plan, cancel, error);
 }
 
@@ -93,7 +133,7 @@ static trace_task trace_task_for(const slice_task *s, const cancel_flag *cancel)
         .pass = pass->index,
         .photon_class = s->c,
         .casters = pass->plan->casters,
-        .guide = pass->plan->guide,
+        .guide = pass->plan->guide[s->c],
         .mis = pass->plan->uses_mis ? &pass->mis : NULL,
         .n_photons = each,
         .first = each * (uint64_t)s->slice,

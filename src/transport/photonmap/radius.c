@@ -185,7 +185,7 @@ static bool send_pilot(const pilot *p, photon_class c, const cancel_flag *cancel
         .pass = plan_trial_pass(TRIAL_RADII),
         .photon_class = c,
         .casters = plan->casters,
-        .guide = plan->guide,
+        .guide = plan->guide[c],
         .mis = plan->uses_mis ? &plan->mis : NULL,
         .n_photons = n_pilots(plan, c),
         .cancel = cancel,

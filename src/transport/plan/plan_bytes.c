@@ -93,7 +93,8 @@ void plan_put(const transport_plan *plan, GByteArray *to)
     put_cache(plan->vertex_radii, to);
     put_lit(plan, to);
     put_shares(plan, to);
-    emission_guide_put(plan->guide, to);
+    for (int c = 0; c < N_PHOTON_CLASSES; c++)
+        emission_guide_put(plan->guide[c], to);
 }
 
 /* ---- Reading ---- */
@@ -192,8 +193,8 @@ static bool get_all(transport_plan *plan, bytes_reader *from, GError **error)
     if (ok)
         get_lit(plan, from);
     ok = ok && get_shares(plan, from, error);
-    if (ok)
-        plan->guide = emission_guide_get(from);
+    for (int c = 0; c < N_PHOTON_CLASSES && ok; c++)
+        plan->guide[c] = emission_guide_get(from);
     return ok;
 }
 
