@@ -32,7 +32,8 @@ enum { EMISSION_DIMENSIONS = 6 };
  * out step by step, and what arrives from there unforeseen is not much heavier than its
  * neighbours. Of two sides of glass that the eye's path may go on by each gets so much at
  * least. A photon that lands out of the camera's sight is worth this share of one in
- * sight: it may still be seen by way of other surfaces. With half as much relMSE x time
+ * sight: it may still be seen by way of other surfaces. Of classes that share photons
+ * none gets less than this share of what another gets. With half as much relMSE x time
  * is 1.3 times as much by auto in a Cornell box with glass, alike by sppm and in ball,
  * water, fog and scenes/ring; with twice as much it is alike in all of them (128 x 128, 4
  * and 8 passes, three seeds). */
