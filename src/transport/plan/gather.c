@@ -19,7 +19,7 @@ static bool may_gather(const transport_plan *plan)
 /* Photons as of photon mapping, but all of them together take no longer than the camera,
    unless the caustics alone have more without gathering: of those there are no fewer.
    By what indirect ones take, not twice SAMPLE_RAYS each, what is shown has .8 of the
-   squared error through two windows, where few land, and .97 in eleven rooms (256 x 256,
+   squared error through two windows, where few land, and 1.01 in eleven rooms (256 x 256,
    2 s, three seeds). With twice as many there were fewer passes of the camera's noise:
    shown errors at equal time are 1.11 of that in five fogs (128 x 128, .5 to 2 s), 1.01
    in eleven rooms (256 x 256, .7 and 2 s); as rendered .74 and .90. By what trials say of
