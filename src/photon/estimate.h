@@ -46,7 +46,8 @@ typedef struct estimate_options {
  * the end. */
 typedef struct estimate_scratch {
     point_hits hits;
-    uint64_t n_queries, n_looks; /**< of maps so far, and short rays for edges */
+    uint64_t n_queries, n_looks; /**< of maps and spots so far, and short rays for
+                                    edges */
     uint64_t n_weighed;          /**< photons, once for each number that they were
                                     weighed by: a kernel's, or a BSDF's wavelengths */
     looked_around looked;        /**< what queries that share their looks have seen */

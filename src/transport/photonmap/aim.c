@@ -353,8 +353,9 @@ static bool learn(trials *all, GError **error)
 }
 
 /* By the last round's photons: whether those that are drawn with the guide are clearly
-   less noisy for their rays than uniform ones. An estimate has of each photon the square
-   of its flux. */
+   less noisy for their rays than uniform ones; of caustics, which are sharp, if they are
+   so at all: clearly there, too, water by auto has 1.2 times the error (256 x 256, 1 and
+   3 s, three seeds). An estimate has of each photon the square of its flux. */
 static bool guide_pays(const trials *all)
 {
     const bool of_caustics = all->task.photon_class == PHOTON_CAUSTIC;
