@@ -33,7 +33,7 @@ material *material_new(const build_context *context, const char *kind, const par
     if (!self)
         return NULL;
     material *m = g_new0(material, 1);
-    *m = (material){.kind = k, .self = self};
+    *m = (material){.kind = k, .self = self, .lobes = k->possible_lobes(self)};
     if (!bump_new(&m->bump, context, p, error) || !params_all_used(p, what, error)) {
         material_free(m);
         return NULL;
@@ -64,7 +64,7 @@ void material_bsdf(const material *m, const surface_hit *hit, const wavelengths 
 
 bool material_casts_caustics(const material *m)
 {
-    return m->kind->possible_lobes(m->self) & (LOBE_SPECULAR | LOBE_GLOSSY);
+    return m->lobes & (LOBE_SPECULAR | LOBE_GLOSSY);
 }
 
 bool material_is_conductor(const material *m)
@@ -85,9 +85,4 @@ bool material_encloses(const material *m)
 bool material_is_pane(const material *m)
 {
     return m->kind->is_pane && m->kind->is_pane(m->self);
-}
-
-unsigned material_possible_lobes(const material *m)
-{
-    return m->kind->possible_lobes(m->self);
 }

@@ -42,6 +42,7 @@ typedef struct material_kind {
 typedef struct material {
     const material_kind *kind;
     void *self;
+    unsigned lobes; /**< classes and sides that may occur anywhere on it */
     bump *bump; /**< what bends its normals; NULL: nothing */
     char *name; /**< from MakeNamedMaterial; NULL if none */
 } material;
@@ -64,8 +65,6 @@ void material_bsdf(const material *m, const surface_hit *hit, const wavelengths 
 bool material_encloses(const material *m);
 /** @brief True if light may go straight through it somewhere (bsdf_straight). */
 bool material_is_pane(const material *m);
-/** @brief Lobe classes and sides that may occur anywhere on it. */
-unsigned material_possible_lobes(const material *m);
 /** @brief What fills a solid made of it; NULL: none. */
 const struct medium *material_interior(const material *m);
 

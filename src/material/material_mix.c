@@ -63,7 +63,7 @@ static bool measure(mixture *m, const params *p, GError **error)
         const material *part = m->parts[i];
         const mixture *inner = part->kind == &material_mix ? part->self : NULL;
         m->depth = MAX(m->depth, inner ? inner->depth + 1 : 1);
-        m->lobes |= part->kind->possible_lobes(part->self);
+        m->lobes |= part->lobes;
         m->is_pane |= material_is_pane(part);
     }
     if (m->depth <= DEEPEST)

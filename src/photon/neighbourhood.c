@@ -71,10 +71,46 @@ static vec3 lifted(const neighbourhood *hood, vec3 p)
     return p + hood->n * slab(hood);
 }
 
+/* Turned as the disc is, as photons are told apart. */
+static bool lies_along(const neighbourhood *hood, const surface_hit *hit)
+{
+    float cosine = dot3(hit->n_geom, hood->n);
+    return cosine * cosine > SAME_SURFACE;
+}
+
+/* Mirrors and clear glass keep none. */
+static bool keeps_photons(const neighbourhood *hood, const surface_hit *hit)
+{
+    return scene_possible_lobes(hood->scene, hit) & (LOBE_DIFFUSE | LOBE_GLOSSY);
+}
+
+static bool is_clear(const neighbourhood *hood, const surface_hit *hit)
+{
+    return !keeps_photons(hood, hit) &&
+           (scene_possible_lobes(hood->scene, hit) & LOBE_TRANSMISSION);
+}
+
+/* True if what a ray met may be the disc's own surface. */
+static bool is_alike(const neighbourhood *hood, const surface_hit *hit)
+{
+    return lies_along(hood, hit) && keeps_photons(hood, hit);
+}
+
+/* Clear glass that lies along the disc, a pane in a wall or the foot of a glass, is
+   looked through. */
+static bool look_behind(neighbourhood *hood, const ray *r, surface_hit *hit)
+{
+    while (hit->shape != NO_INDEX && lies_along(hood, hit) && is_clear(hood, hit)) {
+        hood->n_looks++;
+        scene_meet_behind(hood->scene, r, hit);
+    }
+    return hit->shape != NO_INDEX;
+}
+
 static bool look(neighbourhood *hood, const ray *r, surface_hit *hit)
 {
     hood->n_looks++;
-    return scene_meet_surface(hood->scene, r, hit);
+    return scene_meet_surface(hood->scene, r, hit) && look_behind(hood, r, hit);
 }
 
 /* hits[i].shape is NO_INDEX where nothing was met. */
@@ -83,13 +119,6 @@ static void look_together(neighbourhood *hood, const ray *rays, int n, surface_h
     hood->n_looks += (uint32_t)n;
     for (int i = 0; i < n; i += RAY_PACKET)
         scene_meet_surfaces(hood->scene, rays + i, MIN(n - i, RAY_PACKET), hits + i);
-}
-
-/* True if what a ray met is not turned away from the disc, as photons are told apart. */
-static bool is_alike(const neighbourhood *hood, const surface_hit *hit)
-{
-    float cosine = dot3(hit->n_geom, hood->n);
-    return cosine * cosine > SAME_SURFACE;
 }
 
 /* From above a point q of the plane through all that counts as surface. */
@@ -103,9 +132,9 @@ static ray down_to(const neighbourhood *hood, vec3 q)
 
 /* How far the surface that such a ray met lies off the plane, over what is allowed; 1 or
    more: there is none. */
-static float surface_height(const neighbourhood *hood, const surface_hit *hit)
+static float surface_height(neighbourhood *hood, const ray *r, surface_hit *hit)
 {
-    bool found = hit->shape != NO_INDEX && is_alike(hood, hit);
+    bool found = look_behind(hood, r, hit) && is_alike(hood, hit);
     return found ? fabsf(hit->t / slab(hood) - 1.0f) : 1.0f;
 }
 
@@ -124,10 +153,10 @@ static ray along_surface(const neighbourhood *hood, vec3 d)
 /* From the rim down to what bends away. */
 static ray below_rim(const neighbourhood *hood, vec3 d)
 {
-    return (ray){.origin = hood->p + d * hood->radius,
+    return (ray){.origin = lifted(hood, hood->p + d * hood->radius),
                  .time = hood->time,
                  .direction = -hood->n,
-                 .t_max = hood->radius};
+                 .t_max = hood->radius + slab(hood)};
 }
 
 /* True if what a ray met is joined to the centre by a line or an arc: then both normals
@@ -247,7 +276,7 @@ float neighbourhood_coverage(neighbourhood *hood, const kernel *k)
     }
     look_together(hood, down, n, hit);
     for (int i = 0; i < n; i++) {
-        float height = surface_height(hood, &hit[i]);
+        float height = surface_height(hood, &down[i], &hit[i]);
         if (height < 1.0f)
             found += kernel_eval(k, maxf(d2[i], height * height), 1.0f) /
                      spread_density(spread, d2[i]);

@@ -13,13 +13,17 @@
  * Four of them, to the rim, tell whether anything is amiss; where it is, photons are held
  * to the same test and the area is that of the part that passes it.
  *
+ * No photons are kept on mirrors and clear glass: they are no surface, and glass that
+ * lies along the disc, a pane in a wall or the foot of a glass on a table, is looked
+ * through for what is. Else the wall around a pane would be dark.
+ *
  * A surface that bends evenly is whole too: a ball of radius r cuts π r² out of a sphere
  * of any size. It is met above or below the plane, where both normals make the same angle
  * with the chord, as on an arc.
  *
  * Without the down of it /neighbourhood/edge and /knob-pictures/edges fail, without the
- * along /neighbourhood/wall, without the arc /neighbourhood/bent. bench/edges says what
- * it is worth.
+ * along /neighbourhood/wall, without the arc /neighbourhood/bent, with panes as surfaces
+ * /neighbourhood/flush. bench/edges says what it is worth.
  */
 #pragma once
 

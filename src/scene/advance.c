@@ -98,24 +98,28 @@ bool scene_scatterer(const scene *s, const surface_hit *hit, const wavelengths *
     return true;
 }
 
-/* Behind the interface that the ray met. */
-static bool meet_behind(const scene *s, ray r, surface_hit *hit)
+bool scene_meet_behind(const scene *s, const ray *r, surface_hit *hit)
 {
+    ray on = *r;
     float length = 0.0f;
-    for (int i = 0; i < MOST_CROSSINGS && hit->material == NO_INDEX; i++) {
+    for (int i = 0; i < MOST_CROSSINGS; i++) {
         length += hit->t;
-        go_behind(&r, hit);
-        if (!scene_intersect(s, &r, hit))
-            return false;
+        go_behind(&on, hit);
+        if (!scene_intersect(s, &on, hit))
+            break;
+        if (hit->material != NO_INDEX) {
+            hit->t += length;
+            return true;
+        }
     }
-    hit->t += length;
-    return true;
+    hit->shape = NO_INDEX;
+    return false;
 }
 
 bool scene_meet_surface(const scene *s, const ray *r, surface_hit *hit)
 {
     return scene_intersect(s, r, hit) &&
-           (hit->material != NO_INDEX || meet_behind(s, *r, hit));
+           (hit->material != NO_INDEX || scene_meet_behind(s, r, hit));
 }
 
 void scene_meet_surfaces(const scene *s, const ray *rays, int n, surface_hit *hits)
@@ -125,8 +129,8 @@ void scene_meet_surfaces(const scene *s, const ray *rays, int n, surface_hit *hi
         if (hits[i].shape == NO_INDEX)
             continue;
         scene_fill_hit(s, &rays[i], &hits[i]);
-        if (hits[i].material == NO_INDEX && !meet_behind(s, rays[i], &hits[i]))
-            hits[i].shape = NO_INDEX;
+        if (hits[i].material == NO_INDEX)
+            scene_meet_behind(s, &rays[i], &hits[i]);
     }
 }
 

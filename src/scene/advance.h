@@ -89,6 +89,11 @@ bool scene_scatterer(const scene *s, const surface_hit *hit, const wavelengths *
  *  @param hit hit->t is measured from where r starts, m */
 bool scene_meet_surface(const scene *s, const ray *r, surface_hit *hit);
 
+/** @brief The nearest surface with a material behind the one that the ray met.
+ *  @param hit that one; hit->t is measured from where r starts, m; hit->shape is NO_INDEX
+ *  where there is none */
+bool scene_meet_behind(const scene *s, const ray *r, surface_hit *hit);
+
 /** @brief scene_meet_surface of the rays of a packet (accel_intersect_packet). */
 void scene_meet_surfaces(const scene *s, const ray *rays, int n, surface_hit *hits);
 

@@ -82,9 +82,15 @@ wavelengths scene_trial_wavelengths(const scene *s, uint32_t trial)
     return wavelengths_drawn(s->lines, s->lines ? wavelength_offset(0, trial) : 0.5f);
 }
 
+unsigned scene_possible_lobes(const scene *s, const surface_hit *hit)
+{
+    const material *m = s->materials->pdata[hit->material];
+    return m->lobes;
+}
+
 unsigned scene_lobes_around(const scene *s, const surface_hit *hit, const bsdf *b)
 {
-    return b->lobes | material_possible_lobes(s->materials->pdata[hit->material]);
+    return b->lobes | scene_possible_lobes(s, hit);
 }
 
 bool scene_bsdf(const scene *s, const surface_hit *hit, const wavelengths *w,

@@ -227,6 +227,8 @@ spectrum scene_emitted(const scene *s, const surface_hit *hit, vec3 wo,
 bool scene_has_delta_lights(const scene *s);
 /** @brief True if some light is none of these. */
 bool scene_has_lights_to_see(const scene *s);
+/** @brief Lobe classes and sides that may occur on what was hit, which has a material. */
+unsigned scene_possible_lobes(const scene *s, const surface_hit *hit);
 /** @brief Lobe classes and sides of the surface at the hit or beside it: a mixture is one
  * material here and another a hair away, where the eye may gather what landed here. */
 unsigned scene_lobes_around(const scene *s, const surface_hit *hit, const bsdf *b);

@@ -310,34 +310,89 @@ static double share_before(const kernel *k, double line)
     return before / all;
 }
 
-/* What is found beside a straight edge is what the kernel weighs there, by its looks on
-   average, whichever kernel. */
+/* Share found beside the floor's edge at x = 1, so many radii before it, by looks on
+   average. */
+static double share_found(const scene *s, const kernel *k, double off)
+{
+    enum { PLACES = 2000 };
+    double sum = 0;
+    for (int place = 0; place < PLACES; place++) {
+        float y = 1.6f * (float)place / PLACES - 0.8f;
+        neighbourhood hood = {.scene = s,
+                              .p = {1.0f - (float)off * radius, y, 0},
+                              .n = {0, 0, 1},
+                              .radius = radius};
+        sum += neighbourhood_is_whole(&hood) ? 1.0
+                                             : (double)neighbourhood_coverage(&hood, k);
+    }
+    return sum / PLACES;
+}
+
+static const double before_edge[] = {0.05, 0.3, 0.6};
+
+/* What is found beside a straight edge is what the kernel weighs there, whichever
+ * kernel. */
 static void test_coverage_is_the_share_of_the_kernel(void)
 {
     static const kernel kernels[] = {{KERNEL_CONSTANT, 1},
                                      {KERNEL_CONE, 1.1f},
                                      {KERNEL_GAUSSIAN, 1},
                                      {KERNEL_EPANECHNIKOV, 1}};
-    static const double line[] = {0.05, 0.3, 0.6};
-    enum { PLACES = 2000 };
+    const size_t n_lines = G_N_ELEMENTS(before_edge);
     g_autoptr(scene) s = scene_of(CAMERA "WorldBegin\n" LAMP FLOOR);
-    for (size_t i = 0; i < G_N_ELEMENTS(kernels) * G_N_ELEMENTS(line); i++) {
-        const kernel *k = &kernels[i % G_N_ELEMENTS(kernels)];
-        double off = line[i / G_N_ELEMENTS(kernels)], sum = 0;
-        for (int place = 0; place < PLACES; place++) {
-            float y = 1.6f * (float)place / PLACES - 0.8f;
-            neighbourhood hood = {.scene = s,
-                                  .p = {1.0f - (float)off * radius, y, 0},
-                                  .n = {0, 0, 1},
-                                  .radius = radius};
-            sum += neighbourhood_is_whole(&hood)
-                       ? 1.0
-                       : (double)neighbourhood_coverage(&hood, k);
-        }
+    for (size_t i = 0; i < G_N_ELEMENTS(kernels) * n_lines; i++) {
+        const kernel *k = &kernels[i / n_lines];
+        double off = before_edge[i % n_lines], found = share_found(s, k, off);
         double expected = share_before(k, off);
         g_test_message("kernel %d, %g radii before the edge: %g, expected %g",
-                       (int)k->choice, off, sum / PLACES, expected);
-        g_assert_cmpfloat(fabs(sum / PLACES - expected), <, 0.006);
+                       (int)k->choice, off, found, expected);
+        g_assert_cmpfloat(fabs(found - expected), <, 0.006);
+    }
+}
+
+/* In the floor's plane beyond its edge, and what lies so close below. */
+#define STRIP                                                                            \
+    "\nShape \"trianglemesh\" \"point3 P\" [1 -1 0 2 -1 0 2 1 0 1 1 0] \"integer "       \
+    "indices\" "                                                                         \
+    "[0 1 2 0 2 3]\n"
+#define SOLE                                                                             \
+    "AttributeBegin Translate 1.5 0 -.001 Material \"diffuse\" "                         \
+    "Shape \"bilinearmesh\" \"point3 P\" [-.5 -1 0 .5 -1 0 -.5 1 0 .5 1 0] "             \
+    "AttributeEnd\n"
+
+/* What lies flush beside the floor is its surface if photons may be kept on it, or on
+   what shows through it. */
+static void test_only_what_keeps_photons_is_surface(void)
+{
+    static const struct {
+        const char *what, *text;
+        bool is_surface;
+    } strips[] = {
+        {"board", "Material \"diffuse\"" STRIP, true},
+        {"mirror", "Material \"conductor\" \"float roughness\" 0" STRIP, false},
+        {"metal", "Material \"conductor\" \"float roughness\" 0.2" STRIP, true},
+        {"glass", "Material \"dielectric\"" STRIP, false},
+        {"pane", "Material \"thindielectric\"" STRIP, false},
+        {"glass on a board", "Material \"dielectric\"" STRIP SOLE, true},
+        {"mirror on a board", "Material \"conductor\" \"float roughness\" 0" STRIP SOLE,
+         false},
+        {"half a pane",
+         "MakeNamedMaterial \"a\" \"string type\" \"thindielectric\" "
+         "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" "
+         "Material \"mix\" \"string materials\" [\"a\" \"b\"]" STRIP,
+         true},
+    };
+    const kernel k = {KERNEL_EPANECHNIKOV, 1};
+    const size_t n_lines = G_N_ELEMENTS(before_edge);
+    for (size_t i = 0; i < G_N_ELEMENTS(strips) * n_lines; i++) {
+        g_autofree char *text =
+            g_strconcat(CAMERA "WorldBegin\n" LAMP FLOOR, strips[i / n_lines].text, NULL);
+        g_autoptr(scene) s = scene_of(text);
+        double off = before_edge[i % n_lines], found = share_found(s, &k, off);
+        double expected = strips[i / n_lines].is_surface ? 1 : share_before(&k, off);
+        g_test_message("%s, %g radii before it: %g, expected %g",
+                       strips[i / n_lines].what, off, found, expected);
+        g_assert_cmpfloat(fabs(found - expected), <, 0.006);
     }
 }
 
@@ -393,6 +448,7 @@ int main(int argc, char **argv)
     g_test_add_func("/neighbourhood/ball", test_ball_is_as_bright_as_a_plane);
     g_test_add_func("/neighbourhood/size", test_any_size);
     g_test_add_func("/neighbourhood/coverage", test_coverage_is_the_share_of_the_kernel);
+    g_test_add_func("/neighbourhood/flush", test_only_what_keeps_photons_is_surface);
     g_test_add_func("/neighbourhood/some", test_some_are_seen_as_each);
     g_test_add_func("/neighbourhood/bent", test_what_bends_is_whole);
     return g_test_run();

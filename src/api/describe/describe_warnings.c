@@ -136,8 +136,7 @@ static void inspect_touching(inspection *in, guint i, unsigned n_queries)
 static bool lets_light_through(const scene *s, const surface_hit *hit)
 {
     return hit->material == NO_INDEX ||
-           (material_possible_lobes(s->materials->pdata[hit->material]) &
-            LOBE_TRANSMISSION);
+           (scene_possible_lobes(s, hit) & LOBE_TRANSMISSION);
 }
 
 enum { N_WAYS = 26 };
