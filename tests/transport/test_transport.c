@@ -6,6 +6,7 @@
 #include "photon/direction.h"
 #include "rooms.h"
 #include "transport/photonmap/photonmap.h"
+#include "transport/visible.h"
 
 /* ---- Furnace ---- */
 
@@ -380,6 +381,36 @@ static double seen_by(const char *world, const char *how, double *rays)
     return mean_of(img, "");
 }
 
+/* A floor with nothing around it, so that no photon lands there a second time. */
+#define LONE_FLOOR                                                                       \
+    "LookAt 0 0 1 0 0 0 0 1 0 Camera \"perspective\" Film \"rgb\" \"integer "            \
+    "xresolution\" 8 \"integer yresolution\" 8 WorldBegin LightSource \"point\" "        \
+    "\"point3 from\" [0 0 4] Material \"diffuse\" Shape \"disk\" \"float radius\" 1\n"
+
+static double indirect_radius(const view *v, const char *words, double *widest)
+{
+    g_autoptr(GError) error = NULL;
+    const settings how = settings_with(v->scene, words);
+    transport_plan plan = transport_plan_of(v, &how);
+    transport_plan_prepare(&plan, NULL, &error);
+    g_assert_no_error(error);
+    double radius = plan.radius[PHOTON_INDIRECT];
+    *widest = widest_radius(&plan);
+    transport_plan_clear(&plan);
+    return radius;
+}
+
+/* Where hardly any photon may land in a pass radii are as wide as may be; where there are
+   so many that each disc may hold some, nothing tells of one. */
+static void test_radius_where_none_landed(void)
+{
+    g_autoptr(view) v = view_of(LONE_FLOOR);
+    double widest, radius = indirect_radius(v, "photons=20000 passes=1", &widest);
+    g_assert_cmpfloat(fabs(radius - widest), <, 1e-6 * widest);
+    radius = indirect_radius(v, "photons=20000000 passes=4000", &widest);
+    g_assert_cmpfloat(fabs(radius - WIDEST_SHARE * widest), <, 1e-6 * widest);
+}
+
 /* Long ways end by chance, and what is seen stays as bright as by path tracing, whose
    paths are the same but where they end. */
 static void test_long_ways(void)
@@ -479,6 +510,7 @@ int main(int argc, char **argv)
     g_test_add_func("/transport/shadow-rays", test_shadow_rays_off_lights_through);
     g_test_add_func("/transport/cancel", test_cancel_keeps_what_there_is);
     g_test_add_func("/transport/cancel-soon", test_cancel_acts_soon);
+    g_test_add_func("/transport/none-landed", test_radius_where_none_landed);
     g_test_add_func("/transport/long-ways", test_long_ways);
     g_test_add_func("/transport/sky", test_sky_without_grain);
     static const char *const all[] = {"path", "auto", "vcm", "photonmap", "sppm"};

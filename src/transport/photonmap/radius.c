@@ -71,9 +71,10 @@ typedef struct pilot {
     point_set *sight; /* over the plan's */
 } pilot;
 
-/* A bound of a class' radii, and what turns the pilot's distances into radii. */
+/* A bound of a class' radii, what turns the pilot's distances into radii, and what stands
+   for them where it tells of none. */
 typedef struct radius_rule {
-    double scale, largest;
+    double scale, largest, untold;
     const pilot *pilot;
     const photon_map *map; /* of the class' photons */
 } radius_rule;
@@ -120,21 +121,21 @@ static radius_cache *cache_radii(const radius_rule *rule, GError **error)
 }
 
 /* The median over the places where the camera looks or, for caustics and in media, where
-   photons are. Where no two of them landed nothing asks for width. */
+   photons are. */
 static bool typical_radius(const radius_rule *rule, const radius_cache *cache,
                            bool at_photons, double *typical, GError **error)
 {
     const transport_plan *plan = rule->pilot->plan;
     const photon_store *store = photon_map_store(rule->map);
     size_t n = at_photons ? MIN(store->n, MOST_PLACES) : plan->n_sight;
-    float narrow = (float)unknown_radius(plan);
+    float untold = (float)rule->untold;
     float *radii = g_new0(float, n + 1);
     point_hits hits = {0};
     for (size_t i = 0; i < n; i++)
         radii[i] = at_photons
                        ? radius_cache_nth(cache, i)
-                       : radius_cache_at(cache, plan->sight[i].p, narrow, NULL, &hits);
-    *typical = store->n > 1 && n > 0 ? (double)median(radii, n) : (double)narrow;
+                       : radius_cache_at(cache, plan->sight[i].p, untold, NULL, &hits);
+    *typical = store->n > 1 && n > 0 ? (double)median(radii, n) : rule->untold;
     bool refused = hits.refused;
     point_hits_clear(&hits);
     g_free(radii);
@@ -216,6 +217,16 @@ static double density_over_pilot(const pilot *p, photon_class c, const pilot_map
     return (double)p->plan->n_photons[c] / n_slices / (double)maps->n_emitted;
 }
 
+/* Where no two photons of a pilot landed nothing asks for width; but if with one more all
+   in the map would still be fewer than are wanted in a disc, it is as wide as it may be.
+ */
+static double untold_radius(const transport_plan *plan, const photon_map *map,
+                            double density, double wanted)
+{
+    double most = (double)(photon_map_store(map)->n + 1) * density;
+    return most < wanted ? widest_radius(plan) : unknown_radius(plan);
+}
+
 static bool choose_on_surfaces(pilot *p, photon_class c, const pilot_maps *maps,
                                GError **error)
 {
@@ -223,9 +234,11 @@ static bool choose_on_surfaces(pilot *p, photon_class c, const pilot_maps *maps,
     const photon_map *map = maps->on_surfaces;
     double density = density_over_pilot(p, c, maps);
     double in_map = (double)photon_map_store(map)->n * density;
+    double wanted = wanted_in_reach(plan, c, in_map);
     const radius_rule rule = {
-        .scale = sqrt(wanted_in_reach(plan, c, in_map) / RADIUS_NEAREST / density),
+        .scale = sqrt(wanted / RADIUS_NEAREST / density),
         .largest = widest_radius(plan),
+        .untold = untold_radius(plan, map, density, wanted),
         .pilot = p,
         .map = map,
     };
@@ -249,6 +262,7 @@ static bool choose_in_media(pilot *p, photon_class c, const pilot_maps *maps,
     const radius_rule rule = {
         .scale = cbrt(wanted_in_ball() / RADIUS_NEAREST / density),
         .largest = widest_radius(plan),
+        .untold = untold_radius(plan, map, density, wanted_in_ball()),
         .pilot = p,
         .map = map,
     };
