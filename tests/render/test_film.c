@@ -219,6 +219,57 @@ static void test_cameras_agree(void)
     g_assert_nonnull(strstr(error->message, "orthographic"));
 }
 
+/* ---- Half a pass ---- */
+
+/* A wall, and before a part of it a lamp that is much brighter than white; each of them
+   fills whole pixels. */
+#define LAMP_BEFORE_WALL                                                                 \
+    "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 12\n"               \
+    "PixelFilter \"box\" \"float xradius\" 0.5 \"float yradius\" 0.5\n"                  \
+    "LookAt 0 0 4 0 0 0 0 1 0\nCamera \"orthographic\" \"float screenwindow\" "          \
+    "[-6 6 -6 6]\nWorldBegin\nLightSource \"point\" \"point3 from\" [2 1 3] \"rgb I\" "  \
+    "[9 9 9]\nShape \"disk\" \"float radius\" 20\n"                                      \
+    "AreaLightSource \"diffuse\" \"rgb L\" [99 99 99] Shape \"trianglemesh\" "           \
+    "\"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-1 -3 1 4 -3 1 4 4 1 -1 4 1]\n"
+
+/* Mean over those pixels on the sides of one that the lamp fills, or that it does not. */
+static float mean_beside(const image *img, int x, int y, bool lit)
+{
+    static const int to[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    float sum = 0.0f, n = 0.0f;
+    for (int k = 0; k < 4; k++) {
+        int u = x + to[k][0], v = y + to[k][1];
+        bool within = u >= 0 && u < 12 && v >= 0 && v < 12;
+        if (!within || (value(img, "emission.G", u, v) > 0.0f) != lit)
+            continue;
+        sum += value(img, "G", u, v);
+        n += 1.0f;
+    }
+    return sum / n;
+}
+
+/* Of half a pass every other pixel is there; the rest are as those beside them, and lamps
+   have their outlines. */
+static void test_half_a_pass(void)
+{
+    static const char how[] = "integrator=path denoise=off spp=1 planned_passes=1 ";
+    g_autoptr(view) v = view_of(LAMP_BEFORE_WALL);
+    g_autofree char *half_of = g_strconcat(how, "passes=.5", NULL);
+    g_autofree char *whole = g_strconcat(how, "passes=1", NULL);
+    g_autoptr(image) half = render_with(v, half_of);
+    g_autoptr(image) all = render_with(v, whole);
+    int n_lit = 0;
+    for (int i = 0; i < 144; i++) {
+        int x = i % 12, y = i / 12;
+        bool is_there = (x + y) % 2 == 0, lit = value(all, "emission.G", x, y) > 0.0f;
+        float expected = is_there ? value(all, "G", x, y) : mean_beside(all, x, y, lit);
+        g_assert_cmpint(value(half, "emission.G", x, y) > 0.0f, ==, lit);
+        g_assert_cmpfloat(fabsf(value(half, "G", x, y) - expected), <=, 1e-5f * expected);
+        n_lit += lit;
+    }
+    g_assert_cmpint(n_lit, ==, 5 * 7);
+}
+
 /* ---- Splats ---- */
 
 /* Some on the film and some beside it, several of the loop's pieces of them. */
@@ -280,6 +331,7 @@ int main(int argc, char **argv)
     g_test_add_func("/film/gbuffer/noise", test_gbuffer_noise);
     g_test_add_func("/film/gbuffer/file", test_gbuffer_file);
     g_test_add_func("/film/cameras", test_cameras_agree);
+    g_test_add_func("/film/half-a-pass", test_half_a_pass);
     g_test_add_func("/film/splats", test_splats_on_any_number_of_threads);
     return g_test_run();
 }

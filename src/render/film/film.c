@@ -322,14 +322,24 @@ static void write_sum(const film *f, const film_sum *sum, float *out)
     rest[3] = (float)(sum->depth / weight);
 }
 
-static void write_groups(const film *f, size_t i, double weight, float *out)
+static void add_group(const film *f, size_t i, int group, double sum[3])
 {
-    bool counts = film_pass_counts(f, i);
+    size_t at = group_offset(f, i) + 3 * (size_t)group;
+    for (size_t c = 0; c < 3; c++) {
+        sum[c] += f->groups[at + c];
+        if (film_pass_counts(f, i))
+            sum[c] += (double)f->pass_groups[at + c];
+    }
+}
+
+/* Of n pixels that stand for one. */
+static void write_groups(const film *f, const size_t *from, int n, double weight,
+                         float *out)
+{
     for (int k = 0; k < f->n_groups; k++) {
-        size_t at = group_offset(f, i) + 3 * (size_t)k;
-        double sum[3];
-        for (size_t c = 0; c < 3; c++)
-            sum[c] = f->groups[at + c] + (counts ? (double)f->pass_groups[at + c] : 0.0);
+        double sum[3] = {0};
+        for (int j = 0; j < n; j++)
+            add_group(f, from[j], k, sum);
         film_to_rgb(f, sum, weight, out + 3 * k);
         for (int c = 0; c < 3; c++)
             out[3 * k + c] *= f->scale;
@@ -338,20 +348,20 @@ static void write_groups(const film *f, size_t i, double weight, float *out)
 
 static void write_pixel(const film *f, size_t i, float *out)
 {
-    if (f->n_passes == 0)
-        i = film_pixel_put(f, i);
-    film_sum sum = f->pixels[i].sum;
-    surface_sum surface = f->surfaces ? f->surfaces[i] : (surface_sum){0};
-    if (film_pass_counts(f, i)) {
-        film_add_pass(&sum, &f->pass[i]);
-        gbuffer_sum(f, i, &surface);
+    size_t from[4];
+    int n = film_pixels_for(f, i, from);
+    film_sum sum = {0};
+    surface_sum surface = {0};
+    for (int k = 0; k < n; k++) {
+        film_add_pixel(f, from[k], &sum);
+        gbuffer_sum(f, from[k], &surface);
     }
     write_sum(f, &sum, out);
     out += 3 + 3 * FILM_COLORS + 4;
     double scale2 = (double)f->scale * (double)f->scale;
     if (has_variance(f))
         *out++ = (float)(scale2 * pixel_variance(&f->pixels[i], f->n_passes));
-    write_groups(f, i, sum.weight, out);
+    write_groups(f, from, n, sum.weight, out);
     gbuffer_write(f, &surface, &sum, out + 3 * f->n_groups);
 }
 

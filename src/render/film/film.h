@@ -119,9 +119,12 @@ void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
  * 0..FILM_CELLS - 1: after 1, 4, 16 and 64 cells a grid of every 8th, 4th, 2nd and every
  * pixel is whole, and in between what there is lies evenly. */
 int film_cell(const film *f, int x, int y);
-/** @brief A pixel itself if the pass under way is part of the picture there, or the
- * nearest on a coarser grid of its tile where it is. */
-size_t film_pixel_put(const film *f, size_t pixel);
+/** @brief Pixels of which the sum stands for one: itself if there is any sample of it; in
+ * a first pass that is not whole those on its sides, or the nearest on a coarser grid of
+ * its tile. @return how many */
+int film_pixels_for(const film *f, size_t pixel, size_t for_it[4]);
+/** @brief Adds the sum of a pixel, with the pass under way where that counts. */
+void film_add_pixel(const film *f, size_t pixel, film_sum *sum);
 /** @brief Adds what a pass made of a pixel. */
 void film_add_pass(film_sum *sum, const pass_pixel *pass);
 /** @brief Whether the pass under way is part of the picture at a pixel of the film. */

@@ -111,13 +111,26 @@ static size_t row_of(const film *f, size_t y, int half)
     return row < (size_t)f->height ? row : row - 2;
 }
 
-/* Of a first pass that is not whole. */
+static bool is_among(const size_t *pixels, int n, size_t i)
+{
+    for (int k = 0; k < n; k++)
+        if (pixels[k] == i)
+            return true;
+    return false;
+}
+
+/* Of a first pass that is not whole: itself, or of those that stand for it one in its
+   row. */
 static half_place place_in_part(const film *f, size_t x, size_t row)
 {
-    size_t i = row * (size_t)f->width + x, last = x + 1 == (size_t)f->width;
+    size_t i = row * (size_t)f->width + x, from[4];
+    bool is_last = x + 1 == (size_t)f->width, is_left = x % 2 == 1 || is_last;
     if (film_pass_counts(f, i))
         return (half_place){i, false};
-    return (half_place){x % 2 == 1 || last ? i - 1 : i + 1, false};
+    size_t first = is_left ? i - 1 : i + 1, second = is_left ? i + 1 : i - 1;
+    int n = film_pixels_for(f, i, from);
+    bool goes_on = !is_among(from, n, first) && is_among(from, n, second);
+    return (half_place){goes_on ? second : first, false};
 }
 
 bool halves_have(const film *f)

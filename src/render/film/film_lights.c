@@ -2,25 +2,25 @@
 
 #include "render/film/film_halves.h"
 
+/* What guides say of them: by mirrors. @return the weight of the samples that see any */
+static double add_mirrored(const guide_sum *guides, double sum[3])
+{
+    for (int c = 0; c < 3; c++)
+        sum[c] += (double)guides->lights[c];
+    return (double)guides->lit;
+}
+
 float film_lights_in_sight(const film *f, size_t pixel, float rgb[3])
 {
-    if (f->n_passes == 0) /* it may be still to come */
-        pixel = film_pixel_put(f, pixel);
-    film_sum sum = f->pixels[pixel].sum;
-    const guide_sum *guides = &f->halves[pixel].guides;
-    double lit = (double)guides->lit, mirrored[3];
-    for (int c = 0; c < 3; c++)
-        mirrored[c] = (double)guides->lights[c];
-    if (f->n_cells > 0 && film_pass_counts(f, pixel)) {
-        const guide_sum *more = &f->pass_guides[pixel];
-        film_add_pass(&sum, &f->pass[pixel]);
-        lit += (double)more->lit;
-        for (int c = 0; c < 3; c++)
-            mirrored[c] += (double)more->lights[c];
+    size_t from[4];
+    film_sum sum = {0};
+    double lit = 0.0, *seen = sum.color[LAYER_EMISSION];
+    for (int k = 0, n = film_pixels_for(f, pixel, from); k < n; k++) {
+        film_add_pixel(f, from[k], &sum);
+        lit += add_mirrored(&f->halves[from[k]].guides, seen);
+        if (film_pass_counts(f, from[k]))
+            lit += add_mirrored(&f->pass_guides[from[k]], seen);
     }
-    double *seen = sum.color[LAYER_EMISSION];
-    for (int c = 0; c < 3; c++)
-        seen[c] += mirrored[c];
     film_to_rgb(f, seen, sum.weight, rgb);
     for (int c = 0; c < 3; c++)
         rgb[c] *= f->scale;

@@ -144,7 +144,10 @@ void gbuffer_end_pass(const film *f, size_t begin, size_t end)
 
 void gbuffer_sum(const film *f, size_t i, surface_sum *sum)
 {
-    if (f->surfaces)
+    if (!f->surfaces)
+        return;
+    add_surface(sum, &f->surfaces[i]);
+    if (film_pass_counts(f, i))
         add_surface(sum, &f->pass_surfaces[i]);
 }
 

@@ -41,7 +41,7 @@ void gbuffer_add(surface_sum *sum, const film *f, const view *v, const film_pass
 void gbuffer_put(film *f, int x, int y, const surface_sum *sum);
 void gbuffer_end_pass(const film *f, size_t begin, size_t end);
 void gbuffer_add_names(const film *f, GPtrArray *names);
-/** @brief Adds what the pass under way made of pixel i. */
+/** @brief Adds the sums of pixel i, with the pass under way where that counts. */
 void gbuffer_sum(const film *f, size_t i, surface_sum *sum);
 /** @brief Values of a pixel under those names. @param sum its other sums */
 void gbuffer_write(const film *f, const surface_sum *of, const film_sum *sum, float *out);
