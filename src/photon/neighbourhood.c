@@ -100,7 +100,9 @@ static bool is_alike(const neighbourhood *hood, const surface_hit *hit)
    looked through. */
 static bool look_behind(neighbourhood *hood, const ray *r, surface_hit *hit)
 {
-    while (hit->shape != NO_INDEX && lies_along(hood, hit) && is_clear(hood, hit)) {
+    for (int i = 0; i < MOST_CROSSINGS && hit->shape != NO_INDEX; i++) {
+        if (!lies_along(hood, hit) || !is_clear(hood, hit))
+            break;
         hood->n_looks++;
         scene_meet_behind(hood->scene, r, hit);
     }
