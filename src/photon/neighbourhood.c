@@ -152,7 +152,7 @@ static ray along_surface(const neighbourhood *hood, vec3 d)
                  .t_max = 2.0f * length};
 }
 
-/* From the rim down to what bends away. */
+/* From above the rim down to what bends away. */
 static ray below_rim(const neighbourhood *hood, vec3 d)
 {
     return (ray){.origin = lifted(hood, hood->p + d * hood->radius),

@@ -120,8 +120,9 @@ void film_add_splats(film *f, const film_pass *pass, const pixel_filter *filter,
  * pixel is whole, and in between what there is lies evenly. */
 int film_cell(const film *f, int x, int y);
 /** @brief Pixels of which the sum stands for one: itself if there is any sample of it; in
- * a first pass that is not whole those on its sides, of which most are alike, or the
- * nearest on a coarser grid of its tile. @return how many */
+ * a first pass that is not whole those on its sides that see a light, or those that see
+ * none, whichever are more; before half of that the nearest on a coarser grid of its
+ * tile. @return how many */
 int film_pixels_for(const film *f, size_t pixel, size_t for_it[4]);
 /** @brief Adds the sum of a pixel, with the pass under way where that counts. */
 void film_add_pixel(const film *f, size_t pixel, film_sum *sum);
