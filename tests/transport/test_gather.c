@@ -142,8 +142,9 @@ static void test_told(void)
     }
 }
 
-/* Where noise is taken out all counts as blotches do but for the grain that is paths'
-   alone: of theirs what maps have too, no more than maps have in all. */
+/* Where noise is taken out all counts as blotches do in a room without mirrors but for
+   the grain that is paths' alone: of theirs what maps have too, no more than maps have in
+   all. */
 static void test_shown(void)
 {
     g_autoptr(view) v = view_of(ROOM_OF(128));
@@ -168,19 +169,14 @@ static void test_shown(void)
     }
 }
 
-/* What the trial tells of paths, of places where they see what maps do and some noise,
-   when pairs elsewhere met so much more. */
-static double told_of_paths(const char *words, double elsewhere)
+/* What the trial tells of paths, of places that are alike, when pairs elsewhere met so
+   much more. */
+static double told_of_paths(const char *words, gather_place place, double elsewhere)
 {
     enum { N = 64 };
     static gather_place places[N];
     for (int i = 0; i < N; i++)
-        places[i] = (gather_place){.path = {0.8, 1.2},
-                                   .smooth = {1.0, 1.1},
-                                   .near = {1.0, 1.1},
-                                   .twice = {1.0, 1.1},
-                                   .beside = 1.0,
-                                   .seen = 1.0};
+        places[i] = place;
     const scene lit = {.radius = 1.0f, .settings = settings_default()};
     const view from = {.film = {.width = 64, .height = 64}};
     const transport_plan plan = {.scene = &lit,
@@ -199,14 +195,48 @@ static double told_of_paths(const char *words, double elsewhere)
     return without.variance;
 }
 
+/* Where paths see what maps do and some noise. */
+static const gather_place noisy = {.path = {0.8, 1.2},
+                                   .smooth = {1.0, 1.1},
+                                   .near = {1.0, 1.1},
+                                   .twice = {1.0, 1.1},
+                                   .beside = 1.0,
+                                   .seen = 1.0};
+
 /* Glints in few pixels, which pairs of paths met and places did not, are in maps'
    pictures too: where their noise stays they are no reason to gather. */
 static void test_met_elsewhere(void)
 {
     const char *raw = "integrator=auto passes=16 denoise=off";
     const char *shown = "integrator=auto passes=16 denoise=on";
-    g_assert_cmpfloat(told_of_paths(raw, 100.0), ==, told_of_paths(raw, 0.0));
-    g_assert_cmpfloat(told_of_paths(shown, 100.0), >, 2.0 * told_of_paths(shown, 0.0));
+    double alone = told_of_paths(shown, noisy, 0.0);
+    g_assert_cmpfloat(told_of_paths(raw, noisy, 100.0), ==,
+                      told_of_paths(raw, noisy, 0.0));
+    g_assert_cmpfloat(told_of_paths(shown, noisy, 100.0), >, 2.0 * alone);
+}
+
+/* Of light straight from lamps, which paths and maps have in common, what differs at
+   surfaces lies where shadows end, and weighs as blotches do; what does in media is
+   grain. */
+static void test_shadows(void)
+{
+    const double blotches = 32.0;
+    gather_place shaded = noisy;
+    shaded.direct[1] = 0.1;
+    const char *words[2] = {"integrator=auto passes=16 denoise=off",
+                            "integrator=auto passes=16 denoise=on"};
+    double told[2][2];
+    for (int k = 0; k < 2; k++) {
+        told[k][0] = told_of_paths(words[k], noisy, 1.0);
+        told[k][1] = told_of_paths(words[k], shaded, 1.0);
+    }
+    double common = 0.5 * 0.1 * 0.1 * relative_weight(1.0, 1.0);
+    double added = told[1][1] - told[1][0];
+    g_test_message("noise stays: %g %g, else %g %g", told[0][0], told[0][1], told[1][0],
+                   told[1][1]);
+    g_assert_cmpfloat(told[0][0], ==, told[0][1]);
+    g_assert_cmpfloat(fabs(told[1][0] - 1.0), <, 1e-6);
+    g_assert_cmpfloat(fabs(added - (blotches - 1.0) * common), <, 1e-6);
 }
 
 /* A wall of squares about as large as pixels. */
@@ -350,6 +380,7 @@ int main(int argc, char **argv)
     }
     g_test_add_func("/gather/told", test_told);
     g_test_add_func("/gather/shown", test_shown);
+    g_test_add_func("/gather/shadows", test_shadows);
     g_test_add_func("/gather/met-elsewhere", test_met_elsewhere);
     g_test_add_func("/gather/gaps", test_gaps);
     g_test_add_func("/gather/bulb", test_bulb);

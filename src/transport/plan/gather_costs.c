@@ -11,10 +11,10 @@
    glossy, papered, a glass ball; 2 to 16 passes, 128 x 128). */
 #define UNSEEN_BIAS 0.1
 
-/* Mean squared errors of a sample, relative to what is there; of a whole picture; and of
-   a pixel that shows the next one. */
+/* Mean squared errors of a sample, relative to what is there: of samples that of shadows
+   is a part. Of a whole picture; and of a pixel that shows the next one. */
 typedef struct gather_errors {
-    double path, samples, photons, bias2, contrast;
+    double path, samples, shadows, photons, bias2, contrast;
 } gather_errors;
 
 static double mean_of(const gather_trial *t)
@@ -57,7 +57,7 @@ static double unseen_bias(const transport_plan *plan)
 
 /* Sums over the places. */
 typedef struct gather_sums {
-    square_sum path, sample, photons;
+    square_sum path, sample, shadow, photons;
     bias_sum bias;
     double off, beside;
     double lone, area;
@@ -69,9 +69,11 @@ static void add_place(gather_sums *to, const gather_place *at, double weight, do
     double w = weight / n, half = 0.5 * w;
     double paths = at->path[0] - at->path[1];
     double samples = at->smooth[0] - at->smooth[1];
+    double shadows = at->direct[0] - at->direct[1];
     double photons = at->near[0] - at->near[1];
     square_add(&to->path, half * paths * paths);
     square_add(&to->sample, half * samples * samples);
+    square_add(&to->shadow, half * shadows * shadows);
     square_add(&to->photons, half * photons * photons);
     bias_add(&to->bias, w * (at->twice[0] - at->near[0]) * (at->twice[1] - at->near[1]));
     to->lone += w * at->lone;
@@ -113,9 +115,11 @@ static gather_errors errors_of(const gather_trial *t, const transport_plan *plan
     double mean = mean_of(t);
     for (uint32_t i = 0; i < t->n && mean > 0.0; i++)
         add_place(&sums, &t->places[i], relative_weight(t->places[i].seen, mean), t->n);
+    double samples = square_total(&sums.sample);
     return (gather_errors){
         .path = fmax(path_variance(plan, &sums), sums.off * sums.off),
-        .samples = square_total(&sums.sample),
+        .samples = samples,
+        .shadows = fmin(square_total(&sums.shadow), samples),
         .photons = square_total(&sums.photons) * t->area / t->fewer +
                    unseen_photons(t, sums.lone, sums.area),
         .bias2 = seen_bias(&sums.bias) / t->area + unseen_bias(&t->plan),
@@ -144,12 +148,15 @@ static double share_of_samples(const transport_plan *plan, double n)
 }
 
 /* Squared error of n samples a pixel, times n, that paths and maps have in common: light
-   straight from lamps is as noisy in both. n is told within a factor of two: of the
-   pixels for which half as many do not suffice all may stay empty, and show the next. */
+   straight from lamps is as noisy in both. On surfaces that is where shadows end, which
+   no feature tells: it weighs as what is alike in neighbouring pixels does. In media and
+   mirrors it is grain. n is told within a factor of two: of the pixels for which half as
+   many do not suffice all may stay empty, and show the next. */
 static double common_error(const transport_plan *plan, const gather_errors *e, double n)
 {
-    double empty = fmax(1.0 - 0.5 * n, 0.0);
-    return share_of_samples(plan, n) * e->samples + n * empty * e->contrast;
+    double weight = plan_weight_alike(plan), empty = fmax(1.0 - 0.5 * n, 0.0);
+    double samples = (e->samples - e->shadows) + weight * e->shadows;
+    return share_of_samples(plan, n) * samples + weight * n * empty * e->contrast;
 }
 
 /* Squared error that maps have of their own, times the passes. */
@@ -162,22 +169,21 @@ static double error_of_maps(const transport_plan *plan, const gather_errors *e,
            (e->photons * variance_of_passes(alpha, whole) + e->bias2 * bias * bias);
 }
 
-/* All is comparable to the variance of one sample. Where noise is taken out it is paths'
-   own grain that goes, and all else weighs as what is alike in neighbouring pixels does:
-   shadows are where their grain is. */
+/* All is comparable to the variance of one sample. Where noise is taken out it is grain
+   that goes, and what maps have of their own weighs as it is alike in neighbouring
+   pixels. */
 void gather_costs(const transport_plan *plan, const gather_trial *t, plan_cost *without,
                   plan_cost *with)
 {
     const gather_errors e = errors_of(t, plan);
-    double weight = plan_weight_alike(plan);
     double passes = settings_planned_passes(&plan->how), spp = (double)plan->how.spp;
     without->rays = t->path_rays + plan->photon_rays;
     without->variance =
         share_of_samples(plan, passes * spp) * fmax(e.path - e.samples, 0.0) +
-        weight * common_error(plan, &e, passes * spp);
+        common_error(plan, &e, passes * spp);
     with->rays =
         gather_trial_sample_rays(t) + t->photon_rays * passes / plan_samples(plan);
     double in_time = passes * without->rays / with->rays;
-    with->variance = weight * (common_error(plan, &e, in_time * spp) +
-                               spp * error_of_maps(plan, &e, in_time));
+    with->variance = common_error(plan, &e, in_time * spp) +
+                     plan_weight_alike(plan) * spp * error_of_maps(plan, &e, in_time);
 }
