@@ -50,12 +50,14 @@ typedef struct light_guide {
 /** @brief What one camera ray found. */
 typedef struct radiance_sample {
     spectrum layers[N_LAYERS]; /**< radiance */
-    spectrum *groups; /**< the same light, apart by the group of the light it came
-                         from: the caller's, zeroed; NULL: not asked for */
-    spectrum albedo;  /**< of the first surface */
-    vec3 normal;      /**< shading normal of the first surface, toward the eye */
-    float depth;      /**< distance to it, m; 0: none */
-    vec3 p, n_geom;   /**< of it; the true normal toward the eye too */
+    spectrum *groups;   /**< the same light, apart by the group of the light it came
+                           from: the caller's, zeroed; NULL: not asked for */
+    spectrum scattered; /**< what of LAYER_SPECULAR comes straight from lights to a
+                           medium, and from there to the eye: by photon mapping, else 0 */
+    spectrum albedo;    /**< of the first surface */
+    vec3 normal;        /**< shading normal of the first surface, toward the eye */
+    float depth;        /**< distance to it, m; 0: none */
+    vec3 p, n_geom;     /**< of it; the true normal toward the eye too */
     light_guide guide;
     vec2 uv; /**< of it */
 } radiance_sample;

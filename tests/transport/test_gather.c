@@ -142,8 +142,8 @@ static void test_told(void)
     }
 }
 
-/* Where noise is taken out all counts as blotches do in a room without mirrors but for
-   the grain that is paths' alone: of theirs what maps have too, no more than maps have in
+/* Where noise is taken out all counts as blotches do in a room without media but for the
+   grain that is paths' alone: of theirs what maps have too, no more than maps have in
    all. */
 static void test_shown(void)
 {
@@ -218,17 +218,17 @@ static void test_met_elsewhere(void)
 /* Of light straight from lamps, which paths and maps have in common, what differs at
    surfaces lies where shadows end, and weighs as blotches do; what does in media is
    grain. */
-static void test_shadows(void)
+static void test_in_media(void)
 {
     const double blotches = 32.0;
-    gather_place shaded = noisy;
-    shaded.direct[1] = 0.1;
+    gather_place hazy = noisy;
+    hazy.scattered[1] = 0.1;
     const char *words[2] = {"integrator=auto passes=16 denoise=off",
                             "integrator=auto passes=16 denoise=on"};
     double told[2][2];
     for (int k = 0; k < 2; k++) {
-        told[k][0] = told_of_paths(words[k], noisy, 1.0);
-        told[k][1] = told_of_paths(words[k], shaded, 1.0);
+        told[k][0] = told_of_paths(words[k], hazy, 1.0);
+        told[k][1] = told_of_paths(words[k], noisy, 1.0);
     }
     double common = 0.5 * 0.1 * 0.1 * relative_weight(1.0, 1.0);
     double added = told[1][1] - told[1][0];
@@ -380,7 +380,7 @@ int main(int argc, char **argv)
     }
     g_test_add_func("/gather/told", test_told);
     g_test_add_func("/gather/shown", test_shown);
-    g_test_add_func("/gather/shadows", test_shadows);
+    g_test_add_func("/gather/in-media", test_in_media);
     g_test_add_func("/gather/met-elsewhere", test_met_elsewhere);
     g_test_add_func("/gather/gaps", test_gaps);
     g_test_add_func("/gather/bulb", test_bulb);

@@ -225,6 +225,7 @@ static scene_event shade_medium(void *data, float length, const surface_hit *beh
         spectrum direct =
             photonmap_direct_in_medium(pass, &look, tree->random, tree->scratch);
         add_parts(tree, &seen, LAYER_DIRECT, direct, parts);
+        tree->out->scattered += seen.at.throughput * direct;
     }
     for (int c = samples_lights ? PHOTON_INDIRECT : PHOTON_DIRECT;
          scatters && c < N_PHOTON_CLASSES; c++) {

@@ -11,10 +11,10 @@
    glossy, papered, a glass ball; 2 to 16 passes, 128 x 128). */
 #define UNSEEN_BIAS 0.1
 
-/* Mean squared errors of a sample, relative to what is there: of samples that of shadows
-   is a part. Of a whole picture; and of a pixel that shows the next one. */
+/* Mean squared errors of a sample, relative to what is there: in_media is a part of
+   samples. Of a whole picture; and of a pixel that shows the next one. */
 typedef struct gather_errors {
-    double path, samples, shadows, photons, bias2, contrast;
+    double path, samples, in_media, photons, bias2, contrast;
 } gather_errors;
 
 static double mean_of(const gather_trial *t)
@@ -57,7 +57,7 @@ static double unseen_bias(const transport_plan *plan)
 
 /* Sums over the places. */
 typedef struct gather_sums {
-    square_sum path, sample, shadow, photons;
+    square_sum path, sample, in_media, photons;
     bias_sum bias;
     double off, beside;
     double lone, area;
@@ -69,11 +69,11 @@ static void add_place(gather_sums *to, const gather_place *at, double weight, do
     double w = weight / n, half = 0.5 * w;
     double paths = at->path[0] - at->path[1];
     double samples = at->smooth[0] - at->smooth[1];
-    double shadows = at->direct[0] - at->direct[1];
+    double in_media = at->scattered[0] - at->scattered[1];
     double photons = at->near[0] - at->near[1];
     square_add(&to->path, half * paths * paths);
     square_add(&to->sample, half * samples * samples);
-    square_add(&to->shadow, half * shadows * shadows);
+    square_add(&to->in_media, half * in_media * in_media);
     square_add(&to->photons, half * photons * photons);
     bias_add(&to->bias, w * (at->twice[0] - at->near[0]) * (at->twice[1] - at->near[1]));
     to->lone += w * at->lone;
@@ -119,7 +119,7 @@ static gather_errors errors_of(const gather_trial *t, const transport_plan *plan
     return (gather_errors){
         .path = fmax(path_variance(plan, &sums), sums.off * sums.off),
         .samples = samples,
-        .shadows = fmin(square_total(&sums.shadow), samples),
+        .in_media = fmin(square_total(&sums.in_media), samples),
         .photons = square_total(&sums.photons) * t->area / t->fewer +
                    unseen_photons(t, sums.lone, sums.area),
         .bias2 = seen_bias(&sums.bias) / t->area + unseen_bias(&t->plan),
@@ -149,13 +149,13 @@ static double share_of_samples(const transport_plan *plan, double n)
 
 /* Squared error of n samples a pixel, times n, that paths and maps have in common: light
    straight from lamps is as noisy in both. On surfaces that is where shadows end, which
-   no feature tells: it weighs as what is alike in neighbouring pixels does. In media and
-   mirrors it is grain. n is told within a factor of two: of the pixels for which half as
+   no feature tells: it weighs as what is alike in neighbouring pixels does. In media it
+   is grain. n is told within a factor of two: of the pixels for which half as
    many do not suffice all may stay empty, and show the next. */
 static double common_error(const transport_plan *plan, const gather_errors *e, double n)
 {
     double weight = plan_weight_alike(plan), empty = fmax(1.0 - 0.5 * n, 0.0);
-    double samples = (e->samples - e->shadows) + weight * e->shadows;
+    double samples = e->in_media + weight * (e->samples - e->in_media);
     return share_of_samples(plan, n) * samples + weight * n * empty * e->contrast;
 }
 

@@ -169,7 +169,7 @@ static void see(const gather_task *all, vec2 raster, const sampler by[2],
         trial_light found =
             trial_sample(photonmap_radiance, smooth, all->plan, raster, by[k], scratch);
         at->smooth[k] = without_shared(all->plan, &found);
-        at->direct[k] = found.direct;
+        at->scattered[k] = found.scattered;
         at->seen += 0.5 * found.all;
         at->lone += 0.5 * lone_photon(all->trial, &found, &scratch->estimate.hits);
         at->area += 0.5 * found.area;

@@ -12,7 +12,7 @@
 typedef struct gather_place {
     double path[2], smooth[2]; /* each with a sampler of its own */
     double near[2], twice[2];  /* all with the first one */
-    double direct[2];          /* of smooth, straight from lights to the first surface */
+    double scattered[2];       /* part of smooth: trial_light's */
     double beside;             /* as smooth[0], of the next pixel */
     double seen;               /* with the caustics that those leave out */
     double lone;               /* square of what one photon adds, times its disc, m² */

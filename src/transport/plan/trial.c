@@ -46,7 +46,7 @@ trial_light trial_sample(radiance_function *radiance, const void *pass,
     return (trial_light){
         .all = mean_of(sum),
         .caustic = mean_of(out.layers[LAYER_CAUSTIC]),
-        .direct = mean_of(out.layers[LAYER_DIRECT]),
+        .scattered = mean_of(out.scattered),
         .albedo = mean_of(seen->albedo * share),
         .area = depth > 0.0f ? (double)camera_pixel_area(c, depth) : 0.0,
         .p = r.origin + depth * r.direction,

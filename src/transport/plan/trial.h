@@ -29,11 +29,10 @@ vec2 trial_place(const transport_plan *plan, sampler *random);
  * surface that scatters. */
 typedef struct trial_light {
     /** Means over wavelengths, W m⁻² sr⁻¹ nm⁻¹, 0 where they are not finite: of all but
-     * lights in sight, of caustics, and of what comes straight from lights to the first
-     * surface and from there to the eye. At the edges of lights in sight, and in mirrors
-     * and glass, noise is as bright as they are, and nothing that is tried takes it away.
-     */
-    double all, caustic, direct;
+     * lights in sight, of caustics, and of radiance_sample's scattered. At the edges of
+     * lights in sight, and in mirrors and glass, noise is as bright as they are, and
+     * nothing that is tried takes it away. */
+    double all, caustic, scattered;
     double albedo; /**< of the surface, mean over wavelengths */
     double area;   /**< of a pixel there, facing the camera, m²; 0: nothing is seen */
     vec3 p;        /**< on the camera's ray, as far away */
