@@ -165,9 +165,9 @@ static const way ways[] = {
 };
 
 /* Without a blur that could be seen: connections alone, and radii of less than a third of
-   a pixel, 0.1 m wide at the back of the room. The photon map's does not shrink: smaller
-   discs meet a photon in one of hundreds of passes, and what is so rare has no normal
-   deviate. */
+   a pixel, 0.1 m wide at the back of the room. The photon map's does not shrink, and it
+   has many photons: smaller discs, or fewer that land in the open, meet one in one of
+   hundreds of passes, and what is so rare has no normal deviate. */
 static const way sharp_ways[] = {
     {"bpt",
      "integrator=vcm vcm_strategies=bpt spp=2 photons=1024 max_backward_bounces=-1", 0},
@@ -175,7 +175,7 @@ static const way sharp_ways[] = {
      "integrator=auto spp=4 caustic_photons=10000 radius=0.03 max_backward_bounces=-1",
      0},
     {"photonmap, sharp",
-     "integrator=photonmap spp=2 photons=40000 radius=0.03 alpha=1 "
+     "integrator=photonmap spp=2 photons=160000 radius=0.03 alpha=1 "
      "max_backward_bounces=-1",
      0},
     {"vcm, sharp",
