@@ -239,15 +239,18 @@ static void test_in_media(void)
     g_assert_cmpfloat(fabs(added - (blotches - 1.0) * common), <, 1e-6);
 }
 
-/* A room in haze, lit by a spot lamp in sight: most of what it shows is its beam. */
+/* A room in haze, and in sight the beam of a spot lamp, all that lights it. */
+#define HAZE                                                                             \
+    "MakeNamedMedium \"haze\" \"string type\" \"homogeneous\"\n"                         \
+    "\"rgb sigma_s\" [.3 .3 .3] \"rgb sigma_a\" [.02 .02 .02]\n"                         \
+    "MediumInterface \"haze\" \"haze\"\n"
+#define SPOT_LAMP                                                                        \
+    "LightSource \"spot\" \"rgb I\" [25 23 20] \"float coneangle\" 20\n"                 \
+    "\"point3 from\" [-1.2 0 1.8] \"point3 to\" [.4 .3 .5]\n"
 #define HAZY_ROOM                                                                        \
-    "MakeNamedMedium \"haze\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [.3 .3 "   \
-    ".3] "                                                                               \
-    "\"rgb sigma_a\" [.02 .02 .02] MediumInterface \"\" \"haze\"\n" ROOM_CAMERA SIZE(    \
-        128) "WorldBegin MediumInterface \"haze\" \"haze\"\n" ROOM_WALLS                 \
-             "LightSource \"spot\" \"point3 from\" [-1.2 0 1.8] \"point3 to\" [.4 .3 "   \
-             ".5] "                                                                      \
-             "\"rgb I\" [25 23 20] \"float coneangle\" 20\n" GLASS_BALL
+    HAZE ROOM_CAMERA SIZE(                                                               \
+        128) "WorldBegin\n"                                                              \
+             "MediumInterface \"haze\" \"haze\"\n" ROOM_WALLS SPOT_LAMP GLASS_BALL
 
 /* The grain of the beam is as strong in maps as in paths, and no blotch. */
 static void test_haze(void)

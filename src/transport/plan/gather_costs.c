@@ -150,8 +150,8 @@ static double share_of_samples(const transport_plan *plan, double n)
 /* Squared error of n samples a pixel, times n, that paths and maps have in common: light
    straight from lamps is as noisy in both. On surfaces that is where shadows end, which
    no feature tells: it weighs as what is alike in neighbouring pixels does. In media it
-   is grain. n is told within a factor of two: of the pixels for which half as
-   many do not suffice all may stay empty, and show the next. */
+   is grain. n is told within a factor of two: of the pixels for which half as many do not
+   suffice all may stay empty, and show the next. */
 static double common_error(const transport_plan *plan, const gather_errors *e, double n)
 {
     double weight = plan_weight_alike(plan), empty = fmax(1.0 - 0.5 * n, 0.0);
