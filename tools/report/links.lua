@@ -4,6 +4,7 @@ local titles = {
   front = "photon-mapping-the-report",
   counterparts = "what-three-texts-show-and-what-stands-here-for-it",
   report = "why-it-is-right-six-proofs",
+  default = "which-transport-is-the-default-and-why",
   results = "results",
   discussion = "discussion",
   gallery = "gallery",

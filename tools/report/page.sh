@@ -14,5 +14,5 @@ pandoc "${read_as[@]}" "$docs/report/front.md" >"$front"
 pandoc "${read_as[@]}" --standalone --self-contained --toc --toc-depth=2 --css "$here/page.css" \
     --include-before-body "$front" --resource-path "$docs:$docs/report" \
     --metadata pagetitle="Nephroid: the report" --metadata lang=en \
-    "$docs/report.md" "$docs/report/results.md" "$docs/report/discussion.md" \
-    "$docs/report/counterparts.md" "$docs/gallery.md" "$docs/journal.md"
+    "$docs/report.md" "$docs/report/default.md" "$docs/report/results.md" \
+    "$docs/report/discussion.md" "$docs/report/counterparts.md" "$docs/gallery.md" "$docs/journal.md"
