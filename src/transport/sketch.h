@@ -12,6 +12,11 @@ typedef struct sketch sketch;
 sketch *sketch_new(const vec2 *places, const float *brightness, size_t n, GError **error);
 void sketch_free(sketch *s);
 
+/** @brief Adds caustics, once: so bright at n places, > 0, of n_all; none at the others.
+ * @return false when out of memory */
+bool sketch_add_caustics(sketch *s, const vec2 *places, const float *brightness, size_t n,
+                         size_t n_all, GError **error);
+
 /** @brief What a squared error counts where the picture is so bright, and so bright in
  * the mean; where all is black, 1. */
 static inline double relative_weight(double here, double mean)

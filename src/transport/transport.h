@@ -148,7 +148,8 @@ path_sides path_part(unsigned bounces, const bsdf *b, vec3 wo);
 /** @brief A point where the camera looks (transport/visible.h). */
 typedef struct visible_point {
     vec3 p;
-    float pixel;  /**< width of a pixel's footprint there, m */
+    float pixel;  /**< width of a pixel's footprint there, facing the camera, m */
+    float area;   /**< that it covers of the surface, m² */
     float albedo; /**< mean over wavelengths */
     vec2 raster;  /**< where it is on the film */
 } visible_point;
@@ -198,8 +199,8 @@ typedef struct transport_plan {
     double tried_rays; /**< and what they took, in rays */
     plan_trial trials[MOST_PLAN_TRIALS];
     int n_trials;
-    visible_point *sight; /**< where the camera looks; owned; NULL: not looked yet */
-    size_t n_sight;
+    visible_point *sight;    /**< where the camera looks; owned; NULL: not looked yet */
+    size_t n_sight, n_looks; /**< of them, and of all looks, some of which met nothing */
     sketch *sketch; /**< of the picture (path_effort_measure); owned; NULL: none yet */
     const cancel_flag *cancel; /**< of the render that this is for: once set, passes and
                                   samples end as they are, worth nothing; NULL: never */

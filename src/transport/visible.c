@@ -33,9 +33,11 @@ static void find_one(const lookout *from, const ray *r, sampler *random,
         scene_bsdf(from->scene, &hit, &from->w, ALL_WAVELENGTHS, &from->options, &b);
         if (b.lobes & LOBE_DIFFUSE) {
             float area = camera_pixel_area(&from->view->camera, length);
+            float cosine = fabsf(dot3(hit.n_geom, path.ray.direction));
             spectrum albedo = bsdf_albedo(&b, -path.ray.direction, LOBE_ALL);
             out->p = hit.p;
             out->pixel = sqrtf(area);
+            out->area = area / cosine;
             out->albedo = spectrum_mean(albedo);
             return;
         }
@@ -94,6 +96,7 @@ void plan_look(transport_plan *plan)
         return;
     uint32_t n = MIN(plan_trials_for(plan, 0.5, PHOTON_RAYS, UINT32_MAX), MOST_PLACES);
     plan->sight = g_aligned_alloc0(n, sizeof *plan->sight, 16);
+    plan->n_looks = n;
     plan->n_sight = find_visible_points(plan, n, plan->sight);
     plan->planning += n * PHOTON_RAYS;
 }

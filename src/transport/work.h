@@ -8,6 +8,7 @@
  *   aim     trial photons, which teach the guide      2 shares   where casters are
  *   radii   how dense photons lie (radius.c)        1/2 share    where photons are sent
  *   pass    a small one, to try spots with          1/2 share    auto
+ *   noise   what paths find beside its photons      1/2 share    auto
  *   spots   what looking at bright spots is worth     1 share    auto
  *   gather  what gathering all light is worth         2 shares   auto: radii, two maps,
  *                                                                places
@@ -16,7 +17,7 @@
 
 #include "transport/transport.h"
 
-/** A share of the work asked for. All seven took 0.3 to 4.3 % of the processor's time
+/** A share of the work asked for. All but noise took 0.3 to 4.3 % of the processor's time
  * (thirteen scenes, those of bench/equal_time among them, 32 x 32 and 128 x 128, 1 to 16
  * passes); with 0.008 /spots loses its gain in a small picture with one seed. */
 #define TRIAL_SHARE 0.0085

@@ -86,11 +86,13 @@ static bool try_photons(transport_plan *plan, path_effort *paths,
     }
     plan->boost = found.boost;
     plan->mis.boost = found.boost;
+    if (!path_effort_weigh(plan, paths, error))
+        return false;
     if (plan->n_photons[PHOTON_CAUSTIC] > 0)
         caustics_decide(plan, &found, paths);
     plan->path_noise = paths->noise;
     if (plan->n_photons[PHOTON_CAUSTIC] == 0)
-        plan->path_noise += found.noise;
+        plan->path_noise += paths->bounced + found.noise;
     return true;
 }
 
@@ -129,7 +131,10 @@ static bool try_pass(transport_plan *plan, const cancel_flag *cancel, GError **e
         return false;
     plan_note_photons(plan, (double)counts.emitted[PHOTON_CAUSTIC],
                       (double)counts.photon_rays);
-    bool ok = small.p_spots == 0.0f || spots_decide(plan, pass, cancel, error);
+    pass->p_spots = 0.0f;
+    bool ok = plan->n_photons[PHOTON_CAUSTIC] == 0 ||
+              path_noise_measure(plan, pass, cancel, error);
+    ok = ok && (small.p_spots == 0.0f || spots_decide(plan, pass, cancel, error));
     pass->p_spots = plan->p_spots;
     ok = ok && gather_decide(plan, pass, cancel, error);
     end_pass(pass);
@@ -147,7 +152,7 @@ static double photons_wanted(const settings *how)
 /* In this order, since each trial asks what those before it have decided. */
 static bool prepare(transport_plan *plan, const cancel_flag *cancel, GError **error)
 {
-    path_effort paths;
+    g_auto(path_effort) paths = {0};
     if (!transport_plan_find_casters(plan, error))
         return false;
     plan_ask(plan, photons_wanted(&plan->how));

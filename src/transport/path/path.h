@@ -24,7 +24,8 @@ typedef struct path_pass {
                     and how much of the picture they light, MOST_PLACES at most; else
                     NULL */
     bool without_caustics; /**< to measure with: light by way of a specular or glossy
-                              bounce to a diffuse surface is left out */
+                              bounce to the first diffuse surface is left out; that to a
+                              later one is in LAYER_CAUSTIC */
     bool caustics_apart;   /**< to measure with: those of the first diffuse surface are in
                               their layer, also behind glass and in mirrors */
     bool sees_lights;      /**< there are some that can be seen */

@@ -51,13 +51,14 @@ bool path_photons_share(const path_walk *walk, const camera_path *path)
 static bool add(path_walk *walk, const camera_path *path, spectrum radiance)
 {
     spectrum value = path->at.throughput * radiance;
-    if (walk->pass->without_caustics && path_is_caustic(path))
+    bool apart = walk->pass->without_caustics && path_is_caustic(path);
+    if (apart && path->n_diffuse == 1)
         return false;
     if (!spectrum_is_finite(value)) {
         walk->scratch->n_not_finite++;
         return false;
     }
-    walk->out->layers[layer_of(walk, path)] += value;
+    walk->out->layers[apart ? LAYER_CAUSTIC : layer_of(walk, path)] += value;
     return true;
 }
 

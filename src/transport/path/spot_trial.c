@@ -8,7 +8,7 @@
 void spot_trial_note(spot_trial *trial, const spot_look *look)
 {
     double p = look->pdf, q = look->pdf_scatter;
-    double x2 = look->value * p * look->value * p;
+    double x2 = trial->weight * look->value * p * look->value * p;
     if (!isfinite(x2) || !(q > 0.0) || !(p > 0.0))
         return;
     trial->without += x2 / q / p;

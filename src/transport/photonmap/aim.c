@@ -7,11 +7,14 @@
 
 #include <float.h>
 
-/* What a trial photon adds to the noise that paths would have, and to what they and the
-   photons have of it with shares of all photons. */
+/* What a trial photon adds to the noise that paths would have, and how much denser
+   photons are where it goes than paths that find the same. */
 typedef struct trial_noise {
-    double of_paths, left[N_SHARES], alike[N_SHARES];
+    double of_paths, odds;
     double seen, unseen; /* flux that landed in the camera's sight, and out of it */
+    double alone;        /* flux that no path finds */
+    float shown;         /* of it that came back where it was brightest ... */
+    int at;              /* ... of visible points */
     uint32_t rays, landings;
 } trial_noise;
 
@@ -20,6 +23,10 @@ typedef struct trial_noise {
 typedef struct guide_trial {
     double n, square, rays, landings, square_without, rays_without, landings_without;
 } guide_trial;
+
+/* Rounds of trial photons; those that come first are the same with any number of rounds.
+ */
+enum { ROUND_UNIFORM, ROUND_LAST, ROUND_FEW };
 
 /* What the trials of a round share. */
 typedef struct trials {
@@ -51,14 +58,14 @@ static bool is_guided(const transport_plan *plan, photon_class c)
 static double pixels_each(const transport_plan *plan)
 {
     const film_settings *film = &plan->view->film;
-    return (double)film->width * (double)film->height / (double)MAX(plan->n_sight, 1);
+    return (double)film->width * (double)film->height / (double)MAX(plan->n_looks, 1);
 }
 
 /* How far around a visible point all is in sight, m: the mean distance of its neighbours,
    which leaves a gap of a few per cent. */
 static float reach_of(const transport_plan *plan, const visible_point *seen)
 {
-    return seen->pixel * sqrtf((float)pixels_each(plan));
+    return sqrtf(seen->area * (float)pixels_each(plan));
 }
 
 static float most_reach(const transport_plan *plan)
@@ -74,6 +81,7 @@ typedef struct landing {
     float area;      /* of what shows it, m²; 0: out of sight */
     float reflected; /* of its light, toward the camera, sr⁻¹ */
     vec2 raster;
+    int at; /* visible point; NO_INDEX: in a medium */
 } landing;
 
 /* By the visible point that p lies by. */
@@ -85,7 +93,8 @@ static landing land_at(const trials *all, vec3 p, point_hits *hits)
     float reach = reach_of(all->plan, seen);
     if (!(hits->distance2[0] < reach * reach))
         return (landing){0};
-    return (landing){reach * reach, seen->albedo / (float)G_PI, seen->raster};
+    return (landing){reach * reach, seen->albedo / (float)G_PI, seen->raster,
+                     (int)hits->index[0]};
 }
 
 /* The same of a point in a medium, which is in sight if nothing stands before it and
@@ -112,7 +121,7 @@ static landing land_in_medium(const trials *all, const surface_hit *hit)
     if (transmittance < DEFENSIVE_SHARE)
         return (landing){0};
     return (landing){pixels * camera_pixel_area(c, eye.distance),
-                     phase_henyey_greenstein(0.0f, 0.0f), eye.raster};
+                     phase_henyey_greenstein(0.0f, 0.0f), eye.raster, NO_INDEX};
 }
 
 /* ---- Trials ---- */
@@ -120,29 +129,33 @@ static landing land_in_medium(const trials *all, const surface_hit *hit)
 typedef struct trial {
     const trials *all;
     point_hits *hits;
-    float value;
+    float density, value;
     trial_noise noise;
 } trial;
 
 /* A path from the eye that finds by itself what a photon of flux Φ and share w brings has
    a density of (1 - w) / w of that of merging with it. So in a pixel of area a its square
    adds Φ² w / (1 - w) / a, up to factors that are the same for all. The w-th part of
-   photons survives with all of Φ, and each stands for 1 / w of them. Where photons help,
-   with m times the density, all of them together leave the 1 / (1 + m)-th part: of that
-   another 1 / (1 + m)-th to paths. */
+   photons survives with all of Φ, and each stands for 1 / w of them; where they are d
+   times as dense as w knows of, they carry a d-th and the odds are d times as high. */
 static void add_noise(trial_noise *sum, const photon_event *event, const landing *at,
-                      double weight)
+                      float density, double weight)
 {
-    double w = (double)event->mis_weight, odds = w / fmax(1.0 - w, (double)FLT_EPSILON);
+    double w = (double)event->mis_weight, others = fmax(1.0 - w, (double)FLT_EPSILON);
     double seen = (double)(spectrum_mean(event->flux) * at->reflected);
-    double noise =
-        weight * seen * seen / (fmax(1.0 - w, (double)FLT_EPSILON) * (double)at->area);
-    sum->of_paths += noise;
-    for (int i = 0; i < N_SHARES; i++) {
-        double m = plan_share(i) * odds, left = noise / (1.0 + m);
-        sum->left[i] += left / (1.0 + m);
-        sum->alike[i] += left * m / (1.0 + m);
-    }
+    sum->odds = w / others;
+    sum->of_paths += weight * (double)density * seen * seen / (others * (double)at->area);
+}
+
+/* What a pixel shows of all light whose share w came with the photon. */
+static void note_light(trial_noise *sum, const photon_event *event, const landing *at)
+{
+    float seen = spectrum_mean(event->flux) * at->reflected;
+    float shown = seen / (at->area * event->mis_weight);
+    if (at->at == NO_INDEX || !(shown > sum->shown))
+        return;
+    sum->shown = shown;
+    sum->at = at->at;
 }
 
 /* A caustic is worth what the camera sees of it. */
@@ -153,9 +166,15 @@ static void note_caustic(const photon_event *event, float flux, trial *t)
     bool seen = at.area > 0.0f;
     const sketch *s = t->all->plan->sketch;
     t->value += flux * (seen ? 1.0f : DEFENSIVE_SHARE);
-    if (seen && s)
-        add_noise(&t->noise, event, &at, sketch_weight(s, at.raster, SIZE_MAX, t->hits));
+    if (seen && s) {
+        add_noise(&t->noise, event, &at, t->density,
+                  sketch_weight(s, at.raster, SIZE_MAX, t->hits));
+        note_light(&t->noise, event, &at);
+    }
     *(seen ? &t->noise.seen : &t->noise.unseen) += (double)flux;
+    if (event->mis_weight == 1.0f &&
+        scene_light(t->all->task.scene, event->light)->is_delta)
+        t->noise.alone += (double)flux;
 }
 
 static void note_arrival(const photon_event *event, void *data)
@@ -180,7 +199,7 @@ static void run_trials(size_t begin, size_t end, unsigned thread, void *data)
     for (size_t i = begin; i < end; i++) {
         emission_record *record = &all->records[all->n_known + i];
         trial t = {.all = all, .hits = &hits};
-        record->density = photon_start_point(&all->task, i, record->u);
+        t.density = record->density = photon_start_point(&all->task, i, record->u);
         photon_tell(&all->task, i, note_arrival, &t);
         record->value = t.value;
         all->noise[i] = t.noise;
@@ -217,6 +236,32 @@ static size_t keep_arrivals(emission_record *records, trial_noise *noise, size_t
     return kept;
 }
 
+/* What photons of the last round have with the guide, and uniform ones. An estimate has
+   of each photon the square of its flux. */
+static plan_cost with_guide(const trials *all)
+{
+    double n = fmax(all->round.n, 1.0);
+    return (plan_cost){all->round.square / n, all->round.rays / n};
+}
+
+static plan_cost without_guide(const trials *all)
+{
+    double n = fmax(all->round.n, 1.0);
+    return (plan_cost){all->round.square_without / n, all->round.rays_without / n};
+}
+
+/* Whether the first are clearly less noisy for their rays; of caustics, which are sharp,
+   if they are so at all: clearly there, too, water by auto has 1.2 times the error (256 x
+   256, 1 and 3 s, three seeds). */
+static bool guide_pays(const trials *all)
+{
+    const plan_cost with = with_guide(all), without = without_guide(all);
+    const photon_class c = all->task.photon_class;
+    double least = c == PHOTON_CAUSTIC ? 1.0 : CLEARLY_BETTER;
+    return is_guided(all->plan, c) &&
+           with.variance * with.rays < least * without.variance * without.rays;
+}
+
 /* What the sum of all trials' parts is to be multiplied with to be a camera sample's. */
 static double noise_scale(const trials *all)
 {
@@ -238,31 +283,35 @@ static void hush_loudest(trial_noise *noise, size_t n)
         second = fmax(second, noise[louder ? loudest : i].of_paths);
         loudest = louder ? i : loudest;
     }
-    if (n == 0 || !(noise[loudest].of_paths > second))
-        return;
-    double by = second / noise[loudest].of_paths;
-    noise[loudest].of_paths = second;
+    if (n > 0)
+        noise[loudest].of_paths = second;
+}
+
+/* Where photons help, with m times the density of paths, all of them together leave the
+   1 / (1 + m)-th part of the noise: of that another 1 / (1 + m)-th to paths. */
+static void add_left(aim_result *to, double noise, double odds)
+{
     for (int k = 0; k < N_SHARES; k++) {
-        noise[loudest].left[k] *= by;
-        noise[loudest].alike[k] *= by;
+        double m = plan_share(k) * odds, left = noise / (1.0 + m);
+        to->left[k] += left / (1.0 + m);
+        to->alike[k] += left * m / (1.0 + m);
     }
 }
 
-static void sum_noise(const trials *all)
+static void sum_noise(const trials *all, bool guided)
 {
     aim_result *out = all->result;
     double scale = noise_scale(all), seen = 0.0, unseen = 0.0;
-    const trial_noise *noise = all->noise;
     hush_loudest(all->noise, all->n_arrived);
     *out = (aim_result){.boost = out->boost};
     for (size_t i = 0; i < all->n_arrived; i++) {
-        out->noise += noise[i].of_paths * scale;
-        seen += noise[i].seen;
-        unseen += noise[i].unseen;
-        for (int k = 0; k < N_SHARES; k++) {
-            out->left[k] += noise[i].left[k] * scale;
-            out->alike[k] += noise[i].alike[k] * scale;
-        }
+        const trial_noise *of = &all->noise[i];
+        double density = guided ? (double)all->records[all->n_known + i].density : 1.0;
+        out->noise += of->of_paths * scale;
+        out->alone += of->alone;
+        seen += of->seen;
+        unseen += of->unseen;
+        add_left(out, of->of_paths * scale, of->odds * density);
     }
     out->rays = all->round.rays / fmax(all->round.n, 1.0);
     out->unseen = unseen > 0.0 ? unseen / (seen + unseen) : 0.0;
@@ -286,14 +335,13 @@ static void note_result(const trials *all)
         value[from] += (double)r->value;
         dense[from] += (double)(r->value * r->density);
     }
-    sum_noise(all);
+    sum_noise(all, guide_pays(all));
     for (guint i = 0; i < n_lights; i++)
         out->boost[i] = value[i] > 0.0 ? (float)(dense[i] / value[i]) : 1.0f;
 }
 
-/* Traces the trial photons of one round, and teaches a new guide by those of all rounds:
-   what is rare is learned from the few that ever found it. */
-static bool run_round(trials *all, uint32_t round, GError **error)
+/* Traces the trial photons of one round. */
+static bool trace_round(trials *all, uint32_t round, GError **error)
 {
     emission_record *records = all->records + all->n_known;
     all->task.n_photons = all->each;
@@ -308,13 +356,36 @@ static bool run_round(trials *all, uint32_t round, GError **error)
         return false;
     for (size_t i = 0; i < all->each; i++)
         add_round(&all->round, &records[i], &all->noise[i]);
+    plan_note_photons(all->plan, all->round.n, all->round.rays);
+    all->spent += all->round.rays + all->round.n;
+    return true;
+}
+
+/* The picture's sketch gets the caustics of a round. */
+static bool sketch_caustics(const trials *all, GError **error)
+{
+    const transport_plan *plan = all->plan;
+    if (!plan->sketch || plan->n_sight == 0)
+        return true;
+    g_autofree vec2 *places = g_new(vec2, plan->n_sight);
+    g_autofree float *shown = g_new0(float, plan->n_sight);
+    for (size_t i = 0; i < plan->n_sight; i++)
+        places[i] = plan->sight[i].raster;
+    for (size_t i = 0; i < all->each; i++)
+        shown[all->noise[i].at] += all->noise[i].shown;
+    return sketch_add_caustics(plan->sketch, places, shown, plan->n_sight, plan->n_looks,
+                               error);
+}
+
+/* What a round found; a new guide learns from those of all rounds: what is rare is known
+   from the few that ever found it. */
+static void learn_from_round(trials *all)
+{
     /* Of one photon, not of its share of all. */
     double alone = (double)all->each * (double)all->each;
     all->tried += (double)all->each;
     all->brought += all->round.square_without * alone;
-    all->n_arrived = keep_arrivals(records, all->noise, all->each);
-    plan_note_photons(all->plan, all->round.n, all->round.rays);
-    all->spent += all->round.rays + all->round.n;
+    all->n_arrived = keep_arrivals(all->records + all->n_known, all->noise, all->each);
     if (all->result)
         note_result(all);
     all->n_known += all->n_arrived;
@@ -322,19 +393,41 @@ static bool run_round(trials *all, uint32_t round, GError **error)
         emission_guide_free(all->guide);
         all->guide = emission_guide_learn(all->records, all->n_known);
     }
-    return true;
 }
 
-/* Photons of the next round: no more than before, and as many as the grant still allows
-   by what the last ones cost; light that is led into glass takes more rays than any. */
-static size_t count_trials(const trials *all)
+/* Photons of each round that is to come: no more than before, and as many as the grant
+   still allows by what the last ones cost. */
+static size_t count_trials(const trials *all, double rounds)
 {
     double each = 1.0 + all->round.rays / fmax(all->round.n, 1.0);
-    double n = (all->grant - all->spent) / each;
+    double n = (all->grant - all->spent) / (each * rounds);
     return (size_t)CLAMP(n, (double)LEAST_TRIALS, (double)all->each);
 }
 
-/* Uniform photons teach the guide, and as many drawn with it tell what it is worth. */
+/* What a photon costs is told by few: of a lamp in a globe each takes as many rays as it
+   is led through glass, and the last round had what the first one left. */
+static bool count_rays(trials *all, GError **error)
+{
+    const size_t most = all->each;
+    all->each = MAX(most / LEAST_TRIALS, LEAST_TRIALS);
+    bool ok = trace_round(all, ROUND_FEW, error);
+    all->each = most;
+    all->each = count_trials(all, 2.0);
+    return ok;
+}
+
+/* Uniform photons teach the guide, and the sketch, */
+static bool learn_uniform(trials *all, GError **error)
+{
+    if (!count_rays(all, error) || !trace_round(all, ROUND_UNIFORM, error) ||
+        (all->result && !sketch_caustics(all, error)))
+        return false;
+    learn_from_round(all);
+    all->each = count_trials(all, 1.0);
+    return true;
+}
+
+/* and as many drawn with the guide tell what it is worth, and photons are. */
 static bool learn(trials *all, GError **error)
 {
     all->records = big_alloc(2 * all->each, sizeof *all->records, "trial photons", error);
@@ -342,32 +435,14 @@ static bool learn(trials *all, GError **error)
                      ? big_alloc(all->each, sizeof *all->noise, "trial photons", error)
                      : NULL;
     bool ok = all->noise != NULL;
-    if (ok && is_guided(all->plan, all->task.photon_class)) {
-        ok = run_round(all, 0, error);
-        all->each = count_trials(all);
-    }
-    ok = ok && run_round(all, 1, error);
+    if (ok && (all->result || is_guided(all->plan, all->task.photon_class)))
+        ok = learn_uniform(all, error);
+    ok = ok && trace_round(all, ROUND_LAST, error);
+    if (ok)
+        learn_from_round(all);
     big_free(all->records);
     big_free(all->noise);
     return ok;
-}
-
-/* By the last round's photons: whether those that are drawn with the guide are clearly
-   less noisy for their rays than uniform ones; of caustics, which are sharp, if they are
-   so at all: clearly there, too, water by auto has 1.2 times the error (256 x 256, 1 and
-   3 s, three seeds). An estimate has of each photon the square of its flux. */
-static bool guide_pays(const trials *all)
-{
-    const bool of_caustics = all->task.photon_class == PHOTON_CAUSTIC;
-    const guide_trial *round = &all->round;
-    double n = fmax(round->n, 1.0);
-    plan_cost with = {round->square / n, round->rays / n};
-    plan_cost without = {round->square_without / n, round->rays_without / n};
-    double least = of_caustics ? 1.0 : CLEARLY_BETTER;
-    bool pays = with.variance * with.rays < least * without.variance * without.rays;
-    if (of_caustics)
-        plan_note(all->plan, "guided emission", without, with, pays);
-    return pays;
 }
 
 /* A round has up to four times the pilots. With as many as them the variance of caustics
@@ -409,7 +484,9 @@ static void keep_what_pays(trials *all)
     const guide_trial *round = &all->round;
     transport_plan *plan = all->plan;
     double n = fmax(round->n, 1.0);
-    bool pays = is_guided(plan, c) && guide_pays(all);
+    bool pays = guide_pays(all);
+    if (c == PHOTON_CAUSTIC && is_guided(plan, c))
+        plan_note(plan, "guided emission", without_guide(all), with_guide(all), pays);
     plan->brought[c] = all->brought / fmax(all->tried, 1.0);
     plan->price[c] = pays
                          ? price_of(round->rays / n, round->landings / n)

@@ -17,6 +17,7 @@ typedef struct aim_result {
     double unseen; /**< share of what photons bring that lands out of the camera's sight:
                       it is in the picture by way of other surfaces only, and not in
                       noise */
+    double alone;  /**< flux of them that no path finds, W nm⁻¹ */
     double left[N_SHARES];  /**< what paths keep of it where so many photons help */
     double alike[N_SHARES]; /**< and what those bring, alike in neighbouring pixels */
     double rays;            /**< of a photon */

@@ -72,7 +72,7 @@ static double product(plan_cost cost)
 static double best_share(transport_plan *plan, const aim_result *found,
                          const path_effort *paths)
 {
-    const plan_cost without = {paths->noise + found->noise, paths->rays};
+    const plan_cost without = {paths->noise + paths->bounced + found->noise, paths->rays};
     plan_cost best = cost_with(plan, found, paths, 0, 1.0);
     int share = 0;
     for (int i = 1; i < N_SHARES; i++) {
@@ -106,15 +106,14 @@ static void set_share(transport_plan *plan, double share)
     *n = share > 0.0 ? (uint64_t)MAX(share * (double)*n, 1.0) : 0;
 }
 
-/* Of those tried: what is asked for is sent, and where no path finds a light alone there
-   are some. */
+/* Of those tried: what is asked for is sent, and of light that no path finds some. */
 static double share_to_send(transport_plan *plan, const aim_result *found,
                             const path_effort *paths)
 {
     double share = best_share(plan, found, paths);
     if (plan->how.class_photons[PHOTON_CAUSTIC] > 0)
         share = 1.0;
-    else if (found->noise + found->unseen > 0.0 && scene_has_delta_lights(plan->scene))
+    else if (found->alone > 0.0)
         share = fmax(share, least_share());
     plan->trials[plan->n_trials - 1].taken = share > 0.0;
     return share;
