@@ -63,13 +63,12 @@ void sketch_free(sketch *s)
     g_free(s);
 }
 
-/* The mean of the k nearest places but one. */
-static double around(const light_layer *layer, vec2 raster, size_t k, size_t but,
-                     point_hits *hits)
+/* The mean of the nearest places but one. */
+static double around(const light_layer *layer, vec2 raster, size_t but, point_hits *hits)
 {
     double sum = 0.0, n = 0.0;
     if (!layer->places ||
-        !point_set_nearest(layer->places, on_film(raster), k, INFINITY, hits))
+        !point_set_nearest(layer->places, on_film(raster), LEAST_TRIALS, INFINITY, hits))
         return 0.0;
     for (size_t i = 0; i < hits->n; i++)
         if (hits->index[i] != but) {
@@ -81,7 +80,7 @@ static double around(const light_layer *layer, vec2 raster, size_t k, size_t but
 
 double sketch_weight(const sketch *s, vec2 raster, size_t but, point_hits *hits)
 {
-    double here = around(&s->paths, raster, LEAST_TRIALS, but, hits) +
-                  around(&s->caustics, raster, LEAST_TRIALS, SIZE_MAX, hits);
+    double here = around(&s->paths, raster, but, hits) +
+                  around(&s->caustics, raster, SIZE_MAX, hits);
     return relative_weight(here, s->paths.mean + s->caustics.mean);
 }

@@ -173,6 +173,8 @@ static double noise_of_pictures(const view *v)
     return noise;
 }
 
+/* Of so many passes that a trial's photons draw the sketch: where few land in sight it is
+   dark in places, and noise there told as too much. */
 static void test_told(gconstpointer data)
 {
     g_autoptr(view) v = view_of(((const subject *)data)->text);

@@ -24,8 +24,8 @@ typedef struct guide_trial {
     double n, square, rays, landings, square_without, rays_without, landings_without;
 } guide_trial;
 
-/* Rounds of trial photons; those that come first are the same with any number of rounds.
- */
+/* Rounds of trial photons, each with random numbers and wavelengths of its own: few come
+   first, uniform ones next. */
 enum { ROUND_UNIFORM, ROUND_LAST, ROUND_FEW };
 
 /* What the trials of a round share. */

@@ -22,7 +22,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(path_effort, path_effort_clear)
 
 /** @brief Measures with a few paths, the same on any number of threads.
  * Where bright spots are asked for, plan->lit gets the places that are lit and light
- * others; plan->sketch is made, without caustics. @param out is empty
+ * others; plan->sketch is made, without caustics in sight. @param out is empty
  * @return false with ERROR_CANCELLED if it was cancelled */
 bool path_effort_measure(transport_plan *plan, const cancel_flag *cancel,
                          path_effort *out, GError **error);
