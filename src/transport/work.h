@@ -6,11 +6,11 @@
  *   sight   where the camera looks (visible.h)      1/2 share    where photons are sent
  *   paths   what paths find by themselves           1/2 share    auto
  *   aim     trial photons, which teach the guide      2 shares   where casters are
- *   radii   how dense photons lie (radius.c)        1/2 share    where photons are sent
+ *   radii   how dense photons lie (radius.c)          2 shares   where photons are sent
  *   pass    a small one, to try spots with          1/2 share    auto
  *   noise   what paths find beside its photons      1/2 share    auto
  *   spots   what looking at bright spots is worth     1 share    auto
- *   gather  what gathering all light is worth         2 shares   auto: radii, two maps,
+ *   gather  what gathering all light is worth     3 1/2 shares   auto: radii, two maps,
  *                                                                places
  */
 #pragma once
