@@ -233,6 +233,8 @@ typedef struct transport_plan {
     bool gathers;       /**< auto: photons carry indirect light too (plan/gather.h) */
     double path_noise;  /**< variance of a sample by paths, relative as sketch_weight has
                            it: of what no photons bring */
+    double alike;       /**< variance of a sample that is alike in neighbouring pixels, by
+                           photons of caustics, times what it weighs in the picture */
     double sample_rays; /**< that a sample costs, photons apart ... */
     double photon_rays; /**< and its part of the photons of a pass */
     float p_blurred;    /**< probability of a gather that is seen by way of a diffuse

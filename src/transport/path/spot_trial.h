@@ -8,7 +8,8 @@
 /** @brief What looks at bright spots were seen to bring, while each surface looked. */
 typedef struct spot_trial {
     double weight;         /**< of squares at the place of the film that is tried */
-    double rays;           /**< that looks cost, by their importance */
+    double rays;           /**< that looks cost, by their importance, and all that is
+                                weighed beside them */
     double without;        /**< sum of squares of what paths bring without looking ... */
     double with[N_SHARES]; /**< ... and where each surface looks, or one in two */
 } spot_trial;

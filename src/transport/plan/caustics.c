@@ -65,12 +65,12 @@ static double product(plan_cost cost)
     return cost.variance * cost.rays;
 }
 
-/* The share of all photons with which variance times work is least, if it is clearly so,
-   and less than without photons in the picture that is shown, too; 0: none. Chosen by
-   what is shown the share was all in place of half, for 1.0 to 1.4 times the error with
-   glass, by a ball and in fog (256 x 256, 1 and 2 s, five seeds). */
-static double best_share(transport_plan *plan, const aim_result *found,
-                         const path_effort *paths)
+/* Which share of all photons it is with which variance times work is least, if it is
+   clearly so, and less than without photons in the picture that is shown, too; N_SHARES:
+   none. Chosen by what is shown the share was all in place of half, for 1.0 to 1.4 times
+   the error with glass, by a ball and in fog (256 x 256, 1 and 2 s, five seeds). */
+static int best_share(transport_plan *plan, const aim_result *found,
+                      const path_effort *paths)
 {
     const plan_cost without = {paths->noise + paths->bounced + found->noise, paths->rays};
     plan_cost best = cost_with(plan, found, paths, 0, 1.0);
@@ -86,7 +86,7 @@ static double best_share(transport_plan *plan, const aim_result *found,
     bool taken = product(best) < CLEARLY_BETTER * product(without) &&
                  product(shown) < product(without);
     plan_note(plan, "caustic photons", without, shown, taken);
-    return taken ? plan_share(share) : 0.0;
+    return taken ? share : N_SHARES;
 }
 
 /* Gathers that are seen by way of a diffuse bounce are made as often as keeps their noise
@@ -100,22 +100,24 @@ static void decide_blurred(transport_plan *plan, const aim_result *found,
     plan->p_blurred_in_media = plan->p_blurred / (float)fmax(paths->surfaces - 1.0, 1.0);
 }
 
-static void set_share(transport_plan *plan, double share)
+static void set_share(transport_plan *plan, const aim_result *found, int share)
 {
     uint64_t *n = &plan->n_photons[PHOTON_CAUSTIC];
-    *n = share > 0.0 ? (uint64_t)MAX(share * (double)*n, 1.0) : 0;
+    bool any = share < N_SHARES;
+    *n = any ? (uint64_t)MAX(plan_share(share) * (double)*n, 1.0) : 0;
+    plan->alike = any ? plan_weight_alike(plan) * found->alike[share] : 0.0;
 }
 
 /* Of those tried: what is asked for is sent, and of light that no path finds some. */
-static double share_to_send(transport_plan *plan, const aim_result *found,
-                            const path_effort *paths)
+static int share_to_send(transport_plan *plan, const aim_result *found,
+                         const path_effort *paths)
 {
-    double share = best_share(plan, found, paths);
+    int share = best_share(plan, found, paths);
     if (plan->how.class_photons[PHOTON_CAUSTIC] > 0)
-        share = 1.0;
+        share = SHARE_ALL;
     else if (found->alone > 0.0)
-        share = fmax(share, least_share());
-    plan->trials[plan->n_trials - 1].taken = share > 0.0;
+        share = MIN(share, SHARE_HALF);
+    plan->trials[plan->n_trials - 1].taken = share < N_SHARES;
     return share;
 }
 
@@ -123,7 +125,7 @@ void caustics_decide(transport_plan *plan, const aim_result *found,
                      const path_effort *paths)
 {
     decide_blurred(plan, found, paths);
-    set_share(plan, share_to_send(plan, found, paths));
+    set_share(plan, found, share_to_send(plan, found, paths));
     if (plan->n_photons[PHOTON_CAUSTIC] > 0)
         plan->sample_rays += gather_rays(plan, paths);
     plan->photon_rays = photon_rays(found, (double)plan->n_photons[PHOTON_CAUSTIC]) /

@@ -221,9 +221,16 @@ bool spots_fit(const transport_plan *plan)
     return plan_grant(plan, 1.0) >= LEAST_TRIALS * pair_rays(plan);
 }
 
+/* The error of the picture with that noise of paths, times work. */
+static double product(const transport_plan *plan, plan_cost cost)
+{
+    return (cost.variance + plan->alike) * cost.rays;
+}
+
 /* The share of surfaces that had best look. What looks take away is added up without the
    chance of missing it, where the variance of paths that do not look would hang on the
-   few that do not. */
+   few that do not; what photons leave alike in neighbouring pixels stays, and only more
+   passes take it away. */
 static void choose_share(transport_plan *plan, const spot_trial *trial, double noise,
                          uint32_t n_pairs)
 {
@@ -231,14 +238,14 @@ static void choose_share(transport_plan *plan, const spot_trial *trial, double n
     plan_cost without = {rest + trial->without * each,
                          plan->sample_rays + plan->photon_rays};
     plan_cost best = {rest + trial->with[0] * each, without.rays + trial->rays * each};
-    double least = CLEARLY_BETTER * without.variance * without.rays;
+    double least = CLEARLY_BETTER * product(plan, without);
     for (int i = 0; i < N_SHARES; i++) {
         double share = plan_share(i);
         plan_cost with = {rest + trial->with[i] * each,
                           without.rays + share * trial->rays * each};
-        if (with.variance * with.rays >= least)
+        if (product(plan, with) >= least)
             continue;
-        least = with.variance * with.rays;
+        least = product(plan, with);
         best = with;
         plan->p_spots = (float)share;
     }
