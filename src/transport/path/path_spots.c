@@ -67,7 +67,7 @@ static bool meet_surface(path_walk *walk, const camera_path *path,
 
 /* The tree of spots is as dear to ask as a map is twice. Told so, a pass with looks takes
    1.26 to 1.91 times as long, and by the clock 1.32 to 1.83 (seven scenes with caustics,
-   192 x 192, 8 passes); asked as a map is it was told 1.16 to 1.55. By a window, where
+   192 x 192, 8 passes); asked as a map is, it was told 1.16 to 1.55. By a window, where
    most of what is asked lies beside the spots, it is 3.5 for 2.2. */
 static void count_question(path_walk *walk)
 {
