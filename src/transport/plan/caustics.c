@@ -11,8 +11,8 @@ static int64_t most_of_all(int64_t samples)
     return MAX((int64_t)((double)samples * SAMPLE_RAYS / half), MOST_PLACES);
 }
 
-/* No fewer photons than this share of all, if there must be any; and no fewer blurred
-   gathers than this share: what is weighed by more stands out in the picture. */
+/* No fewer blurred gathers than this share: what is weighed by more stands out in the
+   picture. */
 static double least_share(void)
 {
     return plan_share(SHARE_HALF);
@@ -108,7 +108,8 @@ static void set_share(transport_plan *plan, const aim_result *found, int share)
     plan->alike = any ? plan_weight_alike(plan) * found->alike[share] : 0.0;
 }
 
-/* Of those tried: what is asked for is sent, and of light that no path finds some. */
+/* Of those tried: what is asked for is sent, and where no path finds the light half at
+   least, since what weighs more stands out in the picture. */
 static int share_to_send(transport_plan *plan, const aim_result *found,
                          const path_effort *paths)
 {
