@@ -2,8 +2,9 @@
  * How far from the truth a picture is after so much processor time, algorithm by
  * algorithm: a table of points for equal_time.py, which makes curves and ratios of them.
  *
- *   scene ─► two long renders of algorithms that share no weakness ─► reference, its
- * floor ─► each algorithm, 1, 2, 4 ... passes, some seeds ─► seconds, relMSE, FLIP
+ *   scene ─► two long renders of algorithms that share no weakness, weighed by their
+ * noise ─► reference, its floor ─► each algorithm, 1, 2, 4 ... passes, some seeds ─►
+ * seconds, relMSE, FLIP
  *
  * Each picture is measured as it was rendered, and under its algorithm's name with a "+"
  * as it is shown: without its noise, with the seconds that taking it out took. The
@@ -15,7 +16,7 @@
  * so many. One thread, its processor seconds, planning included. Errors are of R, G and B
  * cut at CUT, for single pixels of a lamp would outweigh the picture.
  *
- * With `--by time` points are what one gets who gives the program so many seconds, half a
+ * With `--by time` points are what one gets who gives so many seconds, a quarter of
  * one and then twice as many each time: the setting `time` and nothing else, all threads,
  * seconds of the clock until the picture is there; as rendered is without denoising.
  *
@@ -43,7 +44,7 @@ enum { MOST_KINDS = 8, FIRST_SEED = 1 };
    second alone: with steps of 4 it promised pictures of three passes' time. */
 enum { FEW = 4, STEP = 2 };
 
-#define SHORTEST 0.5 /* s, by time */
+#define SHORTEST 0.25 /* s, by time */
 
 /* What is compared: a name, and the settings that make it, in their order. */
 typedef struct kind {
@@ -194,6 +195,55 @@ static float *colours(const NephImage *from, const char *const names[3])
     return rgb;
 }
 
+/* What pictures are measured against: two long renders, and how much of each. */
+typedef struct truth {
+    NephImage *by[2], *light;
+    float share[2];
+} truth;
+
+/* relMSE that a render's noise is, by its passes' scatter; what is cut has none. */
+static double noise_of(const NephImage *image)
+{
+    int width, height, n;
+    neph_image_size(image, &width, &height, &n);
+    const float *variance = channel(image, "variance.Y");
+    float *rgb = colours(image, beauty);
+    double sum = 0.0;
+    for (int i = 0; i < width * height; i++) {
+        const float *c = rgb + 3 * i;
+        float y = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
+        sum += y < CUT ? (double)(variance[i * n] / (y * y + 0.01f)) : 0.0;
+    }
+    g_free(rgb);
+    return sum / (width * height);
+}
+
+/* The mean of both that has the least noise: each by what the other has. One share for
+   all pixels, so that a pixel's share knows nothing of its light. */
+static void weigh(truth *of)
+{
+    GError *error = NULL;
+    int width, height, n_channels;
+    neph_image_size(of->by[0], &width, &height, &n_channels);
+    double noise[2] = {noise_of(of->by[0]), noise_of(of->by[1])};
+    of->share[0] = (float)(noise[1] / (noise[0] + noise[1]));
+    of->share[1] = 1.0f - of->share[0];
+    float *a = colours(of->by[0], beauty), *b = colours(of->by[1], beauty);
+    for (int i = 0; i < 3 * width * height; i++)
+        a[i] = of->share[0] * a[i] + of->share[1] * b[i];
+    if (!(of->light = neph_image_new(width, height, a, &error)))
+        fail("no memory", error);
+    g_free(a);
+    g_free(b);
+}
+
+static void truth_clear(truth *of)
+{
+    for (int k = 0; k < 2; k++)
+        neph_image_free(of->by[k]);
+    neph_image_free(of->light);
+}
+
 static NephImage *cut(const NephImage *from, const char *const names[3])
 {
     GError *error = NULL;
@@ -220,20 +270,22 @@ static NephImageDifference compare(const NephImage *image, const char *const nam
     return out;
 }
 
-/* relMSE over what caustics light: a fifth of it and more, by the reference's layers.
+/* relMSE over what caustics light: a fifth of it and more, by the first render's layers.
    NAN: nothing is. */
 static double caustic_error(const NephImage *image, const char *const names[3],
-                            const NephImage *reference)
+                            const truth *reference)
 {
     int width, height, n_channels;
     neph_image_size(image, &width, &height, &n_channels);
-    float *is = colours(image, names), *should = colours(reference, beauty);
-    float *lit = colours(reference, caustic);
+    float *is = colours(image, names), *should = colours(reference->light, beauty);
+    float *all = colours(reference->by[0], beauty);
+    float *lit = colours(reference->by[0], caustic);
     double sum = 0.0;
     int n = 0;
     for (int i = 0; i < width * height; i++) {
-        const float *a = is + 3 * i, *b = should + 3 * i, *l = lit + 3 * i;
-        if (!(l[0] + l[1] + l[2] > 0.2f * (b[0] + b[1] + b[2])))
+        const float *a = is + 3 * i, *b = should + 3 * i;
+        const float *l = lit + 3 * i, *of = all + 3 * i;
+        if (!(l[0] + l[1] + l[2] > 0.2f * (of[0] + of[1] + of[2])))
             continue;
         for (int c = 0; c < 3; c++)
             sum += (double)((a[c] - b[c]) * (a[c] - b[c]) / (b[c] * b[c] + 0.01f));
@@ -241,6 +293,7 @@ static double caustic_error(const NephImage *image, const char *const names[3],
     }
     g_free(is);
     g_free(should);
+    g_free(all);
     g_free(lit);
     return n > 0.01 * width * height ? sum / n : (double)NAN;
 }
@@ -287,9 +340,9 @@ static NephImage *long_shot(const NephScene *scene, const char *name, const kind
 
 /* @param names of the picture's channels */
 static void print_point(const NephImage *image, const char *const names[3],
-                        const NephImage *reference, double took)
+                        const truth *reference, double took)
 {
-    NephImageDifference d = compare(image, names, reference);
+    NephImageDifference d = compare(image, names, reference->light);
     printf("\t%.4f\t%.6f\t%.5f\t%.6f\n", took, d.relmse, d.flip,
            caustic_error(image, names, reference));
     fflush(stdout);
@@ -297,7 +350,7 @@ static void print_point(const NephImage *image, const char *const names[3],
 
 /* A point of a picture as rendered, or as it is shown. */
 static void print_one(const NephImage *image, const char *name, const kind *k, amount of,
-                      int seed, const NephImage *reference, bool as_shown,
+                      int seed, const truth *reference, bool as_shown,
                       const seconds *took)
 {
     bool denoised = as_shown && channel(image, shown[0]);
@@ -310,7 +363,7 @@ static void print_one(const NephImage *image, const char *name, const kind *k, a
 /* Both points, of one render or of two that go another way.
    @return seconds of the first; negative: the scene is refused */
 static double measure(const NephScene *scene, const char *name, const kind *k, amount of,
-                      int seed, const NephImage *reference)
+                      int seed, const truth *reference)
 {
     seconds raw, shown_too;
     bool apart = of.time > 0.0 || strstr(k->settings, "integrator=auto");
@@ -331,7 +384,7 @@ static double measure(const NephScene *scene, const char *name, const kind *k, a
 
 /* One algorithm with one seed: twice as much each time. */
 static void measure_kind(const NephScene *scene, const char *name, const kind *k,
-                         int seed, const NephImage *reference, const options *o)
+                         int seed, const truth *reference, const options *o)
 {
     double took = 0.0;
     amount of = {1, o->by_time ? SHORTEST : 0.0};
@@ -345,8 +398,8 @@ static void measure_kind(const NephScene *scene, const char *name, const kind *k
 }
 
 /* The algorithms take turns, so that all have of what the machine does beside them. */
-static void measure_all(const NephScene *scene, const char *name,
-                        const NephImage *reference, bool media, const options *o)
+static void measure_all(const NephScene *scene, const char *name, const truth *reference,
+                        bool media, const options *o)
 {
     for (int seed = FIRST_SEED; seed < FIRST_SEED + o->seeds; seed++)
         for (int i = 0; i < o->n_kinds; i++)
@@ -385,6 +438,16 @@ static void name_of(const char *path, char *out, size_t n)
     g_free(copy);
 }
 
+/* What both differ by, and first the relMSE that is left in their mean: of variances that
+   add up to the difference, as noise has them. */
+static void print_floor(const char *name, const truth *of)
+{
+    NephImageDifference apart = compare(of->by[1], beauty, of->by[0]);
+    double left = (double)(of->share[0] * of->share[1]) * apart.relmse;
+    printf("%s\tfloor\t0\t0\t%.6f\t%.6f\t%.5f\n", name, left, apart.relmse, apart.flip);
+    fflush(stdout);
+}
+
 static void measure_scene(const char *path, const options *o)
 {
     GError *error = NULL;
@@ -400,14 +463,12 @@ static void measure_scene(const char *path, const options *o)
     /* vcm has the least noise where anything is hard, and sppm in media, where vcm is
        not; their bias goes with the passes. */
     const kind *by[2] = {&all_kinds[media ? SPPM : VCM], &all_kinds[media ? PATH : SPPM]};
-    NephImage *reference = long_shot(scene, name, by[0], o);
-    NephImage *other = long_shot(scene, name, by[1], o);
-    NephImageDifference floor = compare(other, beauty, reference);
-    printf("%s\tfloor\t0\t0\t0\t%.6f\t%.5f\t%.6f\n", name, floor.relmse, floor.flip,
-           caustic_error(other, beauty, reference));
-    measure_all(scene, name, reference, media, o);
-    neph_image_free(reference);
-    neph_image_free(other);
+    truth reference = {
+        .by = {long_shot(scene, name, by[0], o), long_shot(scene, name, by[1], o)}};
+    weigh(&reference);
+    print_floor(name, &reference);
+    measure_all(scene, name, &reference, media, o);
+    truth_clear(&reference);
     neph_scene_free(scene);
 }
 

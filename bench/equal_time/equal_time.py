@@ -8,10 +8,10 @@ Runs equal_time (equal_time.c) on the scenes beside it and those of ../shared, a
 points.tsv, error.svg (error against seconds, log-log) and table.txt to DIR/equal_time, where
 references are kept too: `--quick` takes some minutes, `--small` (all scenes at 128 x 128, three
 seeds) three quarters of an hour of two processors, all some hours. Seconds are the processor's;
-`--time` asks for what all threads have after half a second to four of the clock, by five seeds (an
-hour of a quiet machine, and references). `--report` puts table and curves into docs/report
-too, `--points FILE` reads what was measured before. Each algorithm stands there twice: as
-rendered, and without its noise.
+`--time` asks for what all threads have after a quarter of a second to four of the clock, by five
+seeds (an hour and a half of a quiet machine, and references). `--report` puts table and curves
+into docs/report too, `--points FILE` reads what was measured before. Each algorithm stands there
+twice: as rendered, and without its noise.
 """
 import argparse
 import collections
@@ -59,14 +59,15 @@ def measure(folder, scenes, options):
 
 
 def read(path):
-    """{scene: {kind: [(seconds, relMSE, FLIP)]}}: medians over seeds; and {scene: floor}"""
+    """{scene: {kind: [(seconds, relMSE, FLIP)]}}: medians over seeds; and {scene: (relMSE of
+    the reference, relMSE and FLIP of one of its two renders to the other)}"""
     seeds = collections.defaultdict(list)
     floors = {}
     for line in path.read_text().splitlines():
         scene, kind, _, passes, *numbers = line.split("\t")
         numbers = [float(x) for x in numbers[:3]]
         if kind == "floor":
-            floors[scene] = numbers[1:]
+            floors[scene] = numbers
         else:
             seeds[scene, kind, int(passes)].append(numbers)
     curves = collections.defaultdict(lambda: collections.defaultdict(list))
@@ -100,7 +101,7 @@ def table(curves, floors, shown):
         lines.append(f"{'seconds to ' + name:28}" + "".join(f"{k:>9}" for k in kinds) +
                      f"{'auto/best':>11}{'auto/path':>11}{'auto/sppm':>11}")
         for scene, by_kind in curves.items():
-            floor = floors.get(scene, (0, 0))[column - 1]
+            floor = floors.get(scene, (0, 0, 0))[0 if column == 1 else 2]
             for level in levels:
                 if level < floor:
                     continue
@@ -114,8 +115,8 @@ def whole_text(curves, floors):
         "as rendered", "", table(curves, floors, False), "",
         "without noise, with the time to take it out", "", table(curves, floors, True), "",
         "<: its first picture is no worse; ~: by its last points, beyond them", "",
-        "between the two references, relMSE and FLIP:"] + [
-            f"    {s:16} {f[0]:.5f} {f[1]:.3f}" for s, f in floors.items()])
+        "relMSE of the reference; relMSE and FLIP between its two renders:"] + [
+            f"    {s:16} {f[0]:.5f} {f[1]:.5f} {f[2]:.3f}" for s, f in floors.items()])
 
 
 def row(scene, by_kind, kinds, level, column):

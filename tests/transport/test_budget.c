@@ -8,6 +8,7 @@
 #include "ray_count.h"
 #include "rooms.h"
 #include "transport/plan/caustics.h"
+#include "transport/plan/path_trial.h"
 
 #define AT " Shape \"sphere\" \"float radius\" "
 #define BALL "Translate 0 0 0.6" AT "0.5\n"
@@ -202,38 +203,70 @@ static void test_steady(void)
 
 /* ---- Grain and blotches ---- */
 
-/* What is decided where photons leave paths so much of a noise of 1.8, beside .2 of
-   other light, and bring so much that is alike, in twice the rays: a picture of four
-   passes, with its noise or without. */
-static uint64_t sent(const char *words, double left, double alike)
+/* What a picture of four passes is to be, with its noise or without, where so much noise
+   of paths is photons' to take, beside .2 of other light: they leave them so much of it
+   and bring so much that is alike, in twice the rays. */
+static transport_plan decided(const view *v, const char *words, double noise, double left,
+                              double alike)
 {
-    g_autoptr(view) v = view_of(STUDIO SMALL_LAMP "Material \"dielectric\" " BALL);
     const settings how = settings_with(v->scene, words);
     transport_plan plan = transport_plan_of(v, &how);
     const path_effort paths = {.noise = 0.2, .rays = 6.0, .surfaces = 3.0};
-    aim_result found = {.noise = 1.8, .rays = 1.0};
+    aim_result found = {.noise = noise, .rays = 1.0};
     for (int i = 0; i < N_SHARES; i++) {
         found.left[i] = left;
         found.alike[i] = alike / plan_share(i);
     }
     plan.n_photons[PHOTON_CAUSTIC] = 100;
     caustics_decide(&plan, &found, &paths);
+    return plan;
+}
+
+#define SHOWN "integrator=auto passes=4 spp=1 denoise=true"
+#define RAW "integrator=auto passes=4 spp=1 denoise=false"
+#define GLASS STUDIO SMALL_LAMP "Material \"dielectric\" " BALL
+
+static uint64_t sent(const char *words, double left, double alike)
+{
+    g_autoptr(view) v = view_of(GLASS);
+    transport_plan plan = decided(v, words, 1.8, left, alike);
     uint64_t n = plan.n_photons[PHOTON_CAUSTIC];
     transport_plan_clear(&plan);
     return n;
+}
+
+/* How many surfaces look where that takes most of the grain, and half as much again of
+   the rays. */
+static float looking(const char *words, double alike)
+{
+    g_autoptr(view) v = view_of(GLASS);
+    transport_plan plan = decided(v, words, 18.0, 0.0, alike);
+    const spot_trial trial = {.without = 1.8, .with = {0.1, 0.6}, .rays = 6.0};
+    plan.sample_rays = 6.0;
+    g_assert_cmpuint(plan.n_photons[PHOTON_CAUSTIC], >, 0);
+    spots_choose_share(&plan, &trial, 0.15, 1);
+    float share = plan.p_spots;
+    transport_plan_clear(&plan);
+    return share;
 }
 
 /* Grain that photons take away is worth their grain, but not their blotches, unless noise
    stays as it is. */
 static void test_blotches(void)
 {
-    const char *shown = "integrator=auto passes=4 spp=1 denoise=true";
-    const char *raw = "integrator=auto passes=4 spp=1 denoise=false";
-    g_assert_cmpuint(sent(raw, 0.1, 0.0), >, 0);
-    g_assert_cmpuint(sent(shown, 0.1, 0.0), >, 0);
-    g_assert_cmpuint(sent(raw, 0.0, 0.1), ==, 100);
-    g_assert_cmpuint(sent(shown, 0.0, 0.1), ==, 0);
-    g_assert_cmpuint(sent(shown, 0.0, 0.01), >, 0);
+    g_assert_cmpuint(sent(RAW, 0.1, 0.0), >, 0);
+    g_assert_cmpuint(sent(SHOWN, 0.1, 0.0), >, 0);
+    g_assert_cmpuint(sent(RAW, 0.0, 0.1), ==, 100);
+    g_assert_cmpuint(sent(SHOWN, 0.0, 0.1), ==, 0);
+    g_assert_cmpuint(sent(SHOWN, 0.0, 0.01), >, 0);
+}
+
+/* Looks take grain, and passes from what is alike, which only passes take away. */
+static void test_blotches_beside_looks(void)
+{
+    g_assert_cmpfloat(looking(SHOWN, 0.0), ==, 1.0f);
+    g_assert_cmpfloat(looking(RAW, 0.1), ==, 1.0f);
+    g_assert_cmpfloat(looking(SHOWN, 0.1), ==, 0.0f);
 }
 
 static void add(const char *what, const subject *of, GTestDataFunc test)
@@ -255,5 +288,6 @@ int main(int argc, char **argv)
         add("told", &noisy[i], test_told);
     g_test_add_func("/budget/steady", test_steady);
     g_test_add_func("/budget/blotches", test_blotches);
+    g_test_add_func("/budget/blotches-beside-looks", test_blotches_beside_looks);
     return g_test_run();
 }

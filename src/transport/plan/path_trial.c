@@ -227,12 +227,11 @@ static double product(const transport_plan *plan, plan_cost cost)
     return (cost.variance + plan->alike) * cost.rays;
 }
 
-/* The share of surfaces that had best look. What looks take away is added up without the
-   chance of missing it, where the variance of paths that do not look would hang on the
-   few that do not; what photons leave alike in neighbouring pixels stays, and only more
-   passes take it away. */
-static void choose_share(transport_plan *plan, const spot_trial *trial, double noise,
-                         uint32_t n_pairs)
+/* What looks take away is added up without the chance of missing it, where the variance
+   of paths that do not look would hang on the few that do not; what photons leave alike
+   in neighbouring pixels stays, and only more passes take it away. */
+void spots_choose_share(transport_plan *plan, const spot_trial *trial, double noise,
+                        uint32_t n_pairs)
 {
     double each = 1.0 / (2.0 * n_pairs), rest = fmax(noise - trial->with[0] * each, 0.0);
     plan_cost without = {rest + trial->without * each,
@@ -266,6 +265,6 @@ bool spots_decide(transport_plan *plan, const path_pass *pass, const cancel_flag
                     error) ||
         !measure_noise(plan->sketch, false, &effort, error))
         return false;
-    choose_share(plan, &trial, effort.noise, effort.n);
+    spots_choose_share(plan, &trial, effort.noise, effort.n);
     return true;
 }

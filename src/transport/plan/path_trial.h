@@ -40,6 +40,11 @@ bool path_noise_measure(transport_plan *plan, const path_pass *pass,
 /** @brief Whether a trial of looks fits into the work; if not, nobody looks. */
 bool spots_fit(const transport_plan *plan);
 
+/** @brief Sets plan->p_spots to the share of surfaces that had best look, by so many
+ * pairs of paths that all looked. @param noise of a sample of theirs, relative */
+void spots_choose_share(transport_plan *plan, const spot_trial *trial, double noise,
+                        uint32_t n_pairs);
+
 /** @brief Measures how often surfaces should look at the spots of a pass: sets
  * plan->p_spots; the same on any number of threads.
  * @return false with ERROR_CANCELLED if it was cancelled */
