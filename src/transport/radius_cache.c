@@ -1,7 +1,9 @@
 #include "transport/radius_cache.h"
 
 #include "base/parallel.h"
+#include "math/median.h"
 #include "transport/near_places.h"
+#include "transport/work.h"
 
 #include <string.h>
 
@@ -12,12 +14,37 @@ struct radius_cache {
     float *radii; /* at each place */
 };
 
+/* The square of the distance at which there would be RADIUS_NEAREST, if n are within. */
+static float widened2(float distance2, size_t n)
+{
+    return distance2 * RADIUS_NEAREST / (float)MAX(n, 1);
+}
+
 float radius_of_nearest(const point_hits *nearest)
 {
     float furthest2 = 0.0f;
     for (size_t i = 0; i < nearest->n; i++)
         furthest2 = maxf(furthest2, nearest->distance2[i]);
-    return sqrtf(furthest2 * RADIUS_NEAREST / (float)MAX(nearest->n, 1));
+    return sqrtf(widened2(furthest2, nearest->n));
+}
+
+/* Half of points that lie evenly seem to lie clearly closer than all once in seven times.
+   With 1/1.2 and 1/2 for that the error as shown is 1.03 and 1.10 of what it is after 1.2
+   s, 1.02 and 1.02 after 3 s; down to 2 points, not 4, 1.10 and 1.00 (six scenes with
+   caustics, 256 x 256, three seeds). */
+float radius_in_patch(const point_hits *nearest)
+{
+    const float clearly = (float)(1.0 / CLEARLY_BETTER);
+    float sorted2[RADIUS_NEAREST], closer = clearly;
+    size_t n = MIN(nearest->n, RADIUS_NEAREST);
+    if (n == 0)
+        return 0.0f;
+    memcpy(sorted2, nearest->distance2, n * sizeof *sorted2);
+    median(sorted2, n);
+    float least2 = widened2(sorted2[n - 1], n);
+    for (size_t few = n / 2; few >= RADIUS_NEAREST / 4; few /= 2, closer *= clearly)
+        least2 = minf(least2, closer * widened2(sorted2[few - 1], few));
+    return sqrtf(least2);
 }
 
 typedef struct radius_loop {
@@ -27,6 +54,13 @@ typedef struct radius_loop {
     atomic_bool refused; /* memory was */
 } radius_loop;
 
+static float distance_at(const radius_source *source, vec3 p, point_hits *hits)
+{
+    if (!source->nearest(source->data, p, hits))
+        return 0.0f;
+    return source->has_edges ? radius_in_patch(hits) : radius_of_nearest(hits);
+}
+
 static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
@@ -35,8 +69,7 @@ static void find_radii(size_t begin, size_t end, unsigned thread, void *data)
     point_hits hits = {0};
     for (size_t i = begin; i < end; i++) {
         vec3 p = loop->places[i];
-        bool found = source->nearest(source->data, p, &hits);
-        float distance = found ? radius_of_nearest(&hits) : 0.0f;
+        float distance = distance_at(source, p, &hits);
         loop->radii[i] = source->radius(source->data, p, distance, &hits);
     }
     if (hits.refused)

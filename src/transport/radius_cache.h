@@ -20,13 +20,19 @@ typedef struct radius_cache radius_cache;
  * the distance at which there would be so many, spread as those are; 0 of none. */
 float radius_of_nearest(const point_hits *nearest);
 
+/** @brief The same of points that lie in patches, on a surface: where a half or a quarter
+ * of them lie so much closer than all do as chance seldom has it, the rest are beyond an
+ * edge, and these tell. */
+float radius_in_patch(const point_hits *nearest);
+
 /** @brief What radii are made from. Both calls are thread-safe. */
 typedef struct radius_source {
     /** Finds the RADIUS_NEAREST points nearest to p. @return false: memory is refused */
     bool (*nearest)(const void *data, vec3 p, point_hits *hits);
-    /** The radius at p, from radius_of_nearest there. @param hits scratch */
+    /** The radius at p, from radius_of_nearest or _in_patch there. @param hits scratch */
     float (*radius)(const void *data, vec3 p, float distance, point_hits *hits);
     const void *data;
+    bool has_edges;            /**< points lie in patches */
     const cancel_flag *cancel; /**< may be NULL */
 } radius_source;
 

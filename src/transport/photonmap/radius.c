@@ -4,8 +4,9 @@
  *
  *     r = r_k sqrt(wanted / k · N_pilot / N),
  *
- * r_k being the distance to the k-th nearest pilot photon. It is kept for places all over
- * the scene: a caustic's focus gets a small radius, the faint light around it a large
+ * r_k being the distance to the k-th nearest pilot photon; of light with edges a half or
+ * a quarter of them tell where they lie clearly closer than all. It is kept for places all
+ * over the scene: a caustic's focus gets a small radius, the faint light around it a large
  * one. Passes shrink all of them alike, so the estimate converges as with one radius
  * (Knaus & Zwicker 2011). Everything scales with the scene: in millimetres and in metres
  * it gets the same radius in pixels.
@@ -35,11 +36,16 @@
    the same with any of these, since its radii are the widest there may be. */
 static const double photons_wanted[N_PHOTON_CLASSES] = {37.5, 12000.0, 18.75};
 
+static bool is_smooth(const settings *how, photon_class c)
+{
+    return c == PHOTON_INDIRECT && !settings_one_map(how);
+}
+
 static double wanted_in_pass(const settings *how, photon_class c)
 {
     if (c == PHOTON_CAUSTIC)
         return photons_wanted[c];
-    if (c == PHOTON_DIRECT || settings_one_map(how))
+    if (!is_smooth(how, c))
         return photons_wanted[PHOTON_DIRECT];
     const double smooth = photons_wanted[PHOTON_INDIRECT];
     double passes = fmax(settings_planned_passes(how), 1.0);
@@ -75,6 +81,7 @@ typedef struct pilot {
    for them where it tells of none. */
 typedef struct radius_rule {
     double scale, largest, untold;
+    bool has_edges;
     const pilot *pilot;
     const photon_map *map; /* of the class' photons */
 } radius_rule;
@@ -112,7 +119,7 @@ static radius_cache *cache_radii(const radius_rule *rule, GError **error)
     vec3 *places = g_aligned_alloc0(MAX(n, 1), sizeof *places, 16);
     for (size_t i = 0; i < n; i++)
         places[i] = photon_store_get(store, radius_place(i, store->n)).p;
-    const radius_source source = {nearest_photons, radius_by, rule,
+    const radius_source source = {nearest_photons, radius_by, rule, rule->has_edges,
                                   rule->pilot->plan->cancel};
     unsigned threads = (unsigned)rule->pilot->plan->how.threads;
     radius_cache *cache = radius_cache_build(places, n, &source, threads, error);
@@ -241,6 +248,7 @@ static bool choose_on_surfaces(pilot *p, photon_class c, const pilot_maps *maps,
         .scale = sqrt(wanted / RADIUS_NEAREST / density),
         .largest = widest_radius(plan),
         .untold = untold_radius(plan, map, density, wanted),
+        .has_edges = !is_smooth(&plan->how, c),
         .pilot = p,
         .map = map,
     };

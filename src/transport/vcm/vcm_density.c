@@ -29,7 +29,7 @@ static radius_cache *radii_among(const vec3 *points, size_t n, unsigned threads,
     vec3 *places = g_aligned_alloc0(MAX(n_places, 1), sizeof *places, 16);
     for (size_t i = 0; i < n_places; i++)
         places[i] = points[point_set_number(index, radius_place(i, n))];
-    const radius_source source = {nearest, distance_itself, index, cancel};
+    const radius_source source = {nearest, distance_itself, index, false, cancel};
     radius_cache *cache = radius_cache_build(places, n_places, &source, threads, error);
     g_aligned_free(places);
     return cache;
