@@ -443,14 +443,17 @@ bool accel_intersect_solid(const accel *a, const ray *r, surface_hit *hit)
     return intersect(a, r, RAY_SOLID, hit);
 }
 
-/* The nearest hits, in Embree's words. */
+/* The nearest hits, in Embree's words. Where a processor has no vectors of 16, Embree
+   asks for all rays that end behind their beginning, whichever are valid. */
 static void ask_packet(const accel *a, const ray *rays, int n, struct RTCRayHit16 *query)
 {
+    static const struct RTCRay none = {.tnear = 1.0f, .tfar = 0.0f};
     int valid[RAY_PACKET] __attribute__((aligned(64))) = {0};
-    for (int i = 0; i < n; i++) {
-        const struct RTCRay one = embree_ray(&rays[i], a->world.per_metre);
-        valid[i] = embree_takes(&one, WORLD_REACH) ? -1 : 0;
-        packet_put(&query->ray, &one, RAY_ROWS, RAY_PACKET, (unsigned)i);
+    for (int i = 0; i < RAY_PACKET; i++) {
+        struct RTCRay one = i < n ? embree_ray(&rays[i], a->world.per_metre) : none;
+        valid[i] = i < n && embree_takes(&one, WORLD_REACH) ? -1 : 0;
+        packet_put(&query->ray, valid[i] ? &one : &none, RAY_ROWS, RAY_PACKET,
+                   (unsigned)i);
         query->hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         query->hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
