@@ -62,6 +62,17 @@ static void test_patches(void)
     }
 }
 
+/* A focus is as fine as may be, and not as where there is nothing. */
+static void test_one_place(void)
+{
+    float distance2[RADIUS_NEAREST] = {0.0f};
+    const point_hits hits = hits_of(distance2, RADIUS_NEAREST);
+    g_assert_cmpfloat(radius_in_patch(&hits), ==, 0.0f);
+    distance2[RADIUS_NEAREST - 1] = 1.0f;
+    g_assert_cmpfloat(radius_in_patch(&hits), >, 0.0f);
+    g_assert_cmpfloat(radius_in_patch(&hits), <, 1e-6f);
+}
+
 /* Fewer than are asked for, and none. */
 static void test_few(void)
 {
@@ -80,6 +91,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/radius-cache/even", test_even);
     g_test_add_func("/radius-cache/patches", test_patches);
+    g_test_add_func("/radius-cache/one-place", test_one_place);
     g_test_add_func("/radius-cache/few", test_few);
     return g_test_run();
 }
