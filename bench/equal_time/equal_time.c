@@ -298,12 +298,13 @@ static double caustic_error(const NephImage *image, const char *const names[3],
     return n > 0.01 * width * height ? sum / n : (double)NAN;
 }
 
-/* Passes of about so many seconds, from what a few take. */
+/* Passes of about so many seconds, from what a few take; two at least, which tell noise.
+ */
 static int64_t passes_for(const NephScene *scene, const kind *k, double wanted)
 {
     seconds few;
     neph_image_free(shot(scene, k, (amount){FEW, 0.0}, 99, false, &few));
-    return (int64_t)fmax(FEW * wanted / few.raw, 1.0);
+    return (int64_t)fmax(FEW * wanted / few.raw, 2.0);
 }
 
 static bool is_file(const char *path)

@@ -45,7 +45,7 @@ float radius_in_patch(const point_hits *nearest)
     float least2 = widened2(sorted2[n - 1], n);
     for (size_t few = n / 2; few >= RADIUS_NEAREST / 4; few /= 2, closer *= clearly)
         least2 = minf(least2, closer * widened2(sorted2[few - 1], few));
-    /* Of some that lie at one place, beside others, the least that is not none. */
+    /* Some may lie at one place; 0 would say that there are none. */
     return sorted2[n - 1] > 0.0f ? sqrtf(maxf(least2, FLT_MIN)) : 0.0f;
 }
 

@@ -21,9 +21,10 @@ static point_hits hits_of(float distance2[], size_t n)
     return (point_hits){.n = n, .distance2 = distance2};
 }
 
-/* Of patches of so many, the next one ten radii away, the area of the disc of
-   RADIUS_NEAREST at the density of the patch, of which that many radii are: told over
-   true, the mean of many. */
+/* In patches of so many, the next one ten radii away: the area of the disc that would
+   hold RADIUS_NEAREST at the patch's density, as it is told over what it is; the mean of
+   many.
+ */
 static double area_told(float (*told)(const point_hits *), size_t in_patch)
 {
     double sum = 0.0;
@@ -49,8 +50,8 @@ static void test_even(void)
     g_assert_cmpfloat(patch, >, 0.9 * all);
 }
 
-/* By those within, of which the half or the quarter that is asked is some: at most twice
-   the area for each of two steps. */
+/* However many are in it, if a quarter or more; each of two steps to fewer adds half as
+   much again, and all of them would tell of the next patch. */
 static void test_patches(void)
 {
     for (size_t n = RADIUS_NEAREST / 4; n < RADIUS_NEAREST; n++) {
