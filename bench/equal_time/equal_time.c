@@ -298,8 +298,7 @@ static double caustic_error(const NephImage *image, const char *const names[3],
     return n > 0.01 * width * height ? sum / n : (double)NAN;
 }
 
-/* Passes of about so many seconds, from what a few take; two at least, which tell noise.
- */
+/* Passes of about so many seconds, by what a few take; no fewer than tell noise. */
 static int64_t passes_for(const NephScene *scene, const kind *k, double wanted)
 {
     seconds few;

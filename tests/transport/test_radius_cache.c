@@ -22,9 +22,7 @@ static point_hits hits_of(float distance2[], size_t n)
 }
 
 /* In patches of so many, the next one ten radii away: the area of the disc that would
-   hold RADIUS_NEAREST at the patch's density, as it is told over what it is; the mean of
-   many.
- */
+   hold RADIUS_NEAREST at the patch's density, told over true, the mean of many. */
 static double area_told(float (*told)(const point_hits *), size_t in_patch)
 {
     double sum = 0.0;
