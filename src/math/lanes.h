@@ -158,6 +158,12 @@ static inline lane_floats min_lanes(lane_floats a, lane_floats b)
 #endif
 }
 
+/** @brief a where the mask is -1, b where it is 0. */
+static inline lane_floats choose_lanes(lane_ints mask, lane_floats a, lane_floats b)
+{
+    return (lane_floats)(((lane_ints)a & mask) | ((lane_ints)b & ~mask));
+}
+
 static inline lane_floats abs_lanes(lane_floats a)
 {
     return (lane_floats)((lane_ints)a & 0x7fffffff);

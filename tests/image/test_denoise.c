@@ -512,7 +512,7 @@ static float *filled_plane(workbench *b, const float *from, int c)
     float *plane = bench_plane(b);
     for (int i = 0; i < N; i++)
         plane[plane_at(&b->r.g, i % W, i / W)] = from[3 * i + c];
-    plane_mirror(&b->r.g, plane);
+    plane_mirror(&b->r.g, &plane, 1);
     return plane;
 }
 

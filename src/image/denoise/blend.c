@@ -51,32 +51,43 @@ typedef struct blend_loop {
     float *product[N_PRODUCTS], *sum[N_PRODUCTS];
 } blend_loop;
 
-static float brightness(const float *const planes[3], size_t at)
+/* All rows are worked on LANES pixels at a time, some of the margin's behind the last. */
+
+static lane_floats brightness(const float *const planes[3], size_t at)
 {
-    return luminance(planes[0][at], planes[1][at], planes[2][at]);
+    return luminance_lanes(load_lanes(planes[0] + at), load_lanes(planes[1] + at),
+                           load_lanes(planes[2] + at));
 }
 
-/* What a regression says of a pixel's half, and the pixel itself. */
+/* Of the mean of both halves. */
+static lane_floats joined(const blend_loop *loop, lane_floats a, lane_floats b)
+{
+    return loop->b->share * a + (1.0f - loop->b->share) * b;
+}
+
+/* What a regression says of a half of pixels, and these themselves. */
 static void said(const blend_loop *loop, int band, int half, size_t at, float own_weight,
-                 float out[3])
+                 lane_floats out[3])
 {
     float *const *sum = loop->b->done->sum[band][half];
     const float *const *own = loop->b->done->color[half];
+    lane_floats weight = load_lanes(sum[3] + at) + own_weight;
     for (int c = 0; c < 3; c++)
-        out[c] = (sum[c][at] + own_weight * own[c][at]) / (sum[3][at] + own_weight);
+        out[c] =
+            (load_lanes(sum[c] + at) + own_weight * load_lanes(own[c] + at)) / weight;
 }
 
 /* ---- Which bandwidth ---- */
 
 /* Squared error of what a bandwidth says, up to what is the same for all: each half's
    against the other's, which it does not know. */
-static float cross_error(const blend_loop *loop, int band, size_t at)
+static lane_floats cross_error(const blend_loop *loop, int band, size_t at)
 {
-    float rgb[3], y[N_HALVES], sum = 0.0f;
+    lane_floats rgb[3], y[N_HALVES], sum = fill_lanes(0.0f);
     for (int h = 0; h < N_HALVES; h++) {
         said(loop, band, h, at, LEAST_WEIGHT, rgb);
-        y[h] = luminance(rgb[0], rgb[1], rgb[2]);
-        float other = brightness(loop->b->done->color[1 - h], at);
+        y[h] = luminance_lanes(rgb[0], rgb[1], rgb[2]);
+        lane_floats other = brightness(loop->b->done->color[1 - h], at);
         sum += 0.5f * (y[h] - other) * (y[h] - other);
     }
     return sum - 0.25f * (y[0] - y[1]) * (y[0] - y[1]);
@@ -85,10 +96,10 @@ static float cross_error(const blend_loop *loop, int band, size_t at)
 static void error_row(int y, void *data)
 {
     const blend_loop *loop = data;
-    for (int x = 0; x < loop->g->width; x++) {
+    for (int x = 0; x < loop->g->width; x += LANES) {
         size_t at = plane_at(loop->g, x, y);
         for (int k = 0; k < N_BANDS; k++)
-            loop->errors[k][at] = cross_error(loop, k, at);
+            store_lanes(loop->errors[k] + at, cross_error(loop, k, at));
     }
 }
 
@@ -106,14 +117,16 @@ static void narrow_row(int y, void *data)
 static void filter_row(int y, void *data)
 {
     const blend_loop *loop = data;
-    for (int x = 0; x < loop->g->width; x++) {
+    for (int x = 0; x < loop->g->width; x += LANES) {
         size_t at = plane_at(loop->g, x, y);
-        float share = loop->around[0][at] / PATCH_PIXELS, wide[3], narrow[3];
+        lane_floats share = load_lanes(loop->around[0] + at) / PATCH_PIXELS;
+        lane_floats wide[3], narrow[3];
         for (int h = 0; h < N_HALVES; h++) {
             said(loop, 0, h, at, OWN_WEIGHT, wide);
             said(loop, 1, h, at, OWN_WEIGHT, narrow);
             for (int c = 0; c < 3; c++)
-                loop->filtered[h][c][at] = (1.0f - share) * wide[c] + share * narrow[c];
+                store_lanes(loop->filtered[h][c] + at,
+                            (1.0f - share) * wide[c] + share * narrow[c]);
         }
     }
 }
@@ -121,10 +134,8 @@ static void filter_row(int y, void *data)
 static void box_all(const grid *g, float *const *from, int n, int radius,
                     float *const *to)
 {
-    for (int k = 0; k < n; k++) {
-        plane_mirror(g, from[k]);
-        plane_box(g, from[k], radius, to[k]);
-    }
+    plane_mirror(g, from, n);
+    plane_box(g, (const float *const *)from, n, radius, to);
 }
 
 static bool choose_bandwidth(const blend_loop *loop)
@@ -145,15 +156,14 @@ static bool choose_bandwidth(const blend_loop *loop)
 static void residual_row(int y, void *data)
 {
     const blend_loop *loop = data;
-    float share = loop->b->share;
-    for (int x = 0; x < loop->g->width; x++) {
+    for (int x = 0; x < loop->g->width; x += LANES) {
         size_t at = plane_at(loop->g, x, y);
-        float a = brightness((const float *const *)loop->filtered[0], at);
-        float b = brightness((const float *const *)loop->filtered[1], at);
-        float is = share * a + (1.0f - share) * b;
+        lane_floats a = brightness((const float *const *)loop->filtered[0], at);
+        lane_floats b = brightness((const float *const *)loop->filtered[1], at);
+        lane_floats is = joined(loop, a, b);
         for (int h = 0; h < N_HALVES; h++)
-            loop->residual[h][at] = brightness(loop->b->raw[h], at) - is;
-        loop->residual[2][at] = a - b;
+            store_lanes(loop->residual[h] + at, brightness(loop->b->raw[h], at) - is);
+        store_lanes(loop->residual[2] + at, a - b);
     }
 }
 
@@ -163,14 +173,13 @@ static void residual_row(int y, void *data)
    a burning glass and of veach-mis, 4 passes, the relative squared error was ten times
    this one. Relative to the light there alone, specks came back to a dark floor (coffee:
    1.1 of the error as FLIP has it). */
-static float error_weight(const blend_loop *loop, size_t at, float noise)
+static lane_floats error_weight(const blend_loop *loop, size_t at, lane_floats noise)
 {
-    const blend *b = loop->b;
-    float here =
-        b->share * brightness((const float *const *)loop->filtered[0], at) +
-        (1.0f - b->share) * brightness((const float *const *)loop->filtered[1], at);
-    float mean = b->brightness / mean_divisor(b->albedo, at);
-    return 1.0f / maxf(here * here + mean * mean + noise, FLT_MIN);
+    lane_floats here =
+        joined(loop, brightness((const float *const *)loop->filtered[0], at),
+               brightness((const float *const *)loop->filtered[1], at));
+    lane_floats mean = loop->b->brightness / mean_divisor(loop->b->albedo, at);
+    return 1.0f / max_lanes(here * here + mean * mean + noise, fill_lanes(FLT_MIN));
 }
 
 static float square_pixels(int radius)
@@ -198,22 +207,22 @@ static void product_row(int y, void *data)
 {
     const blend_loop *loop = data;
     float share = loop->b->share, both = share * (1.0f - share);
-    float n = square_pixels(loop->radius);
-    for (int x = 0; x < loop->g->width; x++) {
+    float n = square_pixels(loop->radius), distinct = distinct_pixels(loop);
+    for (int x = 0; x < loop->g->width; x += LANES) {
         size_t at = plane_at(loop->g, x, y);
-        float a = loop->mean[0][at] / n, b = loop->mean[1][at] / n;
-        float follows = both * (a - b) * loop->mean[2][at] / n;
-        float lost2 = a * b + follows;
-        float noise = loop->noise[at] / (n * distinct_pixels(loop));
-        float noise_a = noise / share, noise_b = noise / (1.0f - share);
-        float weight = error_weight(loop, at, maxf(lost2, 0.0f) + noise);
-        loop->product[LOST2][at] = weight * lost2;
-        loop->product[ERROR2][at] =
-            weight * weight *
-            (noise_a * noise_b + maxf(lost2, 0.0f) * (noise_a + noise_b));
-        loop->product[FOLLOWS][at] = weight * follows;
-        loop->product[GIVEN][at] = weight * noise;
-        loop->product[APART][at] = weight * both * (a - b) * (a - b);
+        lane_floats a = load_lanes(loop->mean[0] + at) / n;
+        lane_floats b = load_lanes(loop->mean[1] + at) / n;
+        lane_floats follows = both * (a - b) * load_lanes(loop->mean[2] + at) / n;
+        lane_floats lost2 = a * b + follows, lost = max_lanes(lost2, fill_lanes(0.0f));
+        lane_floats noise = load_lanes(loop->noise + at) / (n * distinct);
+        lane_floats noise_a = noise / share, noise_b = noise / (1.0f - share);
+        lane_floats weight = error_weight(loop, at, lost + noise);
+        lane_floats error2 = noise_a * noise_b + lost * (noise_a + noise_b);
+        store_lanes(loop->product[LOST2] + at, weight * lost2);
+        store_lanes(loop->product[ERROR2] + at, weight * weight * error2);
+        store_lanes(loop->product[FOLLOWS] + at, weight * follows);
+        store_lanes(loop->product[GIVEN] + at, weight * noise);
+        store_lanes(loop->product[APART] + at, weight * both * (a - b) * (a - b));
     }
 }
 
@@ -294,7 +303,7 @@ static bool shrink(const blend_loop *loop)
     if (!plane_rows(g, residual_row, (void *)loop))
         return false;
     box_all(g, loop->residual, N_MEANS, loop->radius, loop->mean);
-    plane_box(g, loop->b->variance, loop->radius, loop->noise);
+    plane_box(g, &loop->b->variance, 1, loop->radius, &loop->noise);
     if (!plane_rows(g, product_row, (void *)loop))
         return false;
     box_all(g, loop->product, N_PRODUCTS, PATCH, loop->sum);
@@ -302,14 +311,15 @@ static bool shrink(const blend_loop *loop)
 }
 
 /* The darkest of the picture around a pixel. */
-static float darkest_around(const blend_loop *loop, int c, size_t at)
+static lane_floats darkest_around(const blend_loop *loop, int c, size_t at)
 {
-    float share = loop->b->share, darkest = INFINITY;
+    lane_floats darkest = fill_lanes(INFINITY);
     for (size_t y = 0; y < 3; y++)
         for (size_t x = 0; x < 3; x++) {
             size_t i = at + (y * loop->g->stride + x) - (loop->g->stride + 1);
-            darkest = minf(darkest, share * loop->b->raw[0][c][i] +
-                                        (1.0f - share) * loop->b->raw[1][c][i]);
+            darkest = min_lanes(joined(loop, load_lanes(loop->b->raw[0][c] + i),
+                                       load_lanes(loop->b->raw[1][c] + i)),
+                                darkest);
         }
     return darkest;
 }
@@ -319,13 +329,13 @@ static float darkest_around(const blend_loop *loop, int c, size_t at)
 static void join_row(int y, void *data)
 {
     const blend_loop *loop = data;
-    float share = loop->b->share;
-    for (int x = 0; x < loop->g->width; x++) {
+    for (int x = 0; x < loop->g->width; x += LANES) {
         size_t at = plane_at(loop->g, x, y);
-        for (int c = 0; c < 3; c++)
-            loop->b->out[c][at] = maxf(share * loop->filtered[0][c][at] +
-                                           (1.0f - share) * loop->filtered[1][c][at],
-                                       darkest_around(loop, c, at));
+        for (int c = 0; c < 3; c++) {
+            lane_floats is = joined(loop, load_lanes(loop->filtered[0][c] + at),
+                                    load_lanes(loop->filtered[1][c] + at));
+            store_lanes(loop->b->out[c] + at, max_lanes(is, darkest_around(loop, c, at)));
+        }
     }
 }
 

@@ -19,7 +19,7 @@ typedef struct blend {
 } blend;
 
 /** @brief Luminance of linear RGB. */
-static inline float luminance(float r, float g, float b)
+static inline lane_floats luminance_lanes(lane_floats r, lane_floats g, lane_floats b)
 {
     return 0.2126f * r + 0.7152f * g + 0.0722f * b;
 }
@@ -29,15 +29,16 @@ static inline float luminance(float r, float g, float b)
 #define LEAST_ALBEDO 0.02f
 
 /** @brief What light was divided by there. @param albedo three planes, or NULL */
-static inline float divisor(float *const *albedo, int c, size_t at)
+static inline lane_floats divisor(float *const *albedo, int c, size_t at)
 {
-    return albedo ? maxf(albedo[c][at], LEAST_ALBEDO) : 1.0f;
+    const lane_floats least = fill_lanes(LEAST_ALBEDO);
+    return albedo ? max_lanes(load_lanes(albedo[c] + at), least) : fill_lanes(1.0f);
 }
 
-static inline float mean_divisor(float *const *albedo, size_t at)
+static inline lane_floats mean_divisor(float *const *albedo, size_t at)
 {
-    return luminance(divisor(albedo, 0, at), divisor(albedo, 1, at),
-                     divisor(albedo, 2, at));
+    return luminance_lanes(divisor(albedo, 0, at), divisor(albedo, 1, at),
+                           divisor(albedo, 2, at));
 }
 
 bool blend_all(const blend *b, GError **error);

@@ -140,7 +140,6 @@ static void read_channel(const grid *g, const denoise_layer *layer, int h, int c
 {
     read_loop loop = {g, layer, h, c, plane};
     plane_rows(g, read_row, &loop);
-    plane_mirror(g, plane);
 }
 
 /* ---- Features ---- */
@@ -166,8 +165,9 @@ static bool read_feature(denoiser *d, const denoise_layer *layer, float *const *
     for (int h = 0; h < 2; h++) {
         for (int c = 0; c < layer->n_channels; c++) {
             f.half[h][c] = planes[h * MOST_CHANNELS + c];
-            read_channel(&d->g, layer, h, c, planes[h * MOST_CHANNELS + c]);
+            read_channel(&d->g, layer, h, c, f.half[h][c]);
         }
+        plane_mirror(&d->g, f.half[h], layer->n_channels);
     }
     if (!prefilter(&f, d->plane + d->n_planes, doubt, error))
         return false;
@@ -214,33 +214,46 @@ static void divide_row(int y, void *data)
 {
     const light_loop *loop = data;
     const grid *g = &loop->d->g;
-    for (int x = 0; x < g->width; x++) {
+    for (int x = 0; x < g->width; x += LANES) {
         size_t at = plane_at(g, x, y);
-        for (int c = 0; c < 3; c++) {
-            float by = divisor(loop->albedo, c, at);
-            for (int h = 0; h < 2; h++)
-                loop->p.raw[h][c][at] /= by;
+        for (int h = 0; h < 2; h++) {
+            lane_floats rgb[3];
+            for (int c = 0; c < 3; c++) {
+                float *raw = loop->p.raw[h][c] + at;
+                rgb[c] = load_lanes(raw) / divisor(loop->albedo, c, at);
+                store_lanes(raw, rgb[c]);
+            }
+            store_lanes(loop->p.bright[h] + at, luminance_lanes(rgb[0], rgb[1], rgb[2]));
         }
-        for (int h = 0; h < 2; h++)
-            loop->p.bright[h][at] = luminance(
-                loop->p.raw[h][0][at], loop->p.raw[h][1][at], loop->p.raw[h][2][at]);
     }
+}
+
+/* The variance as it is given, of pixels of which there are some; NAN: it is not. */
+static lane_floats given_variance(const light_loop *loop, int x, int y)
+{
+    const grid *g = &loop->d->g;
+    lane_floats told = fill_lanes(NAN);
+    if (loop->light->variance)
+        memcpy(&told, loop->light->variance + (size_t)y * (size_t)g->width + x,
+               (size_t)MIN(g->width - x, (int)LANES) * sizeof(float));
+    return told;
 }
 
 static void variance_row(int y, void *data)
 {
     const light_loop *loop = data;
     const grid *g = &loop->d->g;
-    const float *given = loop->light->variance;
     float share = loop->d->share;
-    for (int x = 0; x < g->width; x++) {
+    for (int x = 0; x < g->width; x += LANES) {
         size_t at = plane_at(g, x, y);
-        float by = mean_divisor(loop->albedo, at);
-        float apart = loop->p.bright[0][at] - loop->p.bright[1][at];
-        float told = given ? given[(size_t)y * (size_t)g->width + (size_t)x] : NAN;
-        loop->p.variance[at] = isfinite(told) && told >= 0.0f
-                                   ? told / (by * by)
-                                   : share * (1.0f - share) * apart * apart;
+        lane_floats by = mean_divisor(loop->albedo, at);
+        lane_floats apart =
+            load_lanes(loop->p.bright[0] + at) - load_lanes(loop->p.bright[1] + at);
+        lane_floats told = given_variance(loop, x, y);
+        lane_ints known = (told >= 0.0f) & (told < INFINITY);
+        store_lanes(loop->p.variance + at,
+                    choose_lanes(known, told / (by * by),
+                                 share * (1.0f - share) * apart * apart));
     }
 }
 
@@ -295,24 +308,13 @@ static void bright_row(int y, void *data)
 {
     const light_loop *loop = data;
     const grid *g = &loop->d->g;
-    for (int x = 0; x < g->width; x++) {
+    for (int x = 0; x < g->width; x += LANES) {
         size_t at = plane_at(g, x, y);
         for (int h = 0; h < 2; h++)
-            loop->p.bright[h][at] =
-                luminance(loop->p.color[h][0][at], loop->p.color[h][1][at],
-                          loop->p.color[h][2][at]);
-    }
-}
-
-static void find_noise(const light_loop *loop)
-{
-    const grid *g = &loop->d->g;
-    float share = loop->d->share;
-    plane_mirror(g, loop->p.variance);
-    plane_box(g, loop->p.variance, PATCH, loop->p.noise[0]);
-    for (size_t i = 0; i < g->n; i++) {
-        loop->p.noise[1][i] = loop->p.noise[0][i] / (1.0f - share);
-        loop->p.noise[0][i] /= share;
+            store_lanes(loop->p.bright[h] + at,
+                        luminance_lanes(load_lanes(loop->p.color[h][0] + at),
+                                        load_lanes(loop->p.color[h][1] + at),
+                                        load_lanes(loop->p.color[h][2] + at)));
     }
 }
 
@@ -327,16 +329,15 @@ static bool read_light(const light_loop *loop)
     if (!plane_rows(g, divide_row, (void *)loop) ||
         !plane_rows(g, variance_row, (void *)loop))
         return false;
-    plane_mirror(g, loop->p.bright[0]);
-    plane_mirror(g, loop->p.bright[1]);
+    plane_mirror(g, loop->p.bright, 2);
+    for (int h = 0; h < 2; h++)
+        plane_mirror(g, loop->p.raw[h], 3);
     if (!plane_rows(g, cut_row, (void *)loop) || !plane_rows(g, bright_row, (void *)loop))
         return false;
-    for (int h = 0; h < 2; h++) {
-        plane_mirror(g, loop->p.bright[h]);
-        for (int c = 0; c < 3; c++)
-            plane_mirror(g, loop->p.color[h][c]);
-    }
-    find_noise(loop);
+    plane_mirror(g, loop->p.bright, 2);
+    for (int h = 0; h < 2; h++)
+        plane_mirror(g, loop->p.color[h], 3);
+    patch_noise(g, loop->p.variance, loop->d->share, loop->p.noise);
     return true;
 }
 
@@ -401,10 +402,15 @@ static void write_row(int y, void *data)
     const write_loop *loop = data;
     const grid *g = &loop->light->d->g;
     float *out = loop->out + 3 * (size_t)y * (size_t)g->width;
-    for (int x = 0; x < g->width; x++) {
+    for (int x = 0; x < g->width; x += LANES) {
         size_t at = plane_at(g, x, y);
+        lane_floats rgb[3];
         for (int c = 0; c < 3; c++)
-            *out++ = loop->light->p.out[c][at] * divisor(loop->light->albedo, c, at);
+            rgb[c] = load_lanes(loop->light->p.out[c] + at) *
+                     divisor(loop->light->albedo, c, at);
+        for (int i = 0; i < MIN(g->width - x, (int)LANES); i++)
+            for (int c = 0; c < 3; c++)
+                *out++ = rgb[c][i];
     }
 }
 

@@ -3,6 +3,37 @@
 enum { ROWS = ROWS_AT_ONCE + 2 * PATCH /* that patches of some rows reach over */ };
 _Static_assert(PATCH == 3, "sum_down adds seven rows");
 
+/* ---- Noise ---- */
+
+typedef struct noise_loop {
+    const grid *g;
+    float share;
+    float *const *noise;
+} noise_loop;
+
+/* Of what the mean has, each half. */
+static void part_row(int y, void *data)
+{
+    const noise_loop *loop = data;
+    for (int x = 0; x < loop->g->width; x += LANES) {
+        size_t at = plane_at(loop->g, x, y);
+        lane_floats both = load_lanes(loop->noise[0] + at);
+        store_lanes(loop->noise[0] + at, both / loop->share);
+        store_lanes(loop->noise[1] + at, both / (1.0f - loop->share));
+    }
+}
+
+void patch_noise(const grid *g, float *variance, float share, float *const noise[2])
+{
+    noise_loop loop = {g, share, noise};
+    plane_mirror(g, &variance, 1);
+    plane_box(g, (const float *const[]){variance}, 1, PATCH, noise);
+    plane_rows(g, part_row, &loop);
+    plane_mirror(g, noise, 2);
+}
+
+/* ---- A row ---- */
+
 /* Squared differences of LANES numbers from p on, added to. */
 static lane_floats add_squares(lane_floats to, const float *p, ptrdiff_t offset)
 {

@@ -24,6 +24,11 @@ typedef struct patch_source {
     float least;        /**< added to the noise: differences that nobody sees */
 } patch_source;
 
+/** @brief What the noise is of both halves, mirrored.
+ * @param variance of the mean of both, summed over channels; its margin is filled
+ * @param share of all samples that are in the first half */
+void patch_noise(const grid *g, float *variance, float share, float *const noise[2]);
+
 /** @brief d for BLOCK pixels from (x, y) on and those at (dx, dy) from them. */
 void patch_distances(const patch_source *s, int x, int y, int dx, int dy, float *d);
 

@@ -45,7 +45,8 @@ static void plane_all_rows(const grid *g, row_body body, void *data)
 
 typedef struct plane_loop {
     const grid *g;
-    float *plane;
+    float *const *planes;
+    int n;
 } plane_loop;
 
 /* ---- New planes ---- */
@@ -53,7 +54,7 @@ typedef struct plane_loop {
 static void zero_row(int y, void *data)
 {
     const plane_loop *loop = data;
-    float *row = loop->plane + plane_at(loop->g, -MARGIN, y);
+    float *row = loop->planes[0] + plane_at(loop->g, -MARGIN, y);
     memset(row, 0, loop->g->stride * sizeof *row);
 }
 
@@ -61,9 +62,10 @@ float *plane_new(const grid *g, GError **error)
 {
     if (!g->spare || g->spare->n == 0)
         return big_alloc(g->n, sizeof(float), "denoising", error);
-    plane_loop loop = {g, g->spare->plane[--g->spare->n]};
+    float *plane = g->spare->plane[--g->spare->n];
+    plane_loop loop = {g, &plane, 1};
     plane_all_rows(g, zero_row, &loop);
-    return loop.plane;
+    return plane;
 }
 
 void plane_free(const grid *g, float *plane)
@@ -92,12 +94,10 @@ static int mirrored(int i, int n)
 
 /* A row of the margin is like the one of the picture that it mirrors, of which only what
    is in the picture is read. */
-static void mirror_row(int y, void *data)
+static void mirror_row_of(const grid *g, float *plane, int y)
 {
-    const plane_loop *loop = data;
-    const grid *g = loop->g;
-    const float *from = loop->plane + plane_at(g, 0, mirrored(y, g->height));
-    float *row = loop->plane + plane_at(g, 0, y);
+    const float *from = plane + plane_at(g, 0, mirrored(y, g->height));
+    float *row = plane + plane_at(g, 0, y);
     int end = (int)g->stride - MARGIN;
     if (row != from)
         memcpy(row, from, (size_t)g->width * sizeof *row);
@@ -107,9 +107,16 @@ static void mirror_row(int y, void *data)
         row[x] = from[mirrored(x, g->width)];
 }
 
-void plane_mirror(const grid *g, float *plane)
+static void mirror_row(int y, void *data)
 {
-    plane_loop loop = {g, plane};
+    const plane_loop *loop = data;
+    for (int i = 0; i < loop->n; i++)
+        mirror_row_of(loop->g, loop->planes[i], y);
+}
+
+void plane_mirror(const grid *g, float *const *planes, int n)
+{
+    plane_loop loop = {g, planes, n};
     plane_all_rows(g, mirror_row, &loop);
 }
 
@@ -117,9 +124,9 @@ void plane_mirror(const grid *g, float *plane)
 
 typedef struct box_loop {
     const grid *g;
-    const float *from;
-    int radius;
-    float *to;
+    const float *const *from;
+    int n, radius;
+    float *const *to;
 } box_loop;
 
 /* Of n vectors so far from one another. */
@@ -131,25 +138,29 @@ static lane_floats sum_lanes(const float *first, int n, size_t step)
     return sum;
 }
 
-static void box_row(int y, void *data)
+static void box_row_of(const grid *g, const float *from, int radius, int y, float *to)
 {
-    const box_loop *loop = data;
-    const grid *g = loop->g;
-    int across = 2 * loop->radius + 1;
+    int across = 2 * radius + 1;
     float columns[ACROSS];
     for (int x0 = 0; x0 < g->width; x0 += BLOCK) {
-        const float *from = loop->from + plane_at(g, x0 - loop->radius, y - loop->radius);
+        const float *first = from + plane_at(g, x0 - radius, y - radius);
         for (int i = 0; i < ACROSS; i += LANES)
-            store_lanes(columns + i, sum_lanes(from + i, across, g->stride));
+            store_lanes(columns + i, sum_lanes(first + i, across, g->stride));
         for (int i = 0; i < BLOCK; i += LANES)
-            store_lanes(loop->to + plane_at(g, x0 + i, y),
-                        sum_lanes(columns + i, across, 1));
+            store_lanes(to + plane_at(g, x0 + i, y), sum_lanes(columns + i, across, 1));
     }
 }
 
-void plane_box(const grid *g, const float *from, int radius, float *to)
+static void box_row(int y, void *data)
 {
-    box_loop loop = {g, from, radius, to};
+    const box_loop *loop = data;
+    for (int i = 0; i < loop->n; i++)
+        box_row_of(loop->g, loop->from[i], loop->radius, y, loop->to[i]);
+}
+
+void plane_box(const grid *g, const float *const *from, int n, int radius,
+               float *const *to)
+{
+    box_loop loop = {g, from, n, radius, to};
     plane_rows(g, box_row, &loop);
-    plane_mirror(g, to);
 }

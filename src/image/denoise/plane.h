@@ -51,12 +51,13 @@ static inline size_t plane_at(const grid *g, int x, int y)
     return (size_t)(y + MARGIN) * g->stride + (size_t)(x + MARGIN);
 }
 
-/** @brief Fills the margin from the picture. */
-void plane_mirror(const grid *g, float *plane);
+/** @brief Fills the margins of n planes from the picture. */
+void plane_mirror(const grid *g, float *const *planes, int n);
 
-/** @brief Sums over squares of 2 radius + 1 pixels, the margin's included; that of `to`
- * is filled. Not in place. @param radius at most PATCH */
-void plane_box(const grid *g, const float *from, int radius, float *to);
+/** @brief Sums of n planes over squares of 2 radius + 1 pixels, the margin's included;
+ * `to` gets none. Not in place. @param radius at most PATCH */
+void plane_box(const grid *g, const float *const *from, int n, int radius,
+               float *const *to);
 
 /** @brief Work on the pixels of row y. */
 typedef void (*row_body)(int y, void *data);

@@ -26,13 +26,15 @@ static void variance_row(int y, void *data)
 {
     const noise_loop *loop = data;
     const noisy_feature *f = loop->f;
-    for (int x = 0; x < f->g->width; x++) {
+    for (int x = 0; x < f->g->width; x += LANES) {
         size_t at = plane_at(f->g, x, y);
-        loop->variance[at] = 0.0f;
+        lane_floats sum = fill_lanes(0.0f);
         for (int c = 0; c < f->n_channels; c++) {
-            float d = f->half[0][c][at] - f->half[1][c][at];
-            loop->variance[at] += f->share * (1.0f - f->share) * d * d;
+            lane_floats d = load_lanes(f->half[0][c] + at);
+            d -= load_lanes(f->half[1][c] + at);
+            sum += f->share * (1.0f - f->share) * d * d;
         }
+        store_lanes(loop->variance + at, sum);
     }
 }
 
@@ -44,12 +46,7 @@ static bool find_noise(const noisy_feature *f, float *noise[2], GError **error)
         return false;
     noise_loop loop = {f, variance};
     plane_rows(f->g, variance_row, &loop);
-    plane_mirror(f->g, variance);
-    plane_box(f->g, variance, PATCH, noise[0]);
-    for (size_t i = 0; i < f->g->n; i++) {
-        noise[1][i] = noise[0][i] / (1.0f - f->share);
-        noise[0][i] /= f->share;
-    }
+    patch_noise(f->g, variance, f->share, noise);
     plane_free(f->g, variance);
     return true;
 }
@@ -142,15 +139,16 @@ static void join_row(int y, void *data)
     const feature_loop *loop = data;
     const noisy_feature *f = loop->f;
     float share = f->share, n = PATCH_PIXELS * (float)f->n_channels;
-    for (int x = 0; x < f->g->width; x++) {
+    for (int x = 0; x < f->g->width; x += LANES) {
         size_t at = plane_at(f->g, x, y);
-        float sum = 0.0f;
+        lane_floats sum = fill_lanes(0.0f);
         for (int c = 0; c < f->n_channels; c++) {
-            float a = loop->out[0][c][at], *b = &loop->out[1][c][at];
-            sum += share * (1.0f - share) * (a - *b) * (a - *b);
-            *b = share * a + (1.0f - share) * *b;
+            lane_floats a = load_lanes(loop->out[0][c] + at);
+            lane_floats b = load_lanes(loop->out[1][c] + at);
+            sum += share * (1.0f - share) * (a - b) * (a - b);
+            store_lanes(loop->out[1][c] + at, share * a + (1.0f - share) * b);
         }
-        loop->error2[at] = sum / n;
+        store_lanes(loop->error2 + at, sum / n);
     }
 }
 
@@ -169,9 +167,8 @@ static bool smooth(feature_loop *loop, float *const noise[2])
                       smooth_some, loop) ||
         !plane_rows(f->g, join_row, loop))
         return false;
-    for (int c = 0; c < f->n_channels; c++)
-        plane_mirror(f->g, loop->out[1][c]);
-    plane_mirror(f->g, loop->error2);
+    plane_mirror(f->g, loop->out[1], f->n_channels);
+    plane_mirror(f->g, &loop->error2, 1);
     return true;
 }
 
@@ -192,7 +189,7 @@ bool prefilter(const noisy_feature *f, float *const out[MOST_CHANNELS], float *d
         loop.error2 = planes[NOISE]; /* no longer wanted by then */
         ok = smooth(&loop, planes + NOISE);
         if (ok)
-            plane_box(f->g, loop.error2, PATCH, doubt);
+            plane_box(f->g, (const float *const[]){loop.error2}, 1, PATCH, &doubt);
         else
             error_set(error, ERROR_CANCELLED, "cancelled");
     }

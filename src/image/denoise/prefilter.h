@@ -16,7 +16,7 @@ typedef struct noisy_feature {
 
 /** @brief The mean of the halves, smoothed, and the square of the error that is left.
  * @param out mirrored planes
- * @param doubt likewise: that of a channel, mean over them
+ * @param doubt that of a channel, mean over them
  * @return false: cancelled or no memory */
 bool prefilter(const noisy_feature *f, float *const out[MOST_CHANNELS], float *doubt,
                GError **error);
