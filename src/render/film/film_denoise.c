@@ -18,9 +18,9 @@ static size_t n_pixels(const film *f)
 /* What a surface is counts as its light does: by the share of the pixel that it takes,
    where there is none beside it nothing. Where weights of either sign meet, those of
    surfaces alone may come to nothing. */
-static double weight_of(const film *f, half_place at)
+static double weight_of(const half_view *v)
 {
-    return half_number(f, at, HALF_AT(weight));
+    return half_number(v, HALF_AT(weight));
 }
 
 static void mean_of(const double *sum, double weight, int n, float *out)
@@ -29,24 +29,47 @@ static void mean_of(const double *sum, double weight, int n, float *out)
         out[i] = fabs(weight) > 0.0 ? (float)(sum[i] / weight) : 0.0f;
 }
 
-static void first_albedo(const film *f, half_place at, float *out)
+static void get_numbers(const half_view *v, size_t first, int n, double *out)
 {
-    double sum[3];
-    half_get(f, at, HALF_AT(color[N_LAYERS]), 3, sum);
-    film_to_rgb(f, sum, weight_of(f, at), out);
+    for (int i = 0; i < n; i++)
+        out[i] = half_number(v, first + (size_t)i);
 }
 
-static void first_normal(const film *f, half_place at, float *out)
+static void get_guides(const half_view *v, size_t first, int n, double *out)
 {
-    double sum[3];
-    half_get(f, at, HALF_AT(normal), 3, sum);
-    mean_of(sum, weight_of(f, at), 3, out);
+    for (int i = 0; i < n; i++)
+        out[i] = (double)half_guide(v, first + (size_t)i);
 }
 
-static void first_depth(const film *f, half_place at, float *out)
+/* A colour is none in most pixels of most layers. */
+static void to_rgb(const film *f, const half_view *v, const double sum[3], float out[3])
 {
-    double sum = half_number(f, at, HALF_AT(depth));
-    mean_of(&sum, weight_of(f, at), 1, out);
+    if (fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 0.0)
+        film_to_rgb(f, sum, weight_of(v), out);
+    else
+        out[0] = out[1] = out[2] = 0.0f;
+}
+
+static void first_albedo(const film *f, const half_view *v, float *out)
+{
+    double sum[3];
+    get_numbers(v, HALF_AT(color[N_LAYERS]), 3, sum);
+    to_rgb(f, v, sum, out);
+}
+
+static void first_normal(const film *f, const half_view *v, float *out)
+{
+    (void)f;
+    double sum[3];
+    get_numbers(v, HALF_AT(normal), 3, sum);
+    mean_of(sum, weight_of(v), 3, out);
+}
+
+static void first_depth(const film *f, const half_view *v, float *out)
+{
+    (void)f;
+    double sum = half_number(v, HALF_AT(depth));
+    mean_of(&sum, weight_of(v), 1, out);
 }
 
 /* Of what is seen in a mirror only how it differs from the mirror counts: elsewhere it
@@ -59,46 +82,38 @@ static void less_first(float *out, const float *first, int n)
     }
 }
 
-static void doubles_of(const float from[3], double to[3])
-{
-    for (int k = 0; k < 3; k++)
-        to[k] = (double)from[k];
-}
-
-static void seen_albedo(const film *f, half_place at, float *out)
+static void seen_albedo(const film *f, const half_view *v, float *out)
 {
     float first[3];
     double sum[3];
-    guide_sum guides = half_guides(f, at);
-    doubles_of(guides.albedo, sum);
-    film_to_rgb(f, sum, weight_of(f, at), out);
-    first_albedo(f, at, first);
+    get_guides(v, GUIDE_AT(albedo), 3, sum);
+    to_rgb(f, v, sum, out);
+    first_albedo(f, v, first);
     less_first(out, first, 3);
 }
 
-static void seen_normal(const film *f, half_place at, float *out)
+static void seen_normal(const film *f, const half_view *v, float *out)
 {
     float first[3];
     double sum[3];
-    guide_sum guides = half_guides(f, at);
-    doubles_of(guides.normal, sum);
-    mean_of(sum, weight_of(f, at), 3, out);
-    first_normal(f, at, first);
+    get_guides(v, GUIDE_AT(normal), 3, sum);
+    mean_of(sum, weight_of(v), 3, out);
+    first_normal(f, v, first);
     less_first(out, first, 3);
 }
 
-static void seen_depth(const film *f, half_place at, float *out)
+static void seen_depth(const film *f, const half_view *v, float *out)
 {
     float first;
-    double sum = (double)half_guides(f, at).depth;
-    mean_of(&sum, weight_of(f, at), 1, out);
-    first_depth(f, at, &first);
+    double sum = (double)half_guide(v, GUIDE_AT(depth));
+    mean_of(&sum, weight_of(v), 1, out);
+    first_depth(f, v, &first);
     less_first(out, &first, 1);
 }
 
 typedef struct feature {
     int n_channels;
-    void (*read)(const film *f, half_place at, float *out);
+    void (*read)(const film *f, const half_view *v, float *out);
 } feature;
 
 enum { ALBEDO = 0 }; /* by which light is divided that comes from the first surface */
@@ -125,25 +140,25 @@ typedef struct layer_room {
 } layer_room;
 
 /* Sums of what is filtered of the layer of mirrors, and of glints. */
-static void specular_of(const film *f, half_place at, int which, double sum[3])
+static void specular_of(const half_view *v, int which, double sum[3])
 {
-    guide_sum guides = half_guides(f, at);
-    half_get(f, at, HALF_AT(color[LAYER_SPECULAR]), 3, sum);
-    for (int c = 0; c < 3; c++) {
-        double glint = (double)guides.glints[c];
-        sum[c] = which == GLINTS ? glint : sum[c] - (double)guides.lights[c] - glint;
-    }
+    double lights[3], glints[3];
+    get_guides(v, GUIDE_AT(glints), 3, glints);
+    get_guides(v, GUIDE_AT(lights), 3, lights);
+    get_numbers(v, HALF_AT(color[LAYER_SPECULAR]), 3, sum);
+    for (int c = 0; c < 3; c++)
+        sum[c] = which == GLINTS ? glints[c] : sum[c] - lights[c] - glints[c];
 }
 
 /* What is filtered of a light. */
-static void light_of(const film *f, half_place at, int which, float *rgb)
+static void light_of(const film *f, const half_view *v, int which, float *rgb)
 {
     double sum[3];
     if (which == LAYER_SPECULAR || which == GLINTS)
-        specular_of(f, at, which, sum);
+        specular_of(v, which, sum);
     else
-        half_get(f, at, HALF_AT(color) + 3 * (size_t)which, 3, sum);
-    film_to_rgb(f, sum, weight_of(f, at), rgb);
+        get_numbers(v, HALF_AT(color) + 3 * (size_t)which, 3, sum);
+    to_rgb(f, v, sum, rgb);
     for (int c = 0; c < 3; c++)
         rgb[c] *= f->scale;
 }
@@ -162,13 +177,13 @@ static void read_pixels(size_t begin, size_t end, unsigned thread, void *data)
     const film *f = loop->f;
     for (size_t i = begin; i < end; i++) {
         for (int h = 0; h < 2; h++) {
-            half_place at = half_place_of(f, i, h);
+            half_view v = half_view_of(f, i, h);
             if (loop->feature) {
                 size_t to = i * (size_t)loop->feature->n_channels;
-                loop->feature->read(f, at, loop->room->half[h] + to);
+                loop->feature->read(f, &v, loop->room->half[h] + to);
                 continue;
             }
-            light_of(f, at, loop->light, loop->room->half[h] + 3 * i);
+            light_of(f, &v, loop->light, loop->room->half[h] + 3 * i);
         }
         if (!loop->feature && loop->light < N_LIGHTS)
             loop->room->variance[i] = halves_variance(f, i, loop->light);
@@ -262,9 +277,9 @@ static half_shares shares_of(const film *f)
     size_t own = 0;
     for (size_t i = 0; i < n_pixels(f); i++) {
         for (int h = 0; h < 2; h++) {
-            half_place at = half_place_of(f, i, h);
-            own += at.i == i;
-            sum[h] += at.i == i ? half_number(f, at, HALF_AT(weight)) : 0.0;
+            half_view v = half_view_of(f, i, h);
+            own += v.i == i;
+            sum[h] += v.i == i ? weight_of(&v) : 0.0;
         }
     }
     return (half_shares){(float)(sum[0] / (sum[0] + sum[1])),
@@ -272,11 +287,11 @@ static half_shares shares_of(const film *f)
 }
 
 /* Of all lights that are filtered, not yet divided by the weight. */
-static double filtered_luminance(const film *f, half_place at)
+static double filtered_luminance(const half_view *v)
 {
-    double y = -(double)half_guides(f, at).lights[FILM_Y];
+    double y = -(double)half_guide(v, GUIDE_AT(lights) + FILM_Y);
     for (size_t l = 0; l < N_LIGHTS; l++)
-        y += half_number(f, at, HALF_AT(color) + 3 * l + FILM_Y);
+        y += half_number(v, HALF_AT(color) + 3 * l + FILM_Y);
     return y;
 }
 
@@ -285,9 +300,9 @@ static float mean_luminance(const film *f)
     double y = 0.0, weight = 0.0;
     for (size_t i = 0; i < n_pixels(f); i++) {
         for (int h = 0; h < 2; h++) {
-            half_place at = half_place_of(f, i, h);
-            y += filtered_luminance(f, at);
-            weight += half_number(f, at, HALF_AT(weight));
+            half_view v = half_view_of(f, i, h);
+            y += filtered_luminance(&v);
+            weight += weight_of(&v);
         }
     }
     return y > 0.0 && weight > 0.0 ? (float)(y / weight) * f->scale : 0.0f;

@@ -121,16 +121,16 @@ static bool is_among(const size_t *pixels, int n, size_t i)
 
 /* Of a first pass that is not whole: itself, or of those that stand for it one in its
    row. */
-static half_place place_in_part(const film *f, size_t x, size_t row)
+static size_t place_in_part(const film *f, size_t x, size_t row)
 {
     size_t i = row * (size_t)f->width + x, from[4];
     bool is_last = x + 1 == (size_t)f->width, is_left = x % 2 == 1 || is_last;
     if (film_pass_counts(f, i))
-        return (half_place){i, false};
+        return i;
     size_t first = is_left ? i - 1 : i + 1, second = is_left ? i + 1 : i - 1;
     int n = film_pixels_for(f, i, from);
     bool goes_on = !is_among(from, n, first) && is_among(from, n, second);
-    return (half_place){goes_on ? second : first, false};
+    return goes_on ? second : first;
 }
 
 bool halves_have(const film *f)
@@ -140,45 +140,29 @@ bool halves_have(const film *f)
     return f->n_passes > 1 || (f->lends && has_pairs && has_some);
 }
 
-half_place half_place_of(const film *f, size_t i, int half)
+static half_view view_at(const film *f, size_t i, bool odd)
+{
+    const half_pixel *pixel = &f->halves[i];
+    return (half_view){
+        .i = i,
+        .odd = odd,
+        .all = (const double *)&f->pixels[i].sum,
+        .even = pixel->even.number,
+        .pass = has_pass(f, i, odd) ? f->pass[i].number : NULL,
+        .guides = {(const float *)&pixel->guides, (const float *)&pixel->guides_even},
+        .pass_guides = (const float *)&f->pass_guides[i],
+    };
+}
+
+half_view half_view_of(const film *f, size_t i, int half)
 {
     if (f->n_passes > 1 || has_pass(f, i, true))
-        return (half_place){i, half == 1};
+        return view_at(f, i, half == 1);
     size_t x = i % (size_t)f->width, row = row_of(f, i / (size_t)f->width, half);
     if (f->n_passes == 0)
-        return place_in_part(f, x, row);
+        return view_at(f, place_in_part(f, x, row), false);
     i = row * (size_t)f->width + x;
-    return (half_place){i, half == 1 && has_pass(f, i, true)};
-}
-
-void half_get(const film *f, half_place at, size_t first, int n, double *out)
-{
-    const double *all = (const double *)&f->pixels[at.i].sum + first;
-    const float *even = f->halves[at.i].even.number + first;
-    const float *pass = has_pass(f, at.i, at.odd) ? f->pass[at.i].number + first : NULL;
-    for (int k = 0; k < n; k++) {
-        out[k] = at.odd ? all[k] - (double)even[k] : (double)even[k];
-        out[k] += pass ? (double)pass[k] : 0.0;
-    }
-}
-
-double half_number(const film *f, half_place place, size_t at)
-{
-    double number;
-    half_get(f, place, at, 1, &number);
-    return number;
-}
-
-guide_sum half_guides(const film *f, half_place at)
-{
-    guide_sum sum = f->halves[at.i].guides_even;
-    float *number = (float *)&sum;
-    const float *all = (const float *)&f->halves[at.i].guides;
-    for (int k = 0; k < GUIDE_NUMBERS && at.odd; k++)
-        number[k] = all[k] - number[k];
-    if (has_pass(f, at.i, at.odd))
-        add_floats(number, &f->pass_guides[at.i], GUIDE_NUMBERS);
-    return sum;
+    return view_at(f, i, half == 1 && has_pass(f, i, true));
 }
 
 /* Each pass has the more the less it weighs. */

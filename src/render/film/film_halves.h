@@ -68,24 +68,37 @@ enum { HALVES_CELLS = FILM_CELLS / 2 };
 /** @brief Whether there is enough to be halved. */
 bool halves_have(const film *f);
 
-/** @brief Where a half of a pixel is: of which one, and of it the even or the odd passes.
- */
-typedef struct half_place {
+/** @brief A half of a pixel: of which one, and of it the even or the odd passes. */
+typedef struct half_view {
     size_t i;
     bool odd;
-} half_place;
+    const double *all;      /**< numbers of film_sum, of all passes done, */
+    const float *even;      /**< of the even ones, */
+    const float *pass;      /**< and of the pass under way; NULL: not in this half */
+    const float *guides[2]; /**< likewise of guide_sum: of all, of even ones */
+    const float *pass_guides;
+} half_view;
 
-/** @brief Where half 0 or 1 of a pixel is, if the film halves_have. */
-half_place half_place_of(const film *f, size_t i, int half);
+/** @brief Half 0 or 1 of a pixel, if the film halves_have. */
+half_view half_view_of(const film *f, size_t i, int half);
 
-/** Numbers of film_sum, where they begin. */
+/** Numbers of film_sum and of guide_sum, where they begin. */
 #define HALF_AT(field) (offsetof(film_sum, field) / sizeof(double))
+#define GUIDE_AT(field) (offsetof(guide_sum, field) / sizeof(float))
 
-/** @brief So many numbers of a half of a pixel's film_sum, from one on. */
-void half_get(const film *f, half_place at, size_t first, int n, double *out);
-/** @brief One of them. */
-double half_number(const film *f, half_place place, size_t at);
-guide_sum half_guides(const film *f, half_place at);
+/** @brief One of the half's numbers of film_sum. */
+static inline double half_number(const half_view *v, size_t at)
+{
+    double even = (double)v->even[at], pass = v->pass ? (double)v->pass[at] : 0.0;
+    return (v->odd ? v->all[at] - even : even) + pass;
+}
+
+/** @brief One of its numbers of guide_sum. */
+static inline float half_guide(const half_view *v, size_t at)
+{
+    float even = v->guides[1][at], pass = v->pass ? v->pass_guides[at] : 0.0f;
+    return (v->odd ? v->guides[0][at] - even : even) + pass;
+}
 
 /** @brief Variance of the luminance of a layer's mean, by the scatter of a pixel's
  * passes; NAN where there is one only. */
