@@ -146,15 +146,8 @@ static void read_channel(const grid *g, const denoise_layer *layer, int h, int c
 
 static float scatter_of(const grid *g, const float *plane)
 {
-    double sum = 0.0, sum2 = 0.0, n = (double)g->width * (double)g->height;
-    for (int y = 0; y < g->height; y++) {
-        for (int x = 0; x < g->width; x++) {
-            double v = (double)plane[plane_at(g, x, y)];
-            sum += v;
-            sum2 += v * v;
-        }
-    }
-    return (float)sqrt(fmax(sum2 / n - (sum / n) * (sum / n), 0.0));
+    plane_means mean = plane_mean(g, plane);
+    return (float)sqrt(fmax(mean.square - mean.plain * mean.plain, 0.0));
 }
 
 static bool read_feature(denoiser *d, const denoise_layer *layer, float *const *planes,
@@ -341,22 +334,11 @@ static bool read_light(const light_loop *loop)
     return true;
 }
 
-static float mean_brightness(const light_loop *loop)
-{
-    const grid *g = &loop->d->g;
-    double sum = 0.0;
-    for (int y = 0; y < g->height; y++) {
-        for (int x = 0; x < g->width; x++)
-            sum += (double)fabsf(loop->p.bright[0][plane_at(g, x, y)]);
-    }
-    return (float)(sum / ((double)g->width * (double)g->height));
-}
-
 static regression regression_of(const light_loop *loop)
 {
     const denoiser *d = loop->d;
     regression r = {.g = d->g, .step = d->step, .n_features = d->n_planes};
-    float mean = mean_brightness(loop) * LEAST_CONTRAST;
+    float mean = (float)plane_mean(&d->g, loop->p.bright[0]).absolute * LEAST_CONTRAST;
     for (int f = 0; f < d->n_planes; f++) {
         r.feature[f] = d->plane[f];
         r.doubt[f] = d->doubt[f];

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 
+#include <math.h>
 #include <string.h>
 
 grid grid_make(int width, int height, unsigned threads, const cancel_flag *cancel)
@@ -120,7 +121,45 @@ void plane_mirror(const grid *g, float *const *planes, int n)
     plane_all_rows(g, mirror_row, &loop);
 }
 
-/* ---- Sums ---- */
+/* ---- Means ---- */
+
+typedef struct mean_loop {
+    const grid *g;
+    const float *plane;
+    plane_means *rows;
+} mean_loop;
+
+static void mean_row(int y, void *data)
+{
+    const mean_loop *loop = data;
+    const float *row = loop->plane + plane_at(loop->g, 0, y);
+    plane_means sum = {0.0, 0.0, 0.0};
+    for (int x = 0; x < loop->g->width; x++) {
+        double v = (double)row[x];
+        sum.plain += v;
+        sum.square += v * v;
+        sum.absolute += fabs(v);
+    }
+    loop->rows[y] = sum;
+}
+
+/* Row by row, so that it is the same on any number of threads. */
+plane_means plane_mean(const grid *g, const float *plane)
+{
+    mean_loop loop = {g, plane, g_new0(plane_means, g->height)};
+    plane_means sum = {0.0, 0.0, 0.0};
+    plane_rows(g, mean_row, &loop);
+    for (int y = 0; y < g->height; y++) {
+        sum.plain += loop.rows[y].plain;
+        sum.square += loop.rows[y].square;
+        sum.absolute += loop.rows[y].absolute;
+    }
+    g_free(loop.rows);
+    double n = (double)g->width * (double)g->height;
+    return (plane_means){sum.plain / n, sum.square / n, sum.absolute / n};
+}
+
+/* ---- Sums over squares ---- */
 
 typedef struct box_loop {
     const grid *g;

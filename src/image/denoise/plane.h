@@ -54,6 +54,13 @@ static inline size_t plane_at(const grid *g, int x, int y)
 /** @brief Fills the margins of n planes from the picture. */
 void plane_mirror(const grid *g, float *const *planes, int n);
 
+/** @brief Of a picture, margins apart. */
+typedef struct plane_means {
+    double plain, square, absolute;
+} plane_means;
+
+plane_means plane_mean(const grid *g, const float *plane);
+
 /** @brief Sums of n planes over squares of 2 radius + 1 pixels, the margin's included;
  * `to` gets none. Not in place. @param radius at most PATCH */
 void plane_box(const grid *g, const float *const *from, int n, int radius,

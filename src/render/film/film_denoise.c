@@ -168,6 +168,7 @@ typedef struct read_loop {
     layer_room *room;
     const feature *feature; /* NULL: light */
     int light;
+    atomic_bool *shines; /* set where there is any */
 } read_loop;
 
 static void read_pixels(size_t begin, size_t end, unsigned thread, void *data)
@@ -175,6 +176,7 @@ static void read_pixels(size_t begin, size_t end, unsigned thread, void *data)
     (void)thread;
     const read_loop *loop = data;
     const film *f = loop->f;
+    bool shines = false;
     for (size_t i = begin; i < end; i++) {
         for (int h = 0; h < 2; h++) {
             half_view v = half_view_of(f, i, h);
@@ -183,11 +185,15 @@ static void read_pixels(size_t begin, size_t end, unsigned thread, void *data)
                 loop->feature->read(f, &v, loop->room->half[h] + to);
                 continue;
             }
-            light_of(f, &v, loop->light, loop->room->half[h] + 3 * i);
+            float *rgb = loop->room->half[h] + 3 * i;
+            light_of(f, &v, loop->light, rgb);
+            shines |= rgb[0] != 0.0f || rgb[1] != 0.0f || rgb[2] != 0.0f;
         }
         if (!loop->feature && loop->light < N_LIGHTS)
             loop->room->variance[i] = halves_variance(f, i, loop->light);
     }
+    if (shines)
+        atomic_store(loop->shines, true);
 }
 
 static void read_all(read_loop *loop, unsigned threads)
@@ -199,7 +205,7 @@ static bool add_features(const film *f, denoiser *d, layer_room *room, unsigned 
                          GError **error)
 {
     for (size_t k = 0; k < G_N_ELEMENTS(features); k++) {
-        read_loop loop = {f, room, &features[k], 0};
+        read_loop loop = {f, room, &features[k], 0, NULL};
         const denoise_layer layer = {
             features[k].n_channels, {room->half[0], room->half[1]}, NULL, 0};
         read_all(&loop, threads);
@@ -233,29 +239,20 @@ static void add_light(size_t begin, size_t end, unsigned thread, void *data)
         loop->out[i] += loop->light[i];
 }
 
-/* Whether there is any light in what was read. */
-static bool shines(const layer_room *room, size_t n_numbers)
-{
-    for (int h = 0; h < 2; h++)
-        for (size_t i = 0; i < n_numbers; i++)
-            if (room->half[h][i] != 0.0f)
-                return true;
-    return false;
-}
-
 static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
                           unsigned threads, float *out, GError **error)
 {
     out_loop all = {f, room->out, out};
     parallel_for(n_pixels(f), ITEMS_AT_ONCE, threads, NULL, put_lights, &all);
     for (int l = 0; l < N_FILTERED; l++) {
-        read_loop loop = {f, room, NULL, l};
+        atomic_bool shines = false;
+        read_loop loop = {f, room, NULL, l, &shines};
         const denoise_layer layer = {3,
                                      {room->half[0], room->half[1]},
                                      l == GLINTS ? NULL : room->variance,
                                      l == GLINTS ? BESIDE_GLINT : 0};
         read_all(&loop, threads);
-        if (!shines(room, 3 * n_pixels(f)))
+        if (!atomic_load(&shines))
             continue;
         if (!denoiser_filter(d, &layer, l >= LAYER_SPECULAR ? -1 : ALBEDO, room->out,
                              error))
@@ -266,25 +263,23 @@ static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
 }
 
 /* Of all samples those of the even half, and of the halves' pixels those that are not
-   lent by others. */
+   lent by others; and the mean luminance of all that is filtered. */
 typedef struct half_shares {
-    float even, distinct;
+    float even, distinct, luminance;
 } half_shares;
 
-static half_shares shares_of(const film *f)
-{
-    double sum[2] = {0.0};
-    size_t own = 0;
-    for (size_t i = 0; i < n_pixels(f); i++) {
-        for (int h = 0; h < 2; h++) {
-            half_view v = half_view_of(f, i, h);
-            own += v.i == i;
-            sum[h] += v.i == i ? weight_of(&v) : 0.0;
-        }
-    }
-    return (half_shares){(float)(sum[0] / (sum[0] + sum[1])),
-                         (float)((double)own / (2.0 * (double)n_pixels(f)))};
-}
+/* Over some pixels and their halves: weight of the pixels' own, how many of these there
+   are, and of all halves luminance and weight. */
+typedef struct half_sums {
+    double own_weight[2], n_own, y, weight;
+} half_sums;
+
+enum { SUM_AT_ONCE = 1 << 12 /* pixels */ };
+
+typedef struct sum_loop {
+    const film *f;
+    half_sums *parts;
+} sum_loop;
 
 /* Of all lights that are filtered, not yet divided by the weight. */
 static double filtered_luminance(const half_view *v)
@@ -295,27 +290,63 @@ static double filtered_luminance(const half_view *v)
     return y;
 }
 
-static float mean_luminance(const film *f)
+static void sum_pixels(size_t begin, size_t end, unsigned thread, void *data)
 {
-    double y = 0.0, weight = 0.0;
-    for (size_t i = 0; i < n_pixels(f); i++) {
+    (void)thread;
+    const sum_loop *loop = data;
+    half_sums sum = {.y = 0.0};
+    for (size_t i = begin; i < end; i++) {
         for (int h = 0; h < 2; h++) {
-            half_view v = half_view_of(f, i, h);
-            y += filtered_luminance(&v);
-            weight += weight_of(&v);
+            half_view v = half_view_of(loop->f, i, h);
+            double weight = weight_of(&v);
+            bool own = v.i == i;
+            sum.own_weight[h] += own ? weight : 0.0;
+            sum.n_own += own ? 1.0 : 0.0;
+            sum.y += filtered_luminance(&v);
+            sum.weight += weight;
         }
     }
-    return y > 0.0 && weight > 0.0 ? (float)(y / weight) * f->scale : 0.0f;
+    loop->parts[begin / SUM_AT_ONCE] = sum;
+}
+
+/* Part by part, so that they are the same on any number of threads. */
+static half_sums sum_halves(const film *f, unsigned threads)
+{
+    size_t n = n_pixels(f), n_parts = (n + SUM_AT_ONCE - 1) / SUM_AT_ONCE;
+    sum_loop loop = {f, g_new0(half_sums, n_parts)};
+    half_sums sum = {.y = 0.0};
+    parallel_for(n, SUM_AT_ONCE, threads, NULL, sum_pixels, &loop);
+    for (size_t i = 0; i < n_parts; i++) {
+        for (int h = 0; h < 2; h++)
+            sum.own_weight[h] += loop.parts[i].own_weight[h];
+        sum.n_own += loop.parts[i].n_own;
+        sum.y += loop.parts[i].y;
+        sum.weight += loop.parts[i].weight;
+    }
+    g_free(loop.parts);
+    return sum;
+}
+
+static half_shares shares_of(const film *f, unsigned threads)
+{
+    half_sums sum = sum_halves(f, threads);
+    const double *own = sum.own_weight;
+    bool is_lit = sum.y > 0.0 && sum.weight > 0.0;
+    return (half_shares){
+        .even = (float)(own[0] / (own[0] + own[1])),
+        .distinct = (float)(sum.n_own / (2.0 * (double)n_pixels(f))),
+        .luminance = is_lit ? (float)(sum.y / sum.weight) * f->scale : 0.0f,
+    };
 }
 
 /* Processes that deal passes out may have given all to one half. */
 #define LEAST_SHARE 0.05f
 
-bool film_can_denoise(const film *f)
+bool film_can_denoise(const film *f, unsigned threads)
 {
     if (!f->halves || !halves_have(f) || f->no_time)
         return false;
-    float even = shares_of(f).even;
+    float even = shares_of(f, threads).even;
     return even > LEAST_SHARE && even < 1.0f - LEAST_SHARE;
 }
 
@@ -355,13 +386,13 @@ static float *denoise(const film *f, const denoise_size *size, GError **error)
 float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
                     GError **error)
 {
-    const half_shares shares = shares_of(f);
+    const half_shares shares = shares_of(f, threads);
     const denoise_size size = {.width = f->width,
                                .height = f->height,
                                .share =
                                    clampf(shares.even, LEAST_SHARE, 1.0f - LEAST_SHARE),
                                .distinct = shares.distinct,
-                               .brightness = mean_luminance(f),
+                               .brightness = shares.luminance,
                                .threads = threads,
                                .cancel = cancel,
                                .coarse = f->coarse};

@@ -7,7 +7,7 @@
 #include "render/film/film.h"
 
 /** @brief Whether there is enough for film_denoise: halves_have. */
-bool film_can_denoise(const film *f);
+bool film_can_denoise(const film *f, unsigned threads);
 /** @brief The picture without noise, [pixel][3], in the film's colours.
  * @param cancel may be NULL @return the caller's (big_free) */
 float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,

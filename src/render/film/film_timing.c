@@ -104,7 +104,7 @@ double film_denoise_seconds(const film *f, unsigned threads, bool gets_more)
 {
     film part = *f;
     double share[N_FILTERED];
-    if (f->n_passes == 0 || !(gets_more ? can_try(f) : film_can_denoise(f)))
+    if (f->n_passes == 0 || !(gets_more ? can_try(f) : film_can_denoise(f, threads)))
         return 0.0;
     part.height = MIN(TRIAL_ROWS, f->height);
     part.denoise_size = 0;
