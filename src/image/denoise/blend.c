@@ -23,6 +23,13 @@
    glass) to 1.00. Ten times as much: .976, but means of what is smooth are worse. */
 #define OWN_WEIGHT 0.005f
 
+/* Of a pixel that is like the centre of so few windows (of 36, all of whose weights are
+   whole where one is around every second pixel), windows know little: own_row. Relative
+   squared errors after 2 passes over those without, eight scenes: .89 in the mean, .63 (a
+   glass ball's caustic) to 1.00. Twice as many: 1.00 of that, but textures that features
+   know keep more noise. */
+#define FEW_WORDS 10.0f
+
 /* What it weighs where bandwidths are chosen by how well windows tell: only where they
    say nothing. */
 #define LEAST_WEIGHT 1e-9f
@@ -35,17 +42,20 @@ enum {
     N_OWN = 4,      /* planes; all others were sums of the regression */
     N_MEANS = 3,    /* see residual_row */
     N_PRODUCTS = 5, /* see product_row */
+    N_OF_FEW = 2,   /* of them, for own_row */
 };
 
-enum { LOST2, FOLLOWS, ERROR2, GIVEN, APART };
+enum { LOST2, APART, FOLLOWS, ERROR2, GIVEN };
 
 typedef struct blend_loop {
     const blend *b;
     const grid *g;
     float *errors[N_BANDS], *around[N_BANDS]; /* own; later any */
     float *filtered[N_HALVES][3];             /* the halves */
+    float *words; /* what windows weigh that were asked for a pixel; one of the first */
     /* Of one scale; planes that are no longer needed are used again: */
     int radius;
+    bool of_few; /* only what few windows know counts, and comes back */
     float *residual[N_MEANS], *mean[N_MEANS];
     float *noise; /* variance as it is given, summed over squares */
     float *product[N_PRODUCTS], *sum[N_PRODUCTS];
@@ -113,6 +123,17 @@ static void narrow_row(int y, void *data)
     }
 }
 
+/* Of the mean of both halves, as if there were a window around every second pixel. */
+static lane_floats words_of(const blend_loop *loop, size_t at, lane_floats narrow)
+{
+    float *const(*sum)[N_HALVES][N_SUMS] = loop->b->done->sum;
+    float step = (float)loop->b->done->step, windows = step * step / 4.0f;
+    lane_floats w[N_BANDS];
+    for (int k = 0; k < N_BANDS; k++)
+        w[k] = joined(loop, load_lanes(sum[k][0][3] + at), load_lanes(sum[k][1][3] + at));
+    return windows * ((1.0f - narrow) * w[0] + narrow * w[1]);
+}
+
 /* Halves of both bandwidths. */
 static void filter_row(int y, void *data)
 {
@@ -121,6 +142,7 @@ static void filter_row(int y, void *data)
         size_t at = plane_at(loop->g, x, y);
         lane_floats share = load_lanes(loop->around[0] + at) / PATCH_PIXELS;
         lane_floats wide[3], narrow[3];
+        store_lanes(loop->words + at, words_of(loop, at, share));
         for (int h = 0; h < N_HALVES; h++) {
             said(loop, 0, h, at, OWN_WEIGHT, wide);
             said(loop, 1, h, at, OWN_WEIGHT, narrow);
@@ -182,6 +204,14 @@ static lane_floats error_weight(const blend_loop *loop, size_t at, lane_floats n
     return 1.0f / max_lanes(here * here + mean * mean + noise, fill_lanes(FLT_MIN));
 }
 
+/* 1 where no window knows a pixel, 0 where enough do. */
+static lane_floats few_words(const blend_loop *loop, size_t at)
+{
+    lane_floats few = 1.0f - load_lanes(loop->words + at) / FEW_WORDS;
+    few = max_lanes(few, fill_lanes(0.0f));
+    return few * few;
+}
+
 static float square_pixels(int radius)
 {
     return (float)((2 * radius + 1) * (2 * radius + 1));
@@ -217,6 +247,7 @@ static void product_row(int y, void *data)
         lane_floats noise = load_lanes(loop->noise + at) / (n * distinct);
         lane_floats noise_a = noise / share, noise_b = noise / (1.0f - share);
         lane_floats weight = error_weight(loop, at, lost + noise);
+        weight *= loop->of_few ? few_words(loop, at) : fill_lanes(1.0f);
         lane_floats error2 = noise_a * noise_b + lost * (noise_a + noise_b);
         store_lanes(loop->product[LOST2] + at, weight * lost2);
         store_lanes(loop->product[ERROR2] + at, weight * weight * error2);
@@ -255,6 +286,25 @@ static void share_row(int y, void *data)
     }
 }
 
+/* Beside a small bright spot hardly any patch is like another, and what little light
+   windows say there is more than all that is: the dark around it takes on its light. So
+   there a pixel's own colour speaks too, as far as those around of which windows know as
+   little agree that more than noise was lost; among all of a patch they would be few. */
+static void own_row(int y, void *data)
+{
+    const blend_loop *loop = data;
+    const lane_floats none = fill_lanes(0.0f), least = fill_lanes(FLT_MIN);
+    for (int x = 0; x < loop->g->width; x += LANES) {
+        size_t at = plane_at(loop->g, x, y);
+        lane_floats lost = max_lanes(load_lanes(loop->sum[LOST2] + at), none);
+        lane_floats noise = load_lanes(loop->sum[APART] + at);
+        lane_floats weight = FEW_WORDS * few_words(loop, at);
+        weight *= lost / max_lanes(lost + noise, least);
+        lane_floats all = load_lanes(loop->words + at) + weight;
+        store_lanes(loop->errors[0] + at, weight / max_lanes(all, least));
+    }
+}
+
 /* What a half lost of a colour. */
 typedef struct return_loop {
     const blend_loop *loop;
@@ -265,7 +315,8 @@ static void lost_row(int y, void *data)
 {
     const return_loop *all = data;
     const blend_loop *loop = all->loop;
-    const float *raw = loop->b->raw[all->half][all->color];
+    const float *const *color = loop->b->done->color[all->half];
+    const float *raw = (loop->of_few ? color : loop->b->raw[all->half])[all->color];
     const float *filtered = loop->filtered[all->half][all->color];
     for (int x = 0; x < loop->g->width; x++) {
         size_t at = plane_at(loop->g, x, y);
@@ -300,14 +351,16 @@ static bool give_back(const blend_loop *loop)
 static bool shrink(const blend_loop *loop)
 {
     const grid *g = loop->g;
+    int n_products = loop->of_few ? N_OF_FEW : N_PRODUCTS;
+    row_body find_share = loop->of_few ? own_row : share_row;
     if (!plane_rows(g, residual_row, (void *)loop))
         return false;
     box_all(g, loop->residual, N_MEANS, loop->radius, loop->mean);
     plane_box(g, &loop->b->variance, 1, loop->radius, &loop->noise);
     if (!plane_rows(g, product_row, (void *)loop))
         return false;
-    box_all(g, loop->product, N_PRODUCTS, PATCH, loop->sum);
-    return plane_rows(g, share_row, (void *)loop) && give_back(loop);
+    box_all(g, loop->product, n_products, PATCH, loop->sum);
+    return plane_rows(g, find_share, (void *)loop) && give_back(loop);
 }
 
 /* The darkest of the picture around a pixel. */
@@ -351,13 +404,16 @@ static void reuse_sums(blend_loop *loop)
     }
     loop->product[GIVEN] = sum[1][0][N_MEANS];
     loop->sum[GIVEN] = loop->noise = sum[1][1][N_MEANS];
-    loop->product[APART] = sum[0][0][N_MEANS];
-    loop->sum[APART] = sum[0][1][N_MEANS];
+    loop->product[ERROR2] = sum[0][0][N_MEANS];
+    loop->sum[ERROR2] = sum[0][1][N_MEANS];
 }
 
 static bool blend_rows(blend_loop *loop)
 {
     bool ok = choose_bandwidth(loop);
+    loop->of_few = true;
+    ok = ok && shrink(loop);
+    loop->of_few = false;
     for (size_t k = 0; k < sizeof radii / sizeof *radii && ok; k++) {
         loop->radius = radii[k];
         ok = shrink(loop);
@@ -371,8 +427,11 @@ bool blend_all(const blend *b, GError **error)
     bool ok = true;
     for (int k = 0; k < N_OWN && ok; k++)
         ok = (own[k] = plane_new(&b->done->g, error)) != NULL;
-    blend_loop loop = {
-        .b = b, .g = &b->done->g, .errors = {own[0], own[1]}, .around = {own[2], own[3]}};
+    blend_loop loop = {.b = b,
+                       .g = &b->done->g,
+                       .errors = {own[0], own[1]},
+                       .around = {own[2], own[3]},
+                       .words = own[2]};
     reuse_sums(&loop);
     if (ok && !(ok = blend_rows(&loop)))
         error_set(error, ERROR_CANCELLED, "cancelled");
