@@ -289,16 +289,18 @@ static void share_row(int y, void *data)
 /* Beside a small bright spot hardly any patch is like another, and what little light
    windows say there is more than all that is: the dark around it takes on its light. So
    there a pixel's own colour speaks too, as far as those around of which windows know as
-   little agree that more than noise was lost; among all of a patch they would be few. */
+   little agree that more than noise was lost; among all of a patch they would be few. It
+   takes both halves to know: by lent ones it is 1.02 of the error, in twelve scenes. */
 static void own_row(int y, void *data)
 {
     const blend_loop *loop = data;
     const lane_floats none = fill_lanes(0.0f), least = fill_lanes(FLT_MIN);
+    float with_both = maxf(2.0f * loop->b->distinct - 1.0f, 0.0f); /* share of pixels */
     for (int x = 0; x < loop->g->width; x += LANES) {
         size_t at = plane_at(loop->g, x, y);
         lane_floats lost = max_lanes(load_lanes(loop->sum[LOST2] + at), none);
         lane_floats noise = load_lanes(loop->sum[APART] + at);
-        lane_floats weight = FEW_WORDS * few_words(loop, at);
+        lane_floats weight = FEW_WORDS * with_both * few_words(loop, at);
         weight *= lost / max_lanes(lost + noise, least);
         lane_floats all = load_lanes(loop->words + at) + weight;
         store_lanes(loop->errors[0] + at, weight / max_lanes(all, least));
