@@ -286,21 +286,27 @@ static void share_row(int y, void *data)
     }
 }
 
+/* Of all pixels, those that have both halves of their own. By lent ones own_row makes
+   1.02 of the error, in sixteen scenes. */
+static float share_with_both(const blend *b)
+{
+    return maxf(2.0f * b->distinct - 1.0f, 0.0f);
+}
+
 /* Beside a small bright spot hardly any patch is like another, and what little light
    windows say there is more than all that is: the dark around it takes on its light. So
    there a pixel's own colour speaks too, as far as those around of which windows know as
-   little agree that more than noise was lost; among all of a patch they would be few. It
-   takes both halves to know: by lent ones it is 1.02 of the error, in twelve scenes. */
+   little agree that more than noise was lost; among all of a patch they would be few. */
 static void own_row(int y, void *data)
 {
     const blend_loop *loop = data;
     const lane_floats none = fill_lanes(0.0f), least = fill_lanes(FLT_MIN);
-    float with_both = maxf(2.0f * loop->b->distinct - 1.0f, 0.0f); /* share of pixels */
+    float most = FEW_WORDS * share_with_both(loop->b);
     for (int x = 0; x < loop->g->width; x += LANES) {
         size_t at = plane_at(loop->g, x, y);
         lane_floats lost = max_lanes(load_lanes(loop->sum[LOST2] + at), none);
         lane_floats noise = load_lanes(loop->sum[APART] + at);
-        lane_floats weight = FEW_WORDS * with_both * few_words(loop, at);
+        lane_floats weight = most * few_words(loop, at);
         weight *= lost / max_lanes(lost + noise, least);
         lane_floats all = load_lanes(loop->words + at) + weight;
         store_lanes(loop->errors[0] + at, weight / max_lanes(all, least));
@@ -414,7 +420,8 @@ static bool blend_rows(blend_loop *loop)
 {
     bool ok = choose_bandwidth(loop);
     loop->of_few = true;
-    ok = ok && shrink(loop);
+    if (share_with_both(loop->b) > 0.0f)
+        ok = ok && shrink(loop);
     loop->of_few = false;
     for (size_t k = 0; k < sizeof radii / sizeof *radii && ok; k++) {
         loop->radius = radii[k];

@@ -7,7 +7,8 @@
  *
  * - prefilter.h: features (albedo, normal, depth ...) by non-local means.
  * - regress.h: colours as linear functions of features in windows.
- * - choose: between bandwidths, where the halves say which errs less.
+ * - choose: between bandwidths, where the halves say which errs less; and beside what few
+ *   windows say a pixel's own colour, where they err.
  * - shrink: toward the picture as it was, as far as what was taken out of it is more than
  *   its noise; James & Stein, "Estimation with Quadratic Loss", 1961. First means over
  *   squares, of which noise is small, then single pixels. So whatever the filter does,
