@@ -26,17 +26,24 @@
 /* Of a pixel that is like the centre of so few windows (of 36, all of whose weights are
    whole where one is around every second pixel), windows know little: own_row. Relative
    squared errors after 2 passes over those without, eight scenes: .89 in the mean, .63 (a
-   glass ball's caustic) to 1.00. Twice as many: 1.00 of that, but textures that features
-   know keep more noise. */
+   glass ball's caustic) to 1.00. With half as many again textures that features know keep
+   more noise than they may [/denoise/texture-known-to-albedo]. */
 #define FEW_WORDS 10.0f
 
 /* What it weighs where bandwidths are chosen by how well windows tell: only where they
    say nothing. */
 #define LEAST_WEIGHT 1e-9f
 
-/* Of what the filter lost, means over squares of 2 r + 1 pixels come back first: they
-   have the least noise, and the eye, which sees little of single pixels, sees them. */
-static const int radii[] = {PATCH, 1, 0};
+/* What the filter lost comes back in rounds: where few windows know anything, pixels that
+   outliers were cut from (own_row); then everywhere, as it was, means over squares of
+   2 r + 1 pixels first: they have the least noise, and the eye, which sees little of
+   single pixels, sees them. */
+typedef struct give_round {
+    int radius;
+    bool of_few;
+} give_round;
+
+static const give_round rounds[] = {{0, true}, {PATCH, false}, {1, false}, {0, false}};
 
 enum {
     N_OWN = 4,      /* planes; all others were sums of the regression */
@@ -53,9 +60,8 @@ typedef struct blend_loop {
     float *errors[N_BANDS], *around[N_BANDS]; /* own; later any */
     float *filtered[N_HALVES][3];             /* the halves */
     float *words; /* what windows weigh that were asked for a pixel; one of the first */
-    /* Of one scale; planes that are no longer needed are used again: */
-    int radius;
-    bool of_few; /* only what few windows know counts, and comes back */
+    /* Of one round; planes that are no longer needed are used again: */
+    give_round round;
     float *residual[N_MEANS], *mean[N_MEANS];
     float *noise; /* variance as it is given, summed over squares */
     float *product[N_PRODUCTS], *sum[N_PRODUCTS];
@@ -220,7 +226,7 @@ static float square_pixels(int radius)
 /* Those of a square that have noise of their own. */
 static float distinct_pixels(const blend_loop *loop)
 {
-    return maxf(loop->b->distinct * square_pixels(loop->radius), 1.0f);
+    return maxf(loop->b->distinct * square_pixels(loop->round.radius), 1.0f);
 }
 
 /*
@@ -237,7 +243,7 @@ static void product_row(int y, void *data)
 {
     const blend_loop *loop = data;
     float share = loop->b->share, both = share * (1.0f - share);
-    float n = square_pixels(loop->radius), distinct = distinct_pixels(loop);
+    float n = square_pixels(loop->round.radius), distinct = distinct_pixels(loop);
     for (int x = 0; x < loop->g->width; x += LANES) {
         size_t at = plane_at(loop->g, x, y);
         lane_floats a = load_lanes(loop->mean[0] + at) / n;
@@ -247,7 +253,7 @@ static void product_row(int y, void *data)
         lane_floats noise = load_lanes(loop->noise + at) / (n * distinct);
         lane_floats noise_a = noise / share, noise_b = noise / (1.0f - share);
         lane_floats weight = error_weight(loop, at, lost + noise);
-        weight *= loop->of_few ? few_words(loop, at) : fill_lanes(1.0f);
+        weight *= loop->round.of_few ? few_words(loop, at) : fill_lanes(1.0f);
         lane_floats error2 = noise_a * noise_b + lost * (noise_a + noise_b);
         store_lanes(loop->product[LOST2] + at, weight * lost2);
         store_lanes(loop->product[ERROR2] + at, weight * weight * error2);
@@ -269,8 +275,8 @@ static float share_of_raw(const blend_loop *loop, size_t at)
     float own = loop->product[GIVEN][at];
     float noise =
         maxf(maxf(loop->sum[APART][at], loop->sum[GIVEN][at]), PATCH_PIXELS * own);
-    float sure = loop->radius > 0 ? SURE_MEANS : SURE_PIXELS;
-    float times = square_pixels(loop->radius) / loop->b->distinct;
+    float sure = loop->round.radius > 0 ? SURE_MEANS : SURE_PIXELS;
+    float times = square_pixels(loop->round.radius) / loop->b->distinct;
     float error = sqrtf(loop->sum[ERROR2][at] * times);
     float lost2 = (1.0f - own) * (loop->sum[LOST2][at] - sure * error);
     float whole = noise - loop->sum[FOLLOWS][at];
@@ -324,7 +330,7 @@ static void lost_row(int y, void *data)
     const return_loop *all = data;
     const blend_loop *loop = all->loop;
     const float *const *color = loop->b->done->color[all->half];
-    const float *raw = (loop->of_few ? color : loop->b->raw[all->half])[all->color];
+    const float *raw = (loop->round.of_few ? color : loop->b->raw[all->half])[all->color];
     const float *filtered = loop->filtered[all->half][all->color];
     for (int x = 0; x < loop->g->width; x++) {
         size_t at = plane_at(loop->g, x, y);
@@ -337,7 +343,7 @@ static void return_row(int y, void *data)
     const return_loop *all = data;
     const blend_loop *loop = all->loop;
     float *filtered = loop->filtered[all->half][all->color];
-    float n = square_pixels(loop->radius);
+    float n = square_pixels(loop->round.radius);
     for (int x = 0; x < loop->g->width; x++) {
         size_t at = plane_at(loop->g, x, y);
         filtered[at] += loop->errors[0][at] * loop->around[1][at] / n;
@@ -350,7 +356,7 @@ static bool give_back(const blend_loop *loop)
     for (int k = 0; k < N_HALVES * 3 && ok; k++) {
         return_loop all = {loop, k / 3, k % 3};
         ok = plane_rows(loop->g, lost_row, &all);
-        box_all(loop->g, loop->errors + 1, 1, loop->radius, loop->around + 1);
+        box_all(loop->g, loop->errors + 1, 1, loop->round.radius, loop->around + 1);
         ok = ok && plane_rows(loop->g, return_row, &all);
     }
     return ok;
@@ -359,12 +365,12 @@ static bool give_back(const blend_loop *loop)
 static bool shrink(const blend_loop *loop)
 {
     const grid *g = loop->g;
-    int n_products = loop->of_few ? N_OF_FEW : N_PRODUCTS;
-    row_body find_share = loop->of_few ? own_row : share_row;
+    int n_products = loop->round.of_few ? N_OF_FEW : N_PRODUCTS;
+    row_body find_share = loop->round.of_few ? own_row : share_row;
     if (!plane_rows(g, residual_row, (void *)loop))
         return false;
-    box_all(g, loop->residual, N_MEANS, loop->radius, loop->mean);
-    plane_box(g, &loop->b->variance, 1, loop->radius, &loop->noise);
+    box_all(g, loop->residual, N_MEANS, loop->round.radius, loop->mean);
+    plane_box(g, &loop->b->variance, 1, loop->round.radius, &loop->noise);
     if (!plane_rows(g, product_row, (void *)loop))
         return false;
     box_all(g, loop->product, n_products, PATCH, loop->sum);
@@ -418,14 +424,10 @@ static void reuse_sums(blend_loop *loop)
 
 static bool blend_rows(blend_loop *loop)
 {
-    bool ok = choose_bandwidth(loop);
-    loop->of_few = true;
-    if (share_with_both(loop->b) > 0.0f)
-        ok = ok && shrink(loop);
-    loop->of_few = false;
-    for (size_t k = 0; k < sizeof radii / sizeof *radii && ok; k++) {
-        loop->radius = radii[k];
-        ok = shrink(loop);
+    bool ok = choose_bandwidth(loop), has_both = share_with_both(loop->b) > 0.0f;
+    for (size_t k = 0; k < sizeof rounds / sizeof *rounds && ok; k++) {
+        loop->round = rounds[k];
+        ok = (loop->round.of_few && !has_both) || shrink(loop);
     }
     return ok && plane_rows(loop->g, join_row, loop);
 }
