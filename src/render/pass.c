@@ -17,7 +17,10 @@
    than they make: of a tenth three fifths, for 3 to 6 % of error where passes are few. */
 #define COARSE_SHARE 0.1
 
-/* Of the time given so much goes into finding out how long writing takes, each time, */
+/* Of the time given trials of it may take so much, */
+#define TRIAL_SHARE 0.01
+
+/* and so much goes into finding out how long writing takes, each time, */
 #define WRITE_SHARE 0.01
 
 /* and of what has passed since so much at most into asking for all that comes after. */
@@ -116,13 +119,11 @@ static void add_counts(render_statistics *st, const transport_counts *counts)
     }
 }
 
-/* Before there is a pass, by what is made up. */
 static double time_windows(render *r, bool coarse)
 {
     r->film.coarse = coarse;
-    return r->passes_done > 0
-               ? film_denoise_seconds(&r->film, r->n_threads, r->is_dealt)
-               : film_denoise_seconds_ahead(&r->film, r->plan.view, r->n_threads);
+    return film_denoise_seconds(&r->film, r->plan.view, r->n_threads, r->is_dealt,
+                                TRIAL_SHARE * r->plan.how.time);
 }
 
 /* In fewer windows where time is short. Those are tried first, for where even they take
@@ -169,41 +170,54 @@ void render_leave_noise(render *r)
 }
 
 /* How long it takes at least until there is enough to be denoised: as the cells so far,
-   of which a few may have been slow by chance. */
+   or as the trial told if they are few, which may have been slow by chance. */
 static double seconds_to_halves(const render *r)
 {
     int done = r->film.n_cells;
     if (!r->film.lends || !r->look || done == 0)
         return 0.0;
-    double sure = done < HALVES_CELLS / 2 ? 0.5 : 1.0;
-    return sure * MAX(HALVES_CELLS - done, 0) * look_seconds(r->look) / done;
+    double cell = look_seconds(r->look) / done, told = r->expected_pass / FILM_CELLS;
+    if (done < HALVES_CELLS / 2 && told > 0.0)
+        cell = fmin(cell, told);
+    return MAX(HALVES_CELLS - done, 0) * cell;
 }
 
-/* Noise is left where taking it out would end far too late, by what the first pass tells,
-   or was told before that if it is less: it saves far more error than passes do in that
-   time, and this picture counted on it. */
-static void give_up_denoising(render *r, double told)
+/* Noise is left where taking it out would end far too late, by the least that was told so
+   far: it saves far more error than passes do in that time, and this picture counted on
+   it. */
+static void give_up_denoising(render *r)
 {
     bool has_some = r->passes_done > 0 || r->film.n_cells > 0;
     if (!has_some || r->passes_done > passes_halved(r) || !(r->denoising > 0.0))
         return;
     stop_state now = render_state_now(r, 0.0);
     now.elapsed += seconds_to_halves(r) - LATE_DENOISING;
-    now.after -= fmax(r->denoising - told, 0.0);
+    now.after -= r->denoising - r->least_denoising;
     if (stop_at_once(&r->plan.how, &now))
         render_leave_noise(r);
 }
 
+/* Of a few cells many pixels are alike, and sooner written than those that come. */
+static double time_writing(const render *r)
+{
+    double now = pace_write_seconds(&r->film, r->n_threads, r->paths,
+                                    WRITE_SHARE * r->plan.how.time);
+    return r->passes_done > 0 ? now : fmax(now, r->after - r->denoising);
+}
+
+/* Trials are so short that what else the machine does may double what one takes: what is
+   told is half what they say now and half the least of all so far. */
 void render_time_writing(render *r)
 {
     double time = r->plan.how.time, elapsed = clock_seconds() - r->start;
     if (!(time > 0.0) || !timing_is_due(r, elapsed))
         return;
-    double told = r->denoising;
-    r->denoising = time_denoising(r);
-    r->after = r->denoising +
-               pace_write_seconds(&r->film, r->n_threads, r->paths, WRITE_SHARE * time);
-    give_up_denoising(r, told);
+    bool is_first = !(r->after > 0.0);
+    double writing = time_writing(r), told = time_denoising(r);
+    r->least_denoising = is_first ? told : fmin(told, r->least_denoising);
+    r->denoising = 0.5 * (told + r->least_denoising);
+    r->after = r->denoising + writing;
+    give_up_denoising(r);
     r->timed_at = elapsed;
     r->timing = clock_seconds() - r->start - elapsed;
 }

@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "render/film/film_denoise.h"
 #include "render/film/film_halves.h"
 #include "render/film/film_planes.h"
 #include "render/footprint.h"
@@ -9,6 +10,7 @@
 #include "render/render_state.h"
 #include "render/stop.h"
 
+#include <math.h>
 #include <string.h>
 
 render *render_new(const view *v, const settings *how, GError **error)
@@ -49,12 +51,33 @@ void render_cancel(render *r)
 
 /* ---- All passes ---- */
 
+/* Samples a pixel, all but one cell of two, of which lights are filtered as one. */
+#define MOST_TOGETHER (2.0 - 1.0 / FILM_CELLS)
+
 static void take_pace(render *r, const settings *how, const pace_costs *costs,
                       double left)
 {
     double n_pixels = (double)r->film.width * (double)r->film.height;
     r->plan.how = pace_choose(how, costs, n_pixels, left);
     r->expected_pass = pace_pass_seconds(costs, how, &r->plan.how, n_pixels);
+}
+
+/* Where lights are filtered as one there is time for more, but no plan to have so much of
+   it that they are not. @return the time left */
+static double choose_lights(render *r, const settings *how, const pace_costs *costs,
+                            double left)
+{
+    double saved = (1.0 - film_denoise_share_together(&r->film)) * r->denoising;
+    if (!settings_filters_together(&r->plan.how))
+        return left;
+    r->film.together = true;
+    r->denoising -= saved;
+    r->least_denoising -= saved;
+    r->after -= saved;
+    take_pace(r, how, costs, left + saved);
+    r->plan.how.planned_passes =
+        fmin(r->plan.how.planned_passes, MOST_TOGETHER / (double)r->plan.how.spp);
+    return left + saved;
 }
 
 /* Passes that fit into the time left beside denoising; where not even so much of one does
@@ -64,9 +87,11 @@ static void choose_pace(render *r, const pace_costs *costs)
     settings how = r->asked;
     double left = how.time - r->after - (clock_seconds() - r->start);
     take_pace(r, &how, costs, left);
+    left = choose_lights(r, &how, costs, left);
     double late = HALVES_CELLS * r->expected_pass / FILM_CELLS - left;
     if (!how.denoise || late <= fmax(stop_grace(how.time), LATE_DENOISING))
         return;
+    how = r->asked;
     how.denoise = false;
     left += r->denoising;
     render_leave_noise(r);
@@ -145,6 +170,7 @@ bool render_prepare(render *r, GError **error)
     }
     r->first_plan = render_first_plan(&r->plan);
     r->film.lends = r->first_plan.how.spp <= MOST_LENT_SAMPLES;
+    r->film.together = settings_filters_together(&r->plan.how);
     r->statistics.time_prepare += clock_seconds() - start;
     note_photons(r);
     return r->prepared;
@@ -252,6 +278,7 @@ image *render_image_while(const render *r, const cancel_flag *cancel, GError **e
     film shown = r->film;
     bool under_way = r->cancel.progress != NULL;
     shown.coarse |= under_way && r->plan.how.denoise_windows == WINDOWS_AUTO;
+    shown.together |= under_way;
     image *img = film_image(&shown, r->n_threads, cancel, error);
     if (img)
         describe(r, img);

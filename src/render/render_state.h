@@ -26,11 +26,12 @@ struct render {
     photon_supply supply; /* from there */
     void *kept_pass;      /* of a file of one pass: that of all; NULL: not made yet */
     char **paths;
-    double after;         /* s that denoising takes, and writing to these */
-    double denoising;     /* s of it for the first; 0: there will be none */
-    double expected_pass; /* s that one takes, by a trial; 0: there was none */
-    double timed_at;      /* s: when it was asked last */
-    double timing;        /* s that asking took */
+    double after;           /* s that denoising takes, and writing to these */
+    double denoising;       /* s of it for the first; 0: there will be none */
+    double least_denoising; /* the least that it was told to be */
+    double expected_pass;   /* s that one takes, by a trial; 0: there was none */
+    double timed_at;        /* s: when it was asked last */
+    double timing;          /* s that asking took */
     uint32_t passes_done;
     render_statistics statistics;
     cancel_flag cancel;

@@ -107,6 +107,11 @@ bool settings_takes_noise_out(const settings *s, double passes)
            (passes >= 2.0 || (passes >= 0.5 && s->spp <= MOST_LENT_SAMPLES));
 }
 
+bool settings_filters_together(const settings *s)
+{
+    return s->denoise && settings_planned_passes(s) * (double)s->spp < 2.0;
+}
+
 bool settings_one_map(const settings *s)
 {
     return s->one_map && !s->final_gather;

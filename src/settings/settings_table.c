@@ -51,9 +51,10 @@ static const setting_row table[] = {
      "Stops when the relative error of the image, estimated from the scatter of its "
      "passes, is below this; 0: never."},
     {"planned_passes", SETTING_REAL, AT(planned_passes), "", 0, MOST_PASSES, 0, NULL, "",
-     "photonmap auto vcm",
-     "Passes that radii of indirect light and the number of photons are planned for; 0: "
-     "passes, or 16 if those are not known, or what there is time for."},
+     "all",
+     "Passes that radii of indirect light and the number of photons are planned for, and "
+     "whether lights are filtered as one (denoise); 0: passes, or 16 if those are not "
+     "known, or what there is time for."},
     {"spp", SETTING_COUNT, AT(spp), "samples/pixel", 1, 65536, 4, NULL,
      "pixelsamples samples_per_pixel", "all", "Camera rays a pixel in each pass."},
     {"first_spp", SETTING_COUNT, AT(first_spp), "samples/pixel", 0, 65536, 0, NULL, "",
@@ -219,7 +220,9 @@ static const setting_row table[] = {
      "Takes the noise out of what files of eight bits and the window show; EXR "
      "files keep the picture as it is, and have this beside it as denoised.R, G and "
      "B. Auto plans for what is shown: grain that is taken out weighs less than "
-     "errors of photons, which are smooth."},
+     "errors of photons, which are smooth. Direct, indirect and caustic light and what "
+     "mirrors show are filtered apart, or as one where fewer than two samples a pixel "
+     "are planned."},
     {"denoise_windows", SETTING_CHOICE, AT(denoise_windows), "", 0, WINDOWS_COARSE,
      WINDOWS_AUTO, window_words, "", "all",
      "Around which pixels denoise works: every second (fine), or every fourth (coarse), "

@@ -322,7 +322,7 @@ static const struct {
     {"passes", "/knob-meanings/samples /knob-meanings/part"},
     {"time", "/render/stop/time"},
     {"noise", "/render/stop/noise"},
-    {"planned_passes", "/pace/plans"},
+    {"planned_passes", "/pace/plans /pace/together"},
     {"spp", "/knob-meanings/samples"},
     {"first_spp", "/knob-meanings/first-pass"},
     {"max_backward_bounces", "/knob-meanings/bounces"},

@@ -3,6 +3,7 @@
  * sets the same by hand gets again, bit for bit.
  */
 #include "render/pace.h"
+#include "render/render_state.h"
 #include "render/stop.h"
 #include "rooms.h"
 
@@ -345,6 +346,34 @@ static void test_windows(void)
     g_assert_cmpuint(expect_windows(v, "time=3600", WINDOWS_AUTO), >=, 2);
 }
 
+/* Where there is time for less than two passes lights are filtered as one, and the plan
+   keeps to that though it leaves time for more; whatever the algorithm. */
+static void test_together(void)
+{
+    static const char *const integrators[] = {"path", "auto"};
+    g_autoptr(view) v =
+        view_of(ROOM_CAMERA SIZE(512) "WorldBegin\n" ROOM_LAMP("") ROOM_WALLS);
+    for (size_t i = 0; i < G_N_ELEMENTS(integrators); i++) {
+        bool was_together = false, was_apart = false;
+        for (int k = 0; k <= 8; k++) {
+            g_autofree char *words =
+                g_strdup_printf("denoise=on integrator=%s time=%g", integrators[i],
+                                0.25 * pow(2.0, (double)k));
+            g_autoptr(render) r = render_of(v, words);
+            render_start_clock(r);
+            render_time_writing(r);
+            g_assert_true(render_prepare(r, NULL));
+            const settings *how = &r->plan.how;
+            double samples = settings_planned_passes(how) * (double)how->spp;
+            g_assert_true(r->film.together == (how->denoise && samples < 2.0));
+            was_together = was_together || r->film.together;
+            was_apart = was_apart || (how->denoise && !r->film.together);
+        }
+        g_assert_true(was_together);
+        g_assert_true(was_apart);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -357,6 +386,7 @@ int main(int argc, char **argv)
     g_test_add_data_func("/pace/repeats/photonmap", "photonmap", test_repeats);
     g_test_add_data_func("/pace/repeats/vcm", "vcm", test_repeats);
     g_test_add_func("/pace/windows", test_windows);
+    g_test_add_func("/pace/together", test_together);
     g_test_add_func("/pace/too-large", test_too_large);
     g_test_add_func("/pace/grids", test_grids);
     g_test_add_func("/pace/begun-grid", test_begun_grid);

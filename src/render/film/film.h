@@ -81,6 +81,7 @@ typedef struct film {
     struct half_pixel *halves;     /**< of the passes done: film_halves.h */
     size_t denoise_size;           /**< bytes reserved for film_denoise.h */
     bool coarse;                   /**< windows of film_denoise: denoise_size.coarse */
+    bool together;                 /**< film_denoise filters few passes' lights as one */
     bool lends;                    /**< one pass has halves, too: film_halves.h */
     bool no_time;      /**< there is none to denoise: film_can_denoise is false */
     size_t image_size; /**< bytes reserved for film_image */

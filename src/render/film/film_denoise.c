@@ -129,6 +129,8 @@ static const feature features[] = {
 
 /* ---- The picture ---- */
 
+enum { MOST_PASSES_TOGETHER = 4 /* fewer than that */ };
+
 /* With so many pixels beside it a glint is an outlier, if there are no others around it:
    it would become a smear. Relative squared errors of eleven scenes, 4 and 16 passes,
    over those with none: .98; with 2 and 8 .985, with 19 1.02. */
@@ -150,17 +152,38 @@ static void specular_of(const half_view *v, int which, double sum[3])
         sum[c] = which == GLINTS ? glints[c] : sum[c] - lights[c] - glints[c];
 }
 
+/* Sums of all that is filtered. */
+static void all_lights_of(const half_view *v, double sum[3])
+{
+    for (size_t c = 0; c < 3; c++) {
+        sum[c] = -(double)half_guide(v, GUIDE_AT(lights) + c);
+        for (size_t l = 0; l < N_LIGHTS; l++)
+            sum[c] += half_number(v, HALF_AT(color) + 3 * l + c);
+    }
+}
+
 /* What is filtered of a light. */
 static void light_of(const film *f, const half_view *v, int which, float *rgb)
 {
     double sum[3];
-    if (which == LAYER_SPECULAR || which == GLINTS)
+    if (which == ALL_LIGHTS)
+        all_lights_of(v, sum);
+    else if (which == LAYER_SPECULAR || which == GLINTS)
         specular_of(v, which, sum);
     else
         get_numbers(v, HALF_AT(color) + 3 * (size_t)which, 3, sum);
     to_rgb(f, v, sum, rgb);
     for (int c = 0; c < 3; c++)
         rgb[c] *= f->scale;
+}
+
+/* Of all lights the layers' are added: NAN where one is not known. */
+static float variance_of(const film *f, size_t i, int which)
+{
+    float sum = 0.0f;
+    for (int l = 0; l < N_LIGHTS; l++)
+        sum += which == l || which == ALL_LIGHTS ? halves_variance(f, i, l) : 0.0f;
+    return sum;
 }
 
 typedef struct read_loop {
@@ -189,8 +212,8 @@ static void read_pixels(size_t begin, size_t end, unsigned thread, void *data)
             light_of(f, &v, loop->light, rgb);
             shines |= rgb[0] != 0.0f || rgb[1] != 0.0f || rgb[2] != 0.0f;
         }
-        if (!loop->feature && loop->light < N_LIGHTS)
-            loop->room->variance[i] = halves_variance(f, i, loop->light);
+        if (!loop->feature && loop->light != GLINTS)
+            loop->room->variance[i] = variance_of(f, i, loop->light);
     }
     if (shines)
         atomic_store(loop->shines, true);
@@ -239,25 +262,42 @@ static void add_light(size_t begin, size_t end, unsigned thread, void *data)
         loop->out[i] += loop->light[i];
 }
 
+/* A render that was planned for less than two passes, and goes on, has more. */
+bool film_filters_together(const film *f)
+{
+    return f->together && f->n_passes < MOST_PASSES_TOGETHER;
+}
+
+/* Filters a light and adds it, if there is any. */
+static bool filter_light(const out_loop *all, const denoiser *d, int which,
+                         layer_room *room, unsigned threads, GError **error)
+{
+    atomic_bool shines = false;
+    bool is_seen_by_way = which == LAYER_SPECULAR || which == GLINTS;
+    read_loop loop = {all->f, room, NULL, which, &shines};
+    const denoise_layer layer = {3,
+                                 {room->half[0], room->half[1]},
+                                 which == GLINTS ? NULL : room->variance,
+                                 which == GLINTS ? BESIDE_GLINT : 0};
+    read_all(&loop, threads);
+    if (!atomic_load(&shines))
+        return true;
+    if (!denoiser_filter(d, &layer, is_seen_by_way ? -1 : ALBEDO, room->out, error))
+        return false;
+    parallel_for(n_pixels(all->f), ITEMS_AT_ONCE, threads, NULL, add_light, (void *)all);
+    return true;
+}
+
 static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
                           unsigned threads, float *out, GError **error)
 {
     out_loop all = {f, room->out, out};
     parallel_for(n_pixels(f), ITEMS_AT_ONCE, threads, NULL, put_lights, &all);
+    if (film_filters_together(f))
+        return filter_light(&all, d, ALL_LIGHTS, room, threads, error);
     for (int l = 0; l < N_FILTERED; l++) {
-        atomic_bool shines = false;
-        read_loop loop = {f, room, NULL, l, &shines};
-        const denoise_layer layer = {3,
-                                     {room->half[0], room->half[1]},
-                                     l == GLINTS ? NULL : room->variance,
-                                     l == GLINTS ? BESIDE_GLINT : 0};
-        read_all(&loop, threads);
-        if (!atomic_load(&shines))
-            continue;
-        if (!denoiser_filter(d, &layer, l >= LAYER_SPECULAR ? -1 : ALBEDO, room->out,
-                             error))
+        if (!filter_light(&all, d, l, room, threads, error))
             return false;
-        parallel_for(n_pixels(f), ITEMS_AT_ONCE, threads, NULL, add_light, &all);
     }
     return true;
 }
@@ -281,15 +321,6 @@ typedef struct sum_loop {
     half_sums *parts;
 } sum_loop;
 
-/* Of all lights that are filtered, not yet divided by the weight. */
-static double filtered_luminance(const half_view *v)
-{
-    double y = -(double)half_guide(v, GUIDE_AT(lights) + FILM_Y);
-    for (size_t l = 0; l < N_LIGHTS; l++)
-        y += half_number(v, HALF_AT(color) + 3 * l + FILM_Y);
-    return y;
-}
-
 static void sum_pixels(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
@@ -298,11 +329,12 @@ static void sum_pixels(size_t begin, size_t end, unsigned thread, void *data)
     for (size_t i = begin; i < end; i++) {
         for (int h = 0; h < 2; h++) {
             half_view v = half_view_of(loop->f, i, h);
-            double weight = weight_of(&v);
+            double weight = weight_of(&v), lights[3];
             bool own = v.i == i;
             sum.own_weight[h] += own ? weight : 0.0;
             sum.n_own += own ? 1.0 : 0.0;
-            sum.y += filtered_luminance(&v);
+            all_lights_of(&v, lights);
+            sum.y += lights[FILM_Y];
             sum.weight += weight;
         }
     }

@@ -12,11 +12,17 @@ bool film_can_denoise(const film *f, unsigned threads);
  * @param cancel may be NULL @return the caller's (big_free) */
 float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
                     GError **error);
-/** @brief About how long it takes, s: tries some rows. 0 where it can not be done.
+/** @brief About how long it takes, s, by trials on a small picture with the same lights.
+ * 0 where it can not be done though a pass is.
  * @param gets_more passes of other processes are to come, so that it will be possible
- * though it is not now */
-double film_denoise_seconds(const film *f, unsigned threads, bool gets_more);
-/** @brief The same before there is a picture, by noise that is made up. */
-double film_denoise_seconds_ahead(const film *f, const view *v, unsigned threads);
+ * though it is not now
+ * @param budget s: there are more trials than one while they took less than that */
+double film_denoise_seconds(const film *f, const view *v, unsigned threads,
+                            bool gets_more, double budget);
+/** @brief Whether lights are filtered as one: of few passes, if the film is to. */
+bool film_filters_together(const film *f);
+/** @brief What that takes, over what lights apart take, of a picture whose first pass is
+ * under way, or of most. */
+double film_denoise_share_together(const film *f);
 /** @brief Bytes while a picture of that size is denoised. */
 size_t film_denoise_bytes(int width, int height);

@@ -21,8 +21,13 @@
 
 /** @brief Lights that are filtered: layers, all but lights in sight, and glints, which
  * are lamps in glass that not every path finds. With what else is seen there these would
- * make whatever is beside them look like noise. */
-enum { N_LIGHTS = LAYER_EMISSION, GLINTS = N_LIGHTS, N_FILTERED };
+ * make whatever is beside them look like noise. Or all of them as one. */
+enum {
+    N_LIGHTS = LAYER_EMISSION,
+    GLINTS = N_LIGHTS,
+    N_FILTERED,
+    ALL_LIGHTS = N_FILTERED
+};
 
 /** @brief Sums of the guides of one pixel in one pass. Zero to begin. */
 typedef struct guide_sum {

@@ -1,5 +1,7 @@
 /*
- * How long it takes to denoise a film: tries a few rows, and counts where else light is.
+ * How long it takes to denoise a film: tries it on a small one of noise that has the same
+ * lights, and counts where they are. That tells what a picture takes within 25 %; some of
+ * its own rows tell less, since others may be more noisy.
  */
 #include "base/clock.h"
 #include "base/memory.h"
@@ -7,10 +9,13 @@
 #include "render/film/film_denoise.h"
 #include "render/film/film_halves.h"
 
+#include <math.h>
+
 enum {
     TRIAL_ROWS = 24,
     TRIAL_COLUMNS = 128,
     SQUARE = 32, /* pixels across which a light shines everywhere or nowhere */
+    MOST_TRIALS = 3,
 };
 
 /* ---- Where there is something to filter ---- */
@@ -56,20 +61,12 @@ static void find_lights(const film *f, double share[N_FILTERED])
 }
 
 /* What a pixel takes on average: its features about as much as a light that shines. */
-static double work_of(const double share[N_FILTERED])
+static double work_of(const double share[N_FILTERED], bool together)
 {
-    double work = 1.0;
+    double lights = 0.0;
     for (int l = 0; l < N_FILTERED; l++)
-        work += share[l];
-    return work;
-}
-
-/* What a pixel takes where lights have such shares, over one of a part of the picture. */
-static double over_part(const double share[N_FILTERED], const film *part)
-{
-    double tried[N_FILTERED];
-    find_lights(part, tried);
-    return work_of(share) / work_of(tried);
+        lights += share[l];
+    return 1.0 + (together ? fmin(lights, 1.0) : lights);
 }
 
 /* ---- Trying it ---- */
@@ -81,50 +78,24 @@ static void denoise_part(size_t begin, size_t end, unsigned thread, void *data)
         big_free(film_denoise(data, 1, NULL, NULL));
 }
 
-/* By what a part of it takes on each thread at once, since two on one core take longer.
- */
-static double time_part(const film *f, film *part, unsigned threads)
+/* A part of it on each thread at once, since two on one core take longer; the least of
+   some trials, since one is so short that what else the machine does may double it. */
+static double time_part(film *part, unsigned threads, double budget)
 {
-    double pixels = (double)f->width * (double)f->height;
-    double start = clock_seconds();
-    parallel_for(threads, 1, threads, NULL, denoise_part, part);
-    double took = clock_seconds() - start;
-    return took * pixels / ((double)part->width * (double)part->height) / (double)threads;
+    double begun = clock_seconds(), now = begun, least = (double)INFINITY;
+    for (int n = 0; n == 0 || (n < MOST_TRIALS && now - begun < budget); n++) {
+        double start = now;
+        parallel_for(threads, 1, threads, NULL, denoise_part, part);
+        now = clock_seconds();
+        least = fmin(least, now - start);
+    }
+    return least / (double)threads;
 }
 
-/* ---- Of a picture ---- */
-
-/* Whether there is something to try it on, though it may all be one half. */
-static bool can_try(const film *f)
-{
-    return f->halves && !f->no_time;
-}
-
-double film_denoise_seconds(const film *f, unsigned threads, bool gets_more)
-{
-    film part = *f;
-    double share[N_FILTERED];
-    if (f->n_passes == 0 || !(gets_more ? can_try(f) : film_can_denoise(f, threads)))
-        return 0.0;
-    part.height = MIN(TRIAL_ROWS, f->height);
-    part.denoise_size = 0;
-    part.n_cells = 0;
-    size_t first = (size_t)((f->height - part.height) / 2) * (size_t)f->width;
-    part.pixels += first;
-    part.halves += first;
-    memory_release(f->denoise_size);
-    find_lights(f, share);
-    double took = time_part(f, &part, threads) * over_part(share, &part);
-    memory_count(f->denoise_size);
-    return took;
-}
-
-/* ---- Of none yet ---- */
-
-/* By the pass under way; before that those that most pictures have. */
+/* Those of the picture, or if there is none yet that most have. */
 static void expect_lights(const film *f, double share[N_FILTERED])
 {
-    if (f->n_cells > 0)
+    if (f->n_passes > 0 || f->n_cells > 0)
         find_lights(f, share);
     else
         share[LAYER_DIRECT] = share[LAYER_INDIRECT] = 1.0;
@@ -152,22 +123,53 @@ static void put_noise(film *f, const double share[N_FILTERED])
     film_end_pass(f, 1);
 }
 
-double film_denoise_seconds_ahead(const film *f, const view *v, unsigned threads)
+double film_denoise_share_together(const film *f)
+{
+    double share[N_FILTERED] = {0.0};
+    expect_lights(f, share);
+    return work_of(share, true) / work_of(share, false);
+}
+
+/* Each light that there is shines everywhere. */
+static double part_work(const double share[N_FILTERED], bool together)
+{
+    double whole[N_FILTERED];
+    for (int l = 0; l < N_FILTERED; l++)
+        whole[l] = share[l] > 0.0 ? 1.0 : 0.0;
+    return work_of(whole, together);
+}
+
+/* Of a small picture of noise with such lights, s for a pixel of the film. */
+static double time_noise(const film *f, const view *v, const double share[N_FILTERED],
+                         unsigned threads, double budget)
 {
     view few = *v;
     film noise = {0};
-    double share[N_FILTERED] = {0.0}, took = 0.0;
+    double took = 0.0, pixels;
     few.film.width = MIN(TRIAL_COLUMNS, f->width);
     few.film.height = MIN(TRIAL_ROWS, f->height);
     few.film.crop[0] = few.film.crop[2] = 0.0f;
     few.film.crop[1] = few.film.crop[3] = 1.0f;
-    if (f->halves && !f->no_time && film_open(&noise, &few, true, NULL)) {
+    pixels = (double)few.film.width * (double)few.film.height;
+    if (film_open(&noise, &few, true, NULL)) {
         noise.coarse = f->coarse;
-        expect_lights(f, share);
+        noise.together = film_filters_together(f);
         put_noise(&noise, share);
         put_noise(&noise, share);
-        took = time_part(f, &noise, threads) * over_part(share, &noise);
+        took = time_part(&noise, threads, budget) / pixels;
+        took *= work_of(share, noise.together) / part_work(share, noise.together);
     }
     film_clear(&noise);
     return took;
+}
+
+double film_denoise_seconds(const film *f, const view *v, unsigned threads,
+                            bool gets_more, double budget)
+{
+    double share[N_FILTERED] = {0.0}, pixels = (double)f->width * (double)f->height;
+    bool is_begun = f->n_passes > 0 && !gets_more;
+    if (!f->halves || f->no_time || (is_begun && !film_can_denoise(f, threads)))
+        return 0.0;
+    expect_lights(f, share);
+    return pixels * time_noise(f, v, share, threads, budget);
 }
