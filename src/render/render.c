@@ -91,7 +91,6 @@ static void choose_pace(render *r, const pace_costs *costs)
     double late = HALVES_CELLS * r->expected_pass / FILM_CELLS - left;
     if (!how.denoise || late <= fmax(stop_grace(how.time), LATE_DENOISING))
         return;
-    how = r->asked;
     how.denoise = false;
     left += r->denoising;
     render_leave_noise(r);
@@ -278,7 +277,7 @@ image *render_image_while(const render *r, const cancel_flag *cancel, GError **e
     film shown = r->film;
     bool under_way = r->cancel.progress != NULL;
     shown.coarse |= under_way && r->plan.how.denoise_windows == WINDOWS_AUTO;
-    shown.together |= under_way;
+    shown.together |= under_way && r->passes_done < 2;
     image *img = film_image(&shown, r->n_threads, cancel, error);
     if (img)
         describe(r, img);
