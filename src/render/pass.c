@@ -17,10 +17,12 @@
    than they make: of a tenth three fifths, for 3 to 6 % of error where passes are few. */
 #define COARSE_SHARE 0.1
 
-/* Of the time given trials of it may take so much, */
-#define TRIAL_SHARE 0.01
+/* Trials of denoising may take so much of the time given at first, when they decide what
+   the picture can be, and so much each time later. */
+#define FIRST_TRIALS 0.02
+#define LATER_TRIALS 0.01
 
-/* and so much goes into finding out how long writing takes, each time, */
+/* Of the time given so much goes into finding out how long writing takes, each time, */
 #define WRITE_SHARE 0.01
 
 /* and of what has passed since so much at most into asking for all that comes after. */
@@ -122,8 +124,9 @@ static void add_counts(render_statistics *st, const transport_counts *counts)
 static double time_windows(render *r, bool coarse)
 {
     r->film.coarse = coarse;
+    double share = r->after > 0.0 ? LATER_TRIALS : FIRST_TRIALS;
     return film_denoise_seconds(&r->film, r->plan.view, r->n_threads, r->is_dealt,
-                                TRIAL_SHARE * r->plan.how.time);
+                                share * r->plan.how.time);
 }
 
 /* In fewer windows where time is short. Those are tried first, for where even they take
