@@ -51,8 +51,8 @@ void render_cancel(render *r)
 
 /* ---- All passes ---- */
 
-/* Samples a pixel, all but one cell of two, of which lights are filtered as one. */
-#define MOST_TOGETHER (2.0 - 1.0 / FILM_CELLS)
+/* Samples a pixel of which lights are still filtered as one: a cell less. */
+#define MOST_TOGETHER (SAMPLES_APART - 1.0 / FILM_CELLS)
 
 static void take_pace(render *r, const settings *how, const pace_costs *costs,
                       double left)

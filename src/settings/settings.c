@@ -109,7 +109,7 @@ bool settings_takes_noise_out(const settings *s, double passes)
 
 bool settings_filters_together(const settings *s)
 {
-    return s->denoise && settings_planned_passes(s) * (double)s->spp < 2.0;
+    return s->denoise && settings_planned_passes(s) * (double)s->spp < SAMPLES_APART;
 }
 
 bool settings_one_map(const settings *s)
