@@ -52,7 +52,7 @@ stop_state render_state_now(const render *r, double pass_fraction)
         .last_pass = r->last_pass,
         .last_photons = r->photon_share * r->last_pass,
         .noise = r->statistics.noise,
-        .after = r->after,
+        .after = render_seconds_after(r),
     };
 }
 
@@ -121,28 +121,40 @@ static void add_counts(render_statistics *st, const transport_counts *counts)
     }
 }
 
-static double time_windows(render *r, bool coarse)
+/* s for a unit of what there is to denoise. */
+static double try_windows(render *r, bool coarse)
 {
+    double share = r->timing > 0.0 ? LATER_TRIALS : FIRST_TRIALS;
     r->film.coarse = coarse;
-    double share = r->after > 0.0 ? LATER_TRIALS : FIRST_TRIALS;
-    return film_denoise_seconds(&r->film, r->plan.view, r->n_threads, r->is_dealt,
-                                share * r->plan.how.time);
+    return film_denoise_trial(&r->film, r->plan.view, r->n_threads,
+                              share * r->plan.how.time);
+}
+
+static double denoise_work(const render *r)
+{
+    return film_denoise_work(&r->film, r->n_threads, r->is_dealt);
 }
 
 /* In fewer windows where time is short. Those are tried first, for where even they take
    long all would. */
-static double time_denoising(render *r)
+static double try_denoising(render *r)
 {
     settings *how = &r->plan.how;
     if (how->denoise_windows != WINDOWS_AUTO)
-        return time_windows(r, r->film.coarse);
-    double most = COARSE_SHARE * how->time, coarse = time_windows(r, true);
-    double fine = coarse > most ? (double)INFINITY : time_windows(r, false);
-    if (fine <= most)
+        return try_windows(r, r->film.coarse);
+    double most = COARSE_SHARE * how->time, coarse = try_windows(r, true);
+    bool is_short = coarse * denoise_work(r) <= most;
+    double fine = is_short ? try_windows(r, false) : 0.0;
+    if (is_short && fine * denoise_work(r) <= most)
         return fine;
     how->denoise_windows = WINDOWS_COARSE;
     r->film.coarse = true;
     return coarse;
+}
+
+void render_tell_denoising(render *r)
+{
+    r->denoising = r->denoise_unit * denoise_work(r);
 }
 
 /* Whole passes that there must be to be denoised. */
@@ -151,24 +163,29 @@ static uint32_t passes_halved(const render *r)
     return r->film.lends ? 1 : 2;
 }
 
-/* Whether how long writing and denoising take is to be asked: at the start, when it is
-   seen which lights there are, of the first pass, and, unless that would take much of the
-   time, of the first pictures and again when half of the time is over, since it depends
-   on what the picture shows and what else the machine does. */
-static bool timing_is_due(const render *r, double elapsed)
+/* Whether how long writing and denoising take is to be tried: at the start, and, unless
+   that would take much of the time, of the first pictures and again when half of the time
+   is over, since it depends on what the picture shows and what else the machine does. */
+static bool trial_is_due(const render *r, double elapsed)
 {
     double time = r->plan.how.time;
-    if (!(r->after > 0.0) || r->film.n_cells == 1 || r->passes_done == passes_halved(r))
+    if (!(r->timing > 0.0))
         return true;
     if (elapsed - r->timed_at < r->timing / TIMING_SHARE)
         return false;
-    return r->passes_done < 1 || (elapsed > 0.5 * time && r->timed_at < 0.5 * time);
+    return r->passes_done < 1 || r->passes_done == passes_halved(r) ||
+           (elapsed > 0.5 * time && r->timed_at < 0.5 * time);
+}
+
+/* When it is first seen which lights there are, where, and that there are halves. */
+static bool work_is_news(const render *r)
+{
+    return r->film.n_cells == 1 || r->passes_done == passes_halved(r);
 }
 
 void render_leave_noise(render *r)
 {
     r->film.no_time = r->statistics.left_noisy = true;
-    r->after -= r->denoising;
     r->denoising = 0.0;
 }
 
@@ -195,7 +212,7 @@ static void give_up_denoising(render *r)
         return;
     stop_state now = render_state_now(r, 0.0);
     now.elapsed += seconds_to_halves(r) - LATE_DENOISING;
-    now.after -= r->denoising - r->least_denoising;
+    now.after = r->writing + r->least_unit * denoise_work(r);
     if (stop_at_once(&r->plan.how, &now))
         render_leave_noise(r);
 }
@@ -205,24 +222,31 @@ static double time_writing(const render *r)
 {
     double now = pace_write_seconds(&r->film, r->n_threads, r->paths,
                                     WRITE_SHARE * r->plan.how.time);
-    return r->passes_done > 0 ? now : fmax(now, r->after - r->denoising);
+    return r->passes_done > 0 ? now : fmax(now, r->writing);
 }
 
 /* Trials are so short that what else the machine does may double what one takes: what is
    told is half what they say now and half the least of all so far. */
-void render_time_writing(render *r)
+static void try_writing(render *r, double elapsed)
 {
-    double time = r->plan.how.time, elapsed = clock_seconds() - r->start;
-    if (!(time > 0.0) || !timing_is_due(r, elapsed))
-        return;
-    bool is_first = !(r->after > 0.0);
-    double writing = time_writing(r), told = time_denoising(r);
-    r->least_denoising = is_first ? told : fmin(told, r->least_denoising);
-    r->denoising = 0.5 * (told + r->least_denoising);
-    r->after = r->denoising + writing;
-    give_up_denoising(r);
+    double unit = try_denoising(r);
+    r->writing = time_writing(r);
+    r->least_unit = r->timing > 0.0 ? fmin(unit, r->least_unit) : unit;
+    r->denoise_unit = 0.5 * (unit + r->least_unit);
     r->timed_at = elapsed;
     r->timing = clock_seconds() - r->start - elapsed;
+}
+
+void render_time_writing(render *r)
+{
+    double elapsed = clock_seconds() - r->start;
+    bool is_due = r->plan.how.time > 0.0 && trial_is_due(r, elapsed);
+    if (is_due)
+        try_writing(r, elapsed);
+    if (is_due || (r->timing > 0.0 && work_is_news(r))) {
+        render_tell_denoising(r);
+        give_up_denoising(r);
+    }
 }
 
 /* Nobody works on the film just now, and of the first pass there is a coarse picture. */

@@ -67,17 +67,16 @@ static void take_pace(render *r, const settings *how, const pace_costs *costs,
 static double choose_lights(render *r, const settings *how, const pace_costs *costs,
                             double left)
 {
-    double saved = (1.0 - film_denoise_share_together(&r->film)) * r->denoising;
+    double apart = r->denoising;
     if (!settings_filters_together(&r->plan.how))
         return left;
     r->film.together = true;
-    r->denoising -= saved;
-    r->least_denoising -= saved;
-    r->after -= saved;
-    take_pace(r, how, costs, left + saved);
+    render_tell_denoising(r);
+    left += apart - r->denoising;
+    take_pace(r, how, costs, left);
     r->plan.how.planned_passes =
         fmin(r->plan.how.planned_passes, MOST_TOGETHER / (double)r->plan.how.spp);
-    return left + saved;
+    return left;
 }
 
 /* Passes that fit into the time left beside denoising; where not even so much of one does
@@ -85,7 +84,8 @@ static double choose_lights(render *r, const settings *how, const pace_costs *co
 static void choose_pace(render *r, const pace_costs *costs)
 {
     settings how = r->asked;
-    double left = how.time - r->after - (clock_seconds() - r->start);
+    how.denoise_windows = r->plan.how.denoise_windows; /* as trials chose */
+    double left = how.time - render_seconds_after(r) - (clock_seconds() - r->start);
     take_pace(r, &how, costs, left);
     left = choose_lights(r, &how, costs, left);
     double late = HALVES_CELLS * r->expected_pass / FILM_CELLS - left;
@@ -104,7 +104,7 @@ static bool set_pace(render *r, GError **error)
     pace_costs costs;
     if (r->paced || !(how->time > 0.0) || how->passes > 0)
         return true;
-    double left = how->time - r->after - (clock_seconds() - r->start);
+    double left = how->time - render_seconds_after(r) - (clock_seconds() - r->start);
     if (!pace_measure(&r->plan, &r->film, left, &r->cancel, &costs, error))
         return false;
     choose_pace(r, &costs);
@@ -293,7 +293,7 @@ void render_set_time_around(render *r, double before, const char *const *paths)
 
 double render_seconds_after(const render *r)
 {
-    return r->after;
+    return r->denoising + r->writing;
 }
 
 double render_pass_seconds(render *r)
@@ -301,7 +301,7 @@ double render_pass_seconds(render *r)
     const settings *how = &r->plan.how;
     pace_costs costs;
     double n_pixels = (double)r->film.width * (double)r->film.height;
-    double left = how->time - r->after - (clock_seconds() - r->start);
+    double left = how->time - render_seconds_after(r) - (clock_seconds() - r->start);
     if (!(r->expected_pass > 0.0) && how->time > 0.0 &&
         pace_measure(&r->plan, &r->film, left, &r->cancel, &costs, NULL))
         r->expected_pass = pace_pass_seconds(&costs, how, how, n_pixels);

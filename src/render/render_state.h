@@ -26,12 +26,13 @@ struct render {
     photon_supply supply; /* from there */
     void *kept_pass;      /* of a file of one pass: that of all; NULL: not made yet */
     char **paths;
-    double after;           /* s that denoising takes, and writing to these */
-    double denoising;       /* s of it for the first; 0: there will be none */
-    double least_denoising; /* the least that it was told to be */
-    double expected_pass;   /* s that one takes, by a trial; 0: there was none */
-    double timed_at;        /* s: when it was asked last */
-    double timing;          /* s that asking took */
+    double writing;       /* s that it takes to these */
+    double denoising;     /* s that it takes before; 0: there will be none */
+    double denoise_unit;  /* the same of a unit of film_denoise_work, */
+    double least_unit;    /* and the least that it was told to be */
+    double expected_pass; /* s that one takes, by a trial; 0: there was none */
+    double timed_at;      /* s: when that was tried last */
+    double timing;        /* s that trying took; 0: it was not tried */
     uint32_t passes_done;
     render_statistics statistics;
     cancel_flag cancel;
@@ -67,6 +68,8 @@ void render_tell(render *r, double pass_fraction);
 void render_on_progress(void *data);
 /** @brief Finds out how long denoising and writing take, if that is due. */
 void render_time_writing(render *r);
+/** @brief Tells how long denoising takes of what there is to denoise now. */
+void render_tell_denoising(render *r);
 /** @brief Leaves the noise in the picture, since there is no time to take it out. */
 void render_leave_noise(render *r);
 

@@ -12,17 +12,16 @@ bool film_can_denoise(const film *f, unsigned threads);
  * @param cancel may be NULL @return the caller's (big_free) */
 float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
                     GError **error);
-/** @brief About how long it takes, s, by trials on a small picture with the same lights.
- * 0 where it can not be done though a pass is.
+/** @brief What film_denoise has to do, in pixels of one light. 0 where it can not though
+ * a pass is done.
  * @param gets_more passes of other processes are to come, so that it will be possible
- * though it is not now
- * @param budget s: there are more trials than one while they took less than that */
-double film_denoise_seconds(const film *f, const view *v, unsigned threads,
-                            bool gets_more, double budget);
+ * though it is not now */
+double film_denoise_work(const film *f, unsigned threads, bool gets_more);
+/** @brief About how long that takes for a unit of film_denoise_work, s, by trials on a
+ * small picture with the same lights.
+ * @param budget s: there is one trial more where two took less than that */
+double film_denoise_trial(const film *f, const view *v, unsigned threads, double budget);
 /** @brief Whether lights are filtered as one: of few passes, if the film is to. */
 bool film_filters_together(const film *f);
-/** @brief What that takes, over what lights apart take, of a picture whose first pass is
- * under way, or of most. */
-double film_denoise_share_together(const film *f);
 /** @brief Bytes while a picture of that size is denoised. */
 size_t film_denoise_bytes(int width, int height);

@@ -1,7 +1,7 @@
 /*
- * How long it takes to denoise a film: tries it on a small one of noise that has the same
- * lights, and counts where they are. That tells what a picture takes within 25 %; some of
- * its own rows tell less, since others may be more noisy.
+ * How long it takes to denoise a film: what there is to filter, times what trials on a
+ * small one of noise, which has the same lights, take for as much. That tells it within
+ * 25 %; some of the picture's own rows tell less, since others may be more noisy.
  */
 #include "base/clock.h"
 #include "base/memory.h"
@@ -13,10 +13,19 @@
 
 enum {
     TRIAL_ROWS = 24,
-    TRIAL_COLUMNS = 128,
-    SQUARE = 32, /* pixels across which a light shines everywhere or nowhere */
+    TRIAL_COLUMNS = 64,
+    SQUARE = 32,      /* pixels across which a light shines everywhere or nowhere */
+    LEAST_TRIALS = 2, /* the first one finds the machine cold */
     MOST_TRIALS = 3,
 };
+
+/* What takes the same however many lights there are, over what each takes; of fewer
+   windows more is the same. */
+#define SAME_FINE 0.5
+#define SAME_COARSE 1.5
+
+/* A pixel of so small a picture takes as much more as margins do. */
+#define TRIAL_EXCESS 1.1
 
 /* ---- Where there is something to filter ---- */
 
@@ -60,38 +69,6 @@ static void find_lights(const film *f, double share[N_FILTERED])
         share[l] = lit_share(f, l);
 }
 
-/* What a pixel takes on average: its features about as much as a light that shines. */
-static double work_of(const double share[N_FILTERED], bool together)
-{
-    double lights = 0.0;
-    for (int l = 0; l < N_FILTERED; l++)
-        lights += share[l];
-    return 1.0 + (together ? fmin(lights, 1.0) : lights);
-}
-
-/* ---- Trying it ---- */
-
-static void denoise_part(size_t begin, size_t end, unsigned thread, void *data)
-{
-    (void)thread;
-    for (size_t i = begin; i < end; i++)
-        big_free(film_denoise(data, 1, NULL, NULL));
-}
-
-/* A part of it on each thread at once, since two on one core take longer; the least of
-   some trials, since one is so short that what else the machine does may double it. */
-static double time_part(film *part, unsigned threads, double budget)
-{
-    double begun = clock_seconds(), now = begun, least = (double)INFINITY;
-    for (int n = 0; n == 0 || (n < MOST_TRIALS && now - begun < budget); n++) {
-        double start = now;
-        parallel_for(threads, 1, threads, NULL, denoise_part, part);
-        now = clock_seconds();
-        least = fmin(least, now - start);
-    }
-    return least / (double)threads;
-}
-
 /* Those of the picture, or if there is none yet that most have. */
 static void expect_lights(const film *f, double share[N_FILTERED])
 {
@@ -99,6 +76,49 @@ static void expect_lights(const film *f, double share[N_FILTERED])
         find_lights(f, share);
     else
         share[LAYER_DIRECT] = share[LAYER_INDIRECT] = 1.0;
+}
+
+/* What a pixel takes on average, over what one light takes. */
+static double work_of(const film *f, const double share[N_FILTERED])
+{
+    double lights = 0.0;
+    for (int l = 0; l < N_FILTERED; l++)
+        lights += share[l];
+    return (f->coarse ? SAME_COARSE : SAME_FINE) +
+           (film_filters_together(f) ? fmin(lights, 1.0) : lights);
+}
+
+double film_denoise_work(const film *f, unsigned threads, bool gets_more)
+{
+    double share[N_FILTERED] = {0.0};
+    bool is_begun = f->n_passes > 0 && !gets_more;
+    if (!f->halves || f->no_time || (is_begun && !film_can_denoise(f, threads)))
+        return 0.0;
+    expect_lights(f, share);
+    return (double)f->width * (double)f->height * work_of(f, share);
+}
+
+/* ---- Trying it ---- */
+
+static void denoise_trial(size_t begin, size_t end, unsigned thread, void *data)
+{
+    (void)thread;
+    for (size_t i = begin; i < end; i++)
+        big_free(film_denoise(data, 1, NULL, NULL));
+}
+
+/* One on each thread at once, since two on one core take longer; the least of some
+   trials, since one is so short that what else the machine does may double it. */
+static double time_trials(film *noise, unsigned threads, double budget)
+{
+    double begun = clock_seconds(), now = begun, least = (double)INFINITY;
+    for (int n = 0; n < LEAST_TRIALS || (n < MOST_TRIALS && now - begun < budget); n++) {
+        double start = now;
+        parallel_for(threads, 1, threads, NULL, denoise_trial, noise);
+        now = clock_seconds();
+        least = fmin(least, now - start);
+    }
+    return least / (double)threads;
 }
 
 /* A pass over walls whose light is noise. */
@@ -123,53 +143,32 @@ static void put_noise(film *f, const double share[N_FILTERED])
     film_end_pass(f, 1);
 }
 
-double film_denoise_share_together(const film *f)
+static double time_noise(film *noise, const double share[N_FILTERED], unsigned threads,
+                         double budget)
 {
-    double share[N_FILTERED] = {0.0};
-    expect_lights(f, share);
-    return work_of(share, true) / work_of(share, false);
+    put_noise(noise, share);
+    put_noise(noise, share);
+    double took = time_trials(noise, threads, budget);
+    return took / (TRIAL_EXCESS * film_denoise_work(noise, 1, true));
 }
 
-/* Each light that there is shines everywhere. */
-static double part_work(const double share[N_FILTERED], bool together)
-{
-    double whole[N_FILTERED];
-    for (int l = 0; l < N_FILTERED; l++)
-        whole[l] = share[l] > 0.0 ? 1.0 : 0.0;
-    return work_of(whole, together);
-}
-
-/* Of a small picture of noise with such lights, s for a pixel of the film. */
-static double time_noise(const film *f, const view *v, const double share[N_FILTERED],
-                         unsigned threads, double budget)
+double film_denoise_trial(const film *f, const view *v, unsigned threads, double budget)
 {
     view few = *v;
     film noise = {0};
-    double took = 0.0, pixels;
+    double share[N_FILTERED] = {0.0}, took = 0.0;
+    if (!f->halves || f->no_time)
+        return 0.0;
+    expect_lights(f, share);
     few.film.width = MIN(TRIAL_COLUMNS, f->width);
     few.film.height = MIN(TRIAL_ROWS, f->height);
     few.film.crop[0] = few.film.crop[2] = 0.0f;
     few.film.crop[1] = few.film.crop[3] = 1.0f;
-    pixels = (double)few.film.width * (double)few.film.height;
     if (film_open(&noise, &few, true, NULL)) {
         noise.coarse = f->coarse;
         noise.together = film_filters_together(f);
-        put_noise(&noise, share);
-        put_noise(&noise, share);
-        took = time_part(&noise, threads, budget) / pixels;
-        took *= work_of(share, noise.together) / part_work(share, noise.together);
+        took = time_noise(&noise, share, threads, budget);
     }
     film_clear(&noise);
     return took;
-}
-
-double film_denoise_seconds(const film *f, const view *v, unsigned threads,
-                            bool gets_more, double budget)
-{
-    double share[N_FILTERED] = {0.0}, pixels = (double)f->width * (double)f->height;
-    bool is_begun = f->n_passes > 0 && !gets_more;
-    if (!f->halves || f->no_time || (is_begun && !film_can_denoise(f, threads)))
-        return 0.0;
-    expect_lights(f, share);
-    return pixels * time_noise(f, v, share, threads, budget);
 }
