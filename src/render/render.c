@@ -92,6 +92,7 @@ static void choose_pace(render *r, const pace_costs *costs)
     if (!how.denoise || late <= fmax(stop_grace(how.time), LATE_DENOISING))
         return;
     how.denoise = false;
+    how.denoise_windows = r->asked.denoise_windows;
     left += r->denoising;
     render_leave_noise(r);
     take_pace(r, &how, costs, left);
