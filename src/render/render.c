@@ -79,8 +79,18 @@ static double choose_lights(render *r, const settings *how, const pace_costs *co
     return left;
 }
 
-/* Passes that fit into the time left beside denoising; where not even so much of one does
-   as has halves, the picture is planned as one whose noise stays. */
+static void plan_with_noise(render *r, settings *how, const pace_costs *costs,
+                            double left)
+{
+    how->denoise = false;
+    how->denoise_windows = r->asked.denoise_windows;
+    render_leave_noise(r);
+    take_pace(r, how, costs, left);
+}
+
+/* Passes that fit into the time left beside denoising, or so much of one as has halves,
+   which is rendered anyway; where that would end far too late, the picture is planned as
+   one whose noise stays. */
 static void choose_pace(render *r, const pace_costs *costs)
 {
     settings how = r->asked;
@@ -88,14 +98,12 @@ static void choose_pace(render *r, const pace_costs *costs)
     double left = how.time - render_seconds_after(r) - (clock_seconds() - r->start);
     take_pace(r, &how, costs, left);
     left = choose_lights(r, &how, costs, left);
-    double late = HALVES_CELLS * r->expected_pass / FILM_CELLS - left;
-    if (!how.denoise || late <= fmax(stop_grace(how.time), LATE_DENOISING))
-        return;
-    how.denoise = false;
-    how.denoise_windows = r->asked.denoise_windows;
-    left += r->denoising;
-    render_leave_noise(r);
-    take_pace(r, &how, costs, left);
+    const double halves = (double)HALVES_CELLS / FILM_CELLS;
+    double late = halves * r->expected_pass - left;
+    if (how.denoise && late > fmax(stop_grace(how.time), LATE_DENOISING))
+        plan_with_noise(r, &how, costs, left + r->denoising);
+    else if (how.denoise)
+        r->plan.how.planned_passes = fmax(r->plan.how.planned_passes, halves);
 }
 
 /* Where there is little time, passes are made small enough for it. */
