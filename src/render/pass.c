@@ -44,6 +44,11 @@ static double pass_fraction(const render *r)
     return fmin((clock_seconds() - r->pass_start) / r->last_pass, r->photon_share);
 }
 
+double render_seconds_after(const render *r)
+{
+    return r->denoising + r->writing;
+}
+
 stop_state render_state_now(const render *r, double pass_fraction)
 {
     return (stop_state){

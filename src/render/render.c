@@ -300,11 +300,6 @@ void render_set_time_around(render *r, double before, const char *const *paths)
     r->paths = g_strdupv((char **)paths);
 }
 
-double render_seconds_after(const render *r)
-{
-    return r->denoising + r->writing;
-}
-
 double render_pass_seconds(render *r)
 {
     const settings *how = &r->plan.how;
