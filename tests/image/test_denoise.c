@@ -27,9 +27,50 @@ static float checks(int x, int y)
     return (x / 3 + y / 3) % 2 ? 0.9f : 0.15f;
 }
 
-static denoise_layer layer_of(const picture *p)
+static void read_halves(const void *data, int y, float *const *const half[2],
+                        float *variance)
 {
-    return (denoise_layer){3, {p->half[0], p->half[1]}, p->variance, 0};
+    const picture *p = data;
+    for (int x = 0; x < W; x++) {
+        for (int h = 0; h < 2; h++)
+            for (int c = 0; c < 3; c++)
+                half[h][c][x] = p->half[h][3 * (y * W + x) + c];
+        if (variance)
+            variance[x] = NAN;
+    }
+}
+
+static void read_all(const void *data, int y, float *const *const half[2],
+                     float *variance)
+{
+    const picture *p = data;
+    read_halves(data, y, half, variance);
+    if (variance)
+        memcpy(variance, p->variance + y * W, W * sizeof(float));
+}
+
+static denoise_source source_of(const picture *p)
+{
+    return (denoise_source){read_all, p};
+}
+
+/* Whose variance only the halves tell. */
+static denoise_source untold_source_of(const picture *p)
+{
+    return (denoise_source){read_halves, p};
+}
+
+static int add(denoiser *d, const denoise_source *feature, GError **error)
+{
+    const int n_channels[] = {3};
+    return denoiser_add(d, feature, n_channels, 1, error);
+}
+
+static bool filter(const denoiser *d, const denoise_source *light, int n_beside,
+                   int number, float *out, GError **error)
+{
+    memset(out, 0, 3 * N * sizeof *out);
+    return denoiser_filter(d, light, n_beside, number, out, error);
 }
 
 static double squared_error(const picture *p, const float *out)
@@ -54,23 +95,23 @@ static const denoise_size size = {W, H, 0.5f, 1.0f, 0.7f, 2, NULL, false};
 
 /* Filters light, with up to one feature. @return the squared error over that of the raw
  */
-static double gain_of(picture *p, denoise_layer light, const denoise_layer *feature,
+static double gain_of(picture *p, denoise_source light, const denoise_source *feature,
                       bool divide, float distinct)
 {
     GError *error = NULL;
     denoise_size by = size;
     by.distinct = distinct;
     g_autoptr(denoiser) d = denoiser_new(&by, &error);
-    int number = feature ? denoiser_add(d, feature, &error) : -1;
+    int number = feature ? add(d, feature, &error) : -1;
     g_assert_no_error(error);
-    g_assert_true(denoiser_filter(d, &light, divide ? number : -1, p->out, &error));
+    g_assert_true(filter(d, &light, 0, divide ? number : -1, p->out, &error));
     g_assert_no_error(error);
     return squared_error(p, p->out) / raw_error(p);
 }
 
-static double gain(picture *p, const denoise_layer *feature, bool divide)
+static double gain(picture *p, const denoise_source *feature, bool divide)
 {
-    return gain_of(p, layer_of(p), feature, divide, 1.0f);
+    return gain_of(p, source_of(p), feature, divide, 1.0f);
 }
 
 /* ---- Closed cases ---- */
@@ -105,7 +146,7 @@ static void test_lent(void)
     for (guint32 seed = 60; seed < 66; seed++) {
         g_autofree picture *p = noisy(flat, 0.2, seed);
         lend_rows(p);
-        const denoise_layer light = {3, {p->half[0], p->half[1]}, NULL, 0};
+        const denoise_source light = untold_source_of(p);
         told += gain_of(p, light, NULL, false, 0.5f);
         untold += gain_of(p, light, NULL, false, 1.0f);
     }
@@ -117,7 +158,7 @@ static void test_lent(void)
 static void test_slope_known_to_feature(void)
 {
     g_autofree picture *p = noisy(slope, 0.2, 2), *known = noisy(slope, 0.0, 2);
-    const denoise_layer feature = layer_of(known);
+    const denoise_source feature = source_of(known);
     g_assert_cmpfloat(gain(p, &feature, false), <, 0.03);
     float left = 0.0f, right = 0.0f;
     for (int y = 10; y < H - 10; y++) {
@@ -133,7 +174,7 @@ static void test_converged(void)
 {
     static const pattern patterns[] = {flat, edge, checks, slope, detail};
     g_autofree picture *false_edge = noisy(checks, 0.0, 9);
-    const denoise_layer feature = layer_of(false_edge);
+    const denoise_source feature = source_of(false_edge);
     for (size_t i = 0; i < G_N_ELEMENTS(patterns); i++) {
         for (double sigma = 0.02; sigma > 0.0001; sigma *= 0.2) {
             g_autofree picture *p = noisy(patterns[i], sigma, 3 + (guint32)i);
@@ -204,7 +245,7 @@ static void test_error_falls(void)
 static void test_edge_known_to_feature(void)
 {
     g_autofree picture *p = noisy(edge, 0.3, 5), *known = noisy(edge, 0.1, 6);
-    const denoise_layer feature = layer_of(known);
+    const denoise_source feature = source_of(known);
     double blind = gain(p, NULL, false), seeing = gain(p, &feature, false);
     g_test_message("edge: %g without the feature, %g with it", blind, seeing);
     g_assert_cmpfloat(seeing, <, 0.06);
@@ -214,7 +255,7 @@ static void test_edge_known_to_feature(void)
 static void test_texture_known_to_albedo(void)
 {
     g_autofree picture *p = noisy(checks, 0.3, 7), *albedo = noisy(checks, 0.0, 8);
-    const denoise_layer feature = layer_of(albedo);
+    const denoise_source feature = source_of(albedo);
     g_assert_cmpfloat(gain(p, &feature, true), <, 0.03);
     g_assert_cmpfloat(gain(p, &feature, false), <, 0.06);
 }
@@ -223,7 +264,7 @@ static void test_texture_known_to_albedo(void)
 static void test_noisy_feature_of_nothing(void)
 {
     g_autofree picture *p = noisy(flat, 0.2, 11), *other = noisy(flat, 1.0, 12);
-    const denoise_layer feature = layer_of(other);
+    const denoise_source feature = source_of(other);
     g_assert_cmpfloat(gain(p, &feature, false), <, 0.03);
 }
 
@@ -243,7 +284,7 @@ static double most_off(const picture *p)
 static void test_not_finite(void)
 {
     g_autofree picture *p = noisy(flat, 0.1, 13), *whole = noisy(flat, 0.1, 13);
-    const denoise_layer same = layer_of(whole);
+    const denoise_source same = source_of(whole);
     gain(whole, &same, false);
     static const float odd[] = {NAN, INFINITY, -INFINITY};
     for (int i = 0; i < 30; i++)
@@ -253,9 +294,9 @@ static void test_not_finite(void)
     p->variance[78] = INFINITY;
     GError *error = NULL;
     g_autoptr(denoiser) d = denoiser_new(&size, &error);
-    const denoise_layer light = layer_of(p);
-    g_assert_cmpint(denoiser_add(d, &light, &error), ==, 0);
-    g_assert_true(denoiser_filter(d, &light, -1, p->out, &error));
+    const denoise_source light = source_of(p);
+    g_assert_cmpint(add(d, &light, &error), ==, 0);
+    g_assert_true(filter(d, &light, 0, -1, p->out, &error));
     g_test_message("off by %g, without faults %g", most_off(p), most_off(whole));
     g_assert_cmpfloat(most_off(p), <, 1.1 * most_off(whole));
 }
@@ -274,11 +315,12 @@ static void test_outlier(void)
 }
 
 /* @return the most that a pixel is off */
-static float greatest_error(picture *p, const denoise_layer *light)
+static float greatest_error(picture *p, int n_beside)
 {
     float most = 0.0f;
+    const denoise_source light = untold_source_of(p);
     g_autoptr(denoiser) d = denoiser_new(&size, NULL);
-    g_assert_true(denoiser_filter(d, light, -1, p->out, NULL));
+    g_assert_true(filter(d, &light, n_beside, -1, p->out, NULL));
     for (int i = 0; i < 3 * N; i++)
         most = fmaxf(most, fabsf(p->out[i] - p->truth[i]));
     return most;
@@ -293,10 +335,8 @@ static void test_outliers_together(void)
         for (int c = 0; c < 3; c++)
             p->half[1][3 * at + c] = 1000.0f;
     }
-    denoise_layer light = {3, {p->half[0], p->half[1]}, NULL, 0};
-    g_assert_cmpfloat(greatest_error(p, &light), >, 1.0f);
-    light.n_beside = 2;
-    g_assert_cmpfloat(greatest_error(p, &light), <, 0.2f);
+    g_assert_cmpfloat(greatest_error(p, 0), >, 1.0f);
+    g_assert_cmpfloat(greatest_error(p, 2), <, 0.2f);
 }
 
 /* A wall in the dark that one path of eight finds a bright place from: the halves agree
@@ -449,29 +489,39 @@ static void test_threads(void)
 {
     g_autofree picture *p = noisy(detail, 0.3, 16), *other = noisy(edge, 0.2, 17);
     g_autofree float *first = g_new(float, 3 * N);
-    const denoise_layer light = layer_of(p), feature = layer_of(other);
+    const denoise_source light = source_of(p), feature = source_of(other);
     for (unsigned threads = 1; threads <= 7; threads += 3) {
         denoise_size by = size;
         by.threads = threads;
         g_autoptr(denoiser) d = denoiser_new(&by, NULL);
-        g_assert_cmpint(denoiser_add(d, &feature, NULL), ==, 0);
-        g_assert_true(
-            denoiser_filter(d, &light, -1, threads == 1 ? first : p->out, NULL));
+        g_assert_cmpint(add(d, &feature, NULL), ==, 0);
+        g_assert_true(filter(d, &light, 0, -1, threads == 1 ? first : p->out, NULL));
         if (threads > 1)
             g_assert_cmpmem(first, 3 * N * sizeof(float), p->out, 3 * N * sizeof(float));
+    }
+}
+
+static void read_grey(const void *data, int y, float *const *const half[2],
+                      float *variance)
+{
+    const denoise_size *of = data;
+    (void)y;
+    for (int x = 0; x < of->width; x++) {
+        for (int h = 0; h < 2; h++)
+            for (int c = 0; c < 3; c++)
+                half[h][c][x] = 0.25f;
+        variance[x] = NAN;
     }
 }
 
 static void test_small_pictures(void)
 {
     for (int w = 1; w < 20; w += 6) {
-        float half[2][3 * 20 * 3], out[3 * 20 * 3];
-        for (int i = 0; i < 3 * 3 * w; i++)
-            half[0][i] = half[1][i] = 0.25f;
+        float out[3 * 20 * 3] = {0};
         const denoise_size small = {w, 3, 0.5f, 1.0f, 0.7f, 1, NULL, false};
-        const denoise_layer light = {3, {half[0], half[1]}, NULL, 0};
+        const denoise_source light = {read_grey, &small};
         g_autoptr(denoiser) d = denoiser_new(&small, NULL);
-        g_assert_true(denoiser_filter(d, &light, -1, out, NULL));
+        g_assert_true(denoiser_filter(d, &light, 0, -1, out, NULL));
         for (int i = 0; i < 3 * 3 * w; i++)
             g_assert_cmpfloat_with_epsilon(out[i], 0.25f, 1e-5f);
     }
@@ -480,14 +530,13 @@ static void test_small_pictures(void)
 static void test_no_memory(void)
 {
     g_autofree picture *p = noisy(flat, 0.1, 18);
-    const denoise_layer light = layer_of(p);
+    const denoise_source light = source_of(p);
     bool done = false;
     for (unsigned n = 1; !done; n++) {
         GError *error = NULL;
         g_autoptr(denoiser) d = denoiser_new(&size, NULL);
         big_alloc_fail_at(n);
-        done = denoiser_add(d, &light, &error) == 0 &&
-               denoiser_filter(d, &light, -1, p->out, &error);
+        done = add(d, &light, &error) == 0 && filter(d, &light, 0, -1, p->out, &error);
         big_alloc_fail_at(0);
         g_assert_true(done || g_error_matches(error, NEPH_ERROR, ERROR_FAILED));
         g_clear_error(&error);
@@ -498,13 +547,13 @@ static void test_no_memory(void)
 static void test_cancelled(void)
 {
     g_autofree picture *p = noisy(flat, 0.1, 19);
-    const denoise_layer light = layer_of(p);
+    const denoise_source light = source_of(p);
     cancel_flag cancel = {.set = true};
     denoise_size stopped = size;
     stopped.cancel = &cancel;
     GError *error = NULL;
     g_autoptr(denoiser) d = denoiser_new(&stopped, NULL);
-    g_assert_false(denoiser_filter(d, &light, -1, p->out, &error));
+    g_assert_false(filter(d, &light, 0, -1, p->out, &error));
     g_assert_error(error, NEPH_ERROR, ERROR_CANCELLED);
     g_clear_error(&error);
 }

@@ -6,6 +6,8 @@
 #include "math/vec.h"
 
 #include <math.h>
+#include <stdatomic.h>
+#include <string.h>
 
 enum {
     BLEND_PLANES = 4,  /* while blend_all works */
@@ -26,14 +28,18 @@ enum {
 
 /* Planes while a light is filtered. */
 typedef struct light_planes {
-    float *raw[2][3], *color[2][3]; /* color: without outliers */
-    float *bright[2], *noise[2];    /* luminance, and its variance summed over patches */
-    float *variance;                /* of the mean of both */
+    float *raw[2][3];
+    float *variance;             /* of the mean of both */
+    float *color[2][3];          /* without outliers */
+    float *bright[2], *noise[2]; /* luminance, and its variance summed over patches */
     float *sum[N_BANDS][N_HALVES][N_SUMS];
     float *out[3];
 } light_planes;
 
-enum { LIGHT_PLANES = sizeof(light_planes) / sizeof(float *) };
+enum {
+    LIGHT_PLANES = sizeof(light_planes) / sizeof(float *),
+    READ_PLANES = offsetof(light_planes, color) / sizeof(float *), /* the first */
+};
 
 struct denoiser {
     grid g;
@@ -78,6 +84,7 @@ void denoiser_free(denoiser *d)
     g_free(d);
 }
 
+/* Of the halves of features there are fewer. */
 size_t denoise_bytes(int width, int height, int n_features, int n_feature_channels)
 {
     const grid g = grid_make(width, height, 1, NULL);
@@ -106,40 +113,53 @@ static void planes_free(const grid *g, float **planes, int n)
 
 /* ---- Reading ---- */
 
-/* A number of a half: the other half's where it is not finite, or what stood before. */
-static float finite_number(const denoise_layer *layer, int h, size_t i, float before)
-{
-    if (isfinite(layer->half[h][i]))
-        return layer->half[h][i];
-    return isfinite(layer->half[1 - h][i]) ? layer->half[1 - h][i] : before;
-}
-
-/* A channel of a half becomes a plane. */
+/* What is there becomes planes, channel by channel. */
 typedef struct read_loop {
     const grid *g;
-    const denoise_layer *layer;
-    int half, channel;
-    float *plane;
+    const denoise_source *from;
+    float *const *half[2];
+    int n_channels;
+    float *variance;   /* or NULL */
+    atomic_bool *some; /* is set where a number is not zero; or NULL */
 } read_loop;
+
+/* A number of a half: the other half's where it is not finite, or what stood before. */
+static float finite_number(float of, float other, float before)
+{
+    if (isfinite(of))
+        return of;
+    return isfinite(other) ? other : before;
+}
+
+/* @return whether any is not zero */
+static bool make_finite(float *a, float *b, int n)
+{
+    float before[2] = {0.0f, 0.0f};
+    bool some = false;
+    for (int i = 0; i < n; i++) {
+        before[0] = finite_number(a[i], b[i], before[0]);
+        before[1] = finite_number(b[i], a[i], before[1]);
+        a[i] = before[0];
+        b[i] = before[1];
+        some |= a[i] != 0.0f || b[i] != 0.0f;
+    }
+    return some;
+}
 
 static void read_row(int y, void *data)
 {
     const read_loop *loop = data;
-    const denoise_layer *layer = loop->layer;
-    float before = 0.0f;
-    for (int x = 0; x < loop->g->width; x++) {
-        size_t pixel = (size_t)y * (size_t)loop->g->width + (size_t)x;
-        size_t i = pixel * (size_t)layer->n_channels + (size_t)loop->channel;
-        before = finite_number(layer, loop->half, i, before);
-        loop->plane[plane_at(loop->g, x, y)] = before;
-    }
-}
-
-static void read_channel(const grid *g, const denoise_layer *layer, int h, int c,
-                         float *plane)
-{
-    read_loop loop = {g, layer, h, c, plane};
-    plane_rows(g, read_row, &loop);
+    size_t at = plane_at(loop->g, 0, y);
+    float *row[2][MOST_FEATURES];
+    for (int h = 0; h < 2; h++)
+        for (int c = 0; c < loop->n_channels; c++)
+            row[h][c] = loop->half[h][c] + at;
+    float *const *const rows[2] = {row[0], row[1]};
+    loop->from->read(loop->from->data, y, rows,
+                     loop->variance ? loop->variance + at : NULL);
+    for (int c = 0; c < loop->n_channels; c++)
+        if (make_finite(row[0][c], row[1][c], loop->g->width) && loop->some)
+            atomic_store_explicit(loop->some, true, memory_order_relaxed);
 }
 
 /* ---- Features ---- */
@@ -150,55 +170,70 @@ static float scatter_of(const grid *g, const float *plane)
     return (float)sqrt(fmax(mean.square - mean.plain * mean.plain, 0.0));
 }
 
-static bool read_feature(denoiser *d, const denoise_layer *layer, float *const *planes,
-                         GError **error)
+static bool filter_feature(denoiser *d, const noisy_feature *f, GError **error)
 {
-    noisy_feature f = {&d->g, layer->n_channels, {{NULL}}, d->share};
     float *doubt = d->doubts[d->n_features];
-    for (int h = 0; h < 2; h++) {
-        for (int c = 0; c < layer->n_channels; c++) {
-            f.half[h][c] = planes[h * MOST_CHANNELS + c];
-            read_channel(&d->g, layer, h, c, f.half[h][c]);
-        }
-        plane_mirror(&d->g, f.half[h], layer->n_channels);
-    }
-    if (!prefilter(&f, d->plane + d->n_planes, doubt, error))
+    for (int h = 0; h < 2; h++)
+        plane_mirror(&d->g, f->half[h], f->n_channels);
+    if (!prefilter(f, d->plane + d->n_planes, doubt, error))
         return false;
-    for (int p = d->n_planes; p < d->n_planes + layer->n_channels; p++) {
+    for (int p = d->n_planes; p < d->n_planes + f->n_channels; p++) {
         d->least[p] = LEAST_SCATTER * scatter_of(&d->g, d->plane[p]);
         d->doubt[p] = doubt;
     }
     return true;
 }
 
-int denoiser_add(denoiser *d, const denoise_layer *feature, GError **error)
+/* One feature, of which both halves are given back. */
+static bool add_feature(denoiser *d, int n_channels, float **a, float **b, GError **error)
 {
-    int n = feature->n_channels, number = d->n_features;
-    float *halves[2 * MOST_CHANNELS] = {0};
-    if (d->n_planes + n > MOST_FEATURES) {
+    float **planes = d->plane + d->n_planes, **doubt = d->doubts + d->n_features;
+    noisy_feature f = {.g = &d->g, .n_channels = n_channels, .share = d->share};
+    memcpy(f.half[0], a, (size_t)n_channels * sizeof *a);
+    memcpy(f.half[1], b, (size_t)n_channels * sizeof *b);
+    bool ok = planes_new(&d->g, planes, n_channels, error) &&
+              planes_new(&d->g, doubt, 1, error) && filter_feature(d, &f, error);
+    planes_free(&d->g, a, n_channels);
+    planes_free(&d->g, b, n_channels);
+    if (!ok) {
+        planes_free(&d->g, planes, n_channels);
+        planes_free(&d->g, doubt, 1);
+        return false;
+    }
+    d->first[d->n_features++] = d->n_planes;
+    d->n_planes += n_channels;
+    return true;
+}
+
+int denoiser_add(denoiser *d, const denoise_source *from, const int *n_channels, int n,
+                 GError **error)
+{
+    float *half[2][MOST_FEATURES] = {{0}};
+    int number = d->n_features, all = 0, done = 0;
+    for (int i = 0; i < n; i++)
+        all += n_channels[i];
+    if (d->n_planes + all > MOST_FEATURES) {
         error_set(error, ERROR_INPUT, "more than %d features", (int)MOST_FEATURES);
         return -1;
     }
-    bool ok = planes_new(&d->g, halves, 2 * MOST_CHANNELS, error) &&
-              planes_new(&d->g, d->plane + d->n_planes, n, error) &&
-              planes_new(&d->g, d->doubts + number, 1, error) &&
-              read_feature(d, feature, halves, error);
-    planes_free(&d->g, halves, 2 * MOST_CHANNELS);
-    if (!ok) {
-        planes_free(&d->g, d->plane + d->n_planes, n);
-        planes_free(&d->g, d->doubts + number, 1);
-        return -1;
-    }
-    d->first[number] = d->n_planes;
-    d->n_planes += n;
-    return d->n_features++;
+    bool ok =
+        planes_new(&d->g, half[0], all, error) && planes_new(&d->g, half[1], all, error);
+    read_loop loop = {.g = &d->g, .from = from, .half = {half[0], half[1]}};
+    loop.n_channels = all;
+    if (ok)
+        plane_rows(&d->g, read_row, &loop);
+    for (int i = 0; i < n && ok; done += n_channels[i++])
+        ok = add_feature(d, n_channels[i], half[0] + done, half[1] + done, error);
+    planes_free(&d->g, half[0], all);
+    planes_free(&d->g, half[1], all);
+    return ok ? number : -1;
 }
 
 /* ---- Light ---- */
 
 typedef struct light_loop {
     const denoiser *d;
-    const denoise_layer *light;
+    int n_beside;
     float *const *albedo; /* three planes, or NULL */
     light_planes p;
 } light_loop;
@@ -221,17 +256,6 @@ static void divide_row(int y, void *data)
     }
 }
 
-/* The variance as it is given, of pixels of which there are some; NAN: it is not. */
-static lane_floats given_variance(const light_loop *loop, int x, int y)
-{
-    const grid *g = &loop->d->g;
-    lane_floats told = fill_lanes(NAN);
-    if (loop->light->variance)
-        memcpy(&told, loop->light->variance + (size_t)y * (size_t)g->width + x,
-               (size_t)MIN(g->width - x, (int)LANES) * sizeof(float));
-    return told;
-}
-
 static void variance_row(int y, void *data)
 {
     const light_loop *loop = data;
@@ -242,7 +266,7 @@ static void variance_row(int y, void *data)
         lane_floats by = mean_divisor(loop->albedo, at);
         lane_floats apart =
             load_lanes(loop->p.bright[0] + at) - load_lanes(loop->p.bright[1] + at);
-        lane_floats told = given_variance(loop, x, y);
+        lane_floats told = load_lanes(loop->p.variance + at); /* NAN: it is not */
         lane_ints known = (told >= 0.0f) & (told < INFINITY);
         store_lanes(loop->p.variance + at,
                     choose_lanes(known, told / (by * by),
@@ -265,7 +289,7 @@ static void put_among(lane_floats *greatest, int n, lane_floats number)
 static lane_floats brightest_around(const light_loop *loop, int h, size_t at)
 {
     lane_floats most[MOST_OUTLIERS] = {{0.0f}};
-    int n = 1 + CLAMP(loop->light->n_beside, 0, MOST_OUTLIERS - 1);
+    int n = 1 + CLAMP(loop->n_beside, 0, MOST_OUTLIERS - 1);
     for (int v = -OUTLIER_REACH; v <= OUTLIER_REACH; v++) {
         for (int u = -OUTLIER_REACH; u <= OUTLIER_REACH; u++) {
             size_t i =
@@ -311,14 +335,10 @@ static void bright_row(int y, void *data)
     }
 }
 
-/* Fills all planes but the sums. */
-static bool read_light(const light_loop *loop)
+/* Fills all planes but the sums, of what was read. */
+static bool prepare_light(const light_loop *loop)
 {
     const grid *g = &loop->d->g;
-    for (int h = 0; h < 2; h++) {
-        for (int c = 0; c < 3; c++)
-            read_channel(g, loop->light, h, c, loop->p.raw[h][c]);
-    }
     if (!plane_rows(g, divide_row, (void *)loop) ||
         !plane_rows(g, variance_row, (void *)loop))
         return false;
@@ -392,7 +412,7 @@ static void write_row(int y, void *data)
                      divisor(loop->light->albedo, c, at);
         for (int i = 0; i < MIN(g->width - x, (int)LANES); i++)
             for (int c = 0; c < 3; c++)
-                *out++ = rgb[c][i];
+                *out++ += rgb[c][i];
     }
 }
 
@@ -402,29 +422,58 @@ static bool write_light(const light_loop *light, float *out)
     return plane_rows(&light->d->g, write_row, &loop);
 }
 
-static bool filter(const light_loop *loop, float *out, GError **error)
+/* @param some set where there is any */
+static bool read_light(const light_loop *loop, const denoise_source *light,
+                       atomic_bool *some)
 {
-    if (read_light(loop)) {
-        regression r = regression_of(loop);
-        blend b = blend_of(loop, &r);
-        bool done = regress(&r);
-        if (done && !blend_all(&b, error))
-            return false;
-        if (done && write_light(loop, out))
-            return true;
-    }
+    float *const *planes = (float *const *)loop->p.raw;
+    read_loop read = {.g = &loop->d->g,
+                      .from = light,
+                      .half = {planes, planes + 3},
+                      .n_channels = 3,
+                      .variance = loop->p.variance,
+                      .some = some};
+    return plane_rows(&loop->d->g, read_row, &read);
+}
+
+static bool refuse_cancelled(GError **error)
+{
     error_set(error, ERROR_CANCELLED, "cancelled");
     return false;
 }
 
-bool denoiser_filter(const denoiser *d, const denoise_layer *light, int divide_by,
-                     float *out, GError **error)
+static bool filter_lit(const light_loop *loop, float *out, GError **error)
 {
-    light_loop loop = {.d = d, .light = light};
+    if (!prepare_light(loop))
+        return refuse_cancelled(error);
+    regression r = regression_of(loop);
+    blend b = blend_of(loop, &r);
+    if (!regress(&r))
+        return refuse_cancelled(error);
+    return blend_all(&b, error) && (write_light(loop, out) || refuse_cancelled(error));
+}
+
+static bool filter(light_loop *loop, const denoise_source *light, float *out,
+                   GError **error)
+{
+    atomic_bool some = false;
+    float **more = (float **)&loop->p + READ_PLANES;
+    if (!read_light(loop, light, &some))
+        return refuse_cancelled(error);
+    return !atomic_load(&some) ||
+           (planes_new(&loop->d->g, more, LIGHT_PLANES - READ_PLANES, error) &&
+            filter_lit(loop, out, error));
+}
+
+bool denoiser_filter(const denoiser *d, const denoise_source *light, int n_beside,
+                     int divide_by, float *out, GError **error)
+{
+    light_loop loop = {.d = d, .n_beside = n_beside};
     if (divide_by >= 0)
         loop.albedo = d->plane + d->first[divide_by];
     float **planes = (float **)&loop.p;
-    bool ok = planes_new(&d->g, planes, LIGHT_PLANES, error) && filter(&loop, out, error);
+    bool ok =
+        planes_new(&d->g, planes, READ_PLANES, error) && filter(&loop, light, out, error);
     planes_free(&d->g, planes, LIGHT_PLANES);
     return ok;
 }

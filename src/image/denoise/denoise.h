@@ -22,15 +22,15 @@
 #include "base/parallel.h"
 #include "image/image.h"
 
-/** @brief One quantity of each pixel, in two halves that share no random number. */
-typedef struct denoise_layer {
-    int n_channels;        /**< 1..3 */
-    const float *half[2];  /**< [pixel][channel], rows from the top */
-    const float *variance; /**< of the luminance of the mean of both, [pixel]: square of
-                              its standard error; NULL: as the halves' difference tells */
-    int n_beside;          /**< so many pixels beside an outlier may be outliers with it;
-                              features have none */
-} denoise_layer;
+/** @brief Numbers of each pixel, in two halves that share no random number. */
+typedef struct denoise_source {
+    /** What is in row y, from the top: of half h channel c goes to half[h][c]; of light
+     * to variance that of the luminance of the mean of both (the square of its standard
+     * error; NAN: as the halves' difference tells), which is NULL for features. Called on
+     * many threads at once. */
+    void (*read)(const void *data, int y, float *const *const half[2], float *variance);
+    const void *data;
+} denoise_source;
 
 /** @brief Of the picture. */
 typedef struct denoise_size {
@@ -51,16 +51,20 @@ denoiser *denoiser_new(const denoise_size *size, GError **error);
 void denoiser_free(denoiser *d);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(denoiser, denoiser_free)
 
-/** @brief One more feature for all lights that are filtered from now on.
- * @return its number, or -1 */
-int denoiser_add(denoiser *d, const denoise_layer *feature, GError **error);
+/** @brief n more features for all lights that are filtered from now on.
+ * @param from what they are, one after another's channels
+ * @param n_channels of each, 1..3
+ * @return the number of the first, or -1 */
+int denoiser_add(denoiser *d, const denoise_source *from, const int *n_channels, int n,
+                 GError **error);
 
-/** @brief Filters light of three channels, linear.
+/** @brief Filters light of three channels, linear, if there is any.
+ * @param n_beside so many pixels beside an outlier may be outliers with it
  * @param divide_by number of a feature of three channels, an albedo that the light is
  * about proportional to; -1: none
- * @param out [pixel][3] */
-bool denoiser_filter(const denoiser *d, const denoise_layer *light, int divide_by,
-                     float *out, GError **error);
+ * @param out [pixel][3]: the result is added */
+bool denoiser_filter(const denoiser *d, const denoise_source *light, int n_beside,
+                     int divide_by, float *out, GError **error);
 
 /** @brief Bytes that it takes while it works on a picture, margins with it. */
 size_t denoise_bytes(int width, int height, int n_features, int n_feature_channels);

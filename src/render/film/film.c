@@ -409,9 +409,8 @@ static image *make_image(const film *f, int y, int rows, const float *denoised,
 image *film_image(const film *f, unsigned threads, const cancel_flag *cancel,
                   GError **error)
 {
-    bool denoises = film_can_denoise(f, threads);
-    float *denoised = denoises ? film_denoise(f, threads, cancel, error) : NULL;
-    if (denoises && !denoised)
+    float *denoised;
+    if (!film_denoise(f, threads, cancel, &denoised, error))
         return NULL;
     image *img = make_image(f, 0, f->height, denoised, threads, error);
     big_free(denoised);

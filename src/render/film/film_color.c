@@ -15,8 +15,12 @@ double film_surface_weight(const film *f, const film_sum *sum)
 
 void film_to_rgb(const film *f, const double sum[3], double weight, float out[3])
 {
-    float xyz[3] = {0};
-    for (int i = 0; i < 3 && fabs(weight) > 0.0; i++) {
+    float xyz[3];
+    out[0] = out[1] = out[2] = 0.0f;
+    bool is_black = sum[0] == 0.0 && sum[1] == 0.0 && sum[2] == 0.0;
+    if (is_black || !(fabs(weight) > 0.0)) /* as most layers are in most pixels */
+        return;
+    for (int i = 0; i < 3; i++) {
         const double *m = f->balance + 3 * i;
         double balanced = m[0] * sum[0] + m[1] * sum[1] + m[2] * sum[2];
         xyz[i] = (float)((f->balanced ? balanced : sum[i]) / weight);

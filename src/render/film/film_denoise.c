@@ -10,6 +10,11 @@ static size_t n_pixels(const film *f)
     return (size_t)f->width * (size_t)f->height;
 }
 
+static size_t pixel_at(const film *f, int x, int y)
+{
+    return (size_t)y * (size_t)f->width + (size_t)x;
+}
+
 /* ---- Features ---- */
 
 /* Differences of less than this part of a feature are none. */
@@ -41,91 +46,73 @@ static void get_guides(const half_view *v, size_t first, int n, double *out)
         out[i] = (double)half_guide(v, first + (size_t)i);
 }
 
-/* A colour is none in most pixels of most layers. */
-static void to_rgb(const film *f, const half_view *v, const double sum[3], float out[3])
+/* Features of a pixel: what the first surface is, and by how much the first one that is
+   not specular differs. */
+typedef struct surface_guide {
+    float albedo[3], normal[3], depth;
+} surface_guide;
+
+enum {
+    SURFACE_CHANNELS = sizeof(surface_guide) / sizeof(float),
+    SURFACES = 2,
+    ALBEDO = 0, /* feature by which light is divided that comes from the first surface */
+};
+
+static const int n_channels[] = {3, 3, 1, 3, 3, 1};
+
+static surface_guide first_of(const film *f, const half_view *v)
 {
-    if (fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 0.0)
-        film_to_rgb(f, sum, weight_of(v), out);
-    else
-        out[0] = out[1] = out[2] = 0.0f;
+    surface_guide out;
+    double albedo[3], normal[3], depth = half_number(v, HALF_AT(depth));
+    double weight = weight_of(v);
+    get_numbers(v, HALF_AT(color[N_LAYERS]), 3, albedo);
+    get_numbers(v, HALF_AT(normal), 3, normal);
+    film_to_rgb(f, albedo, weight, out.albedo);
+    mean_of(normal, weight, 3, out.normal);
+    mean_of(&depth, weight, 1, &out.depth);
+    return out;
 }
 
-static void first_albedo(const film *f, const half_view *v, float *out)
+static surface_guide seen_of(const film *f, const half_view *v)
 {
-    double sum[3];
-    get_numbers(v, HALF_AT(color[N_LAYERS]), 3, sum);
-    to_rgb(f, v, sum, out);
-}
-
-static void first_normal(const film *f, const half_view *v, float *out)
-{
-    (void)f;
-    double sum[3];
-    get_numbers(v, HALF_AT(normal), 3, sum);
-    mean_of(sum, weight_of(v), 3, out);
-}
-
-static void first_depth(const film *f, const half_view *v, float *out)
-{
-    (void)f;
-    double sum = half_number(v, HALF_AT(depth));
-    mean_of(&sum, weight_of(v), 1, out);
+    surface_guide out;
+    double albedo[3], normal[3], depth = (double)half_guide(v, GUIDE_AT(depth));
+    double weight = weight_of(v);
+    get_guides(v, GUIDE_AT(albedo), 3, albedo);
+    get_guides(v, GUIDE_AT(normal), 3, normal);
+    film_to_rgb(f, albedo, weight, out.albedo);
+    mean_of(normal, weight, 3, out.normal);
+    mean_of(&depth, weight, 1, &out.depth);
+    return out;
 }
 
 /* Of what is seen in a mirror only how it differs from the mirror counts: elsewhere it
    says nothing new. */
-static void less_first(float *out, const float *first, int n)
+static void less_first(float *out, const float *first)
 {
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < SURFACE_CHANNELS; i++) {
         float d = out[i] - first[i];
         out[i] = fabsf(d) > NO_DIFFERENCE * fabsf(out[i]) ? d : 0.0f;
     }
 }
 
-static void seen_albedo(const film *f, const half_view *v, float *out)
+/* All at once, since it is the film that takes long to read. */
+static void read_features(const void *data, int y, float *const *const half[2],
+                          float *variance)
 {
-    float first[3];
-    double sum[3];
-    get_guides(v, GUIDE_AT(albedo), 3, sum);
-    to_rgb(f, v, sum, out);
-    first_albedo(f, v, first);
-    less_first(out, first, 3);
+    (void)variance;
+    const film *f = data;
+    for (int x = 0; x < f->width; x++) {
+        for (int h = 0; h < 2; h++) {
+            half_view v = half_view_of(f, pixel_at(f, x, y), h);
+            surface_guide both[SURFACES] = {first_of(f, &v), seen_of(f, &v)};
+            const float *first = (const float *)&both[0];
+            less_first((float *)&both[1], first);
+            for (int c = 0; c < SURFACES * SURFACE_CHANNELS; c++)
+                half[h][c][x] = first[c];
+        }
+    }
 }
-
-static void seen_normal(const film *f, const half_view *v, float *out)
-{
-    float first[3];
-    double sum[3];
-    get_guides(v, GUIDE_AT(normal), 3, sum);
-    mean_of(sum, weight_of(v), 3, out);
-    first_normal(f, v, first);
-    less_first(out, first, 3);
-}
-
-static void seen_depth(const film *f, const half_view *v, float *out)
-{
-    float first;
-    double sum = (double)half_guide(v, GUIDE_AT(depth));
-    mean_of(&sum, weight_of(v), 1, out);
-    first_depth(f, v, &first);
-    less_first(out, &first, 1);
-}
-
-typedef struct feature {
-    int n_channels;
-    void (*read)(const film *f, const half_view *v, float *out);
-} feature;
-
-enum { ALBEDO = 0 }; /* by which light is divided that comes from the first surface */
-
-static const feature features[] = {
-    [ALBEDO] = {3, first_albedo},
-    {3, first_normal},
-    {1, first_depth},
-    {3, seen_albedo},
-    {3, seen_normal},
-    {1, seen_depth},
-};
 
 /* ---- The picture ---- */
 
@@ -135,11 +122,6 @@ enum { MOST_PASSES_TOGETHER = 4 /* fewer than that */ };
    it would become a smear. Relative squared errors of eleven scenes, 4 and 16 passes,
    over those with none: .98; with 2 and 8 .985, with 19 1.02. */
 #define BESIDE_GLINT 4
-
-/* Memory while a layer is read. */
-typedef struct layer_room {
-    float *half[2], *variance, *out;
-} layer_room;
 
 /* Sums of what is filtered of the layer of mirrors, and of glints. */
 static void specular_of(const half_view *v, int which, double sum[3])
@@ -172,7 +154,7 @@ static void light_of(const film *f, const half_view *v, int which, float *rgb)
         specular_of(v, which, sum);
     else
         get_numbers(v, HALF_AT(color) + 3 * (size_t)which, 3, sum);
-    to_rgb(f, v, sum, rgb);
+    film_to_rgb(f, sum, weight_of(v), rgb);
     for (int c = 0; c < 3; c++)
         rgb[c] *= f->scale;
 }
@@ -186,62 +168,33 @@ static float variance_of(const film *f, size_t i, int which)
     return sum;
 }
 
-typedef struct read_loop {
+/* Which light of a film is filtered. */
+typedef struct film_light {
     const film *f;
-    layer_room *room;
-    const feature *feature; /* NULL: light */
-    int light;
-    atomic_bool *shines; /* set where there is any */
-} read_loop;
+    int which;
+} film_light;
 
-static void read_pixels(size_t begin, size_t end, unsigned thread, void *data)
+static void read_light(const void *data, int y, float *const *const half[2],
+                       float *variance)
 {
-    (void)thread;
-    const read_loop *loop = data;
-    const film *f = loop->f;
-    bool shines = false;
-    for (size_t i = begin; i < end; i++) {
+    const film_light *of = data;
+    const film *f = of->f;
+    for (int x = 0; x < f->width; x++) {
+        size_t i = pixel_at(f, x, y);
         for (int h = 0; h < 2; h++) {
+            float rgb[3];
             half_view v = half_view_of(f, i, h);
-            if (loop->feature) {
-                size_t to = i * (size_t)loop->feature->n_channels;
-                loop->feature->read(f, &v, loop->room->half[h] + to);
-                continue;
-            }
-            float *rgb = loop->room->half[h] + 3 * i;
-            light_of(f, &v, loop->light, rgb);
-            shines |= rgb[0] != 0.0f || rgb[1] != 0.0f || rgb[2] != 0.0f;
+            light_of(f, &v, of->which, rgb);
+            for (int c = 0; c < 3; c++)
+                half[h][c][x] = rgb[c];
         }
-        if (!loop->feature && loop->light != GLINTS)
-            loop->room->variance[i] = variance_of(f, i, loop->light);
+        variance[x] = of->which == GLINTS ? NAN : variance_of(f, i, of->which);
     }
-    if (shines)
-        atomic_store(loop->shines, true);
-}
-
-static void read_all(read_loop *loop, unsigned threads)
-{
-    parallel_for(n_pixels(loop->f), 1 << 12, threads, NULL, read_pixels, loop);
-}
-
-static bool add_features(const film *f, denoiser *d, layer_room *room, unsigned threads,
-                         GError **error)
-{
-    for (size_t k = 0; k < G_N_ELEMENTS(features); k++) {
-        read_loop loop = {f, room, &features[k], 0, NULL};
-        const denoise_layer layer = {
-            features[k].n_channels, {room->half[0], room->half[1]}, NULL, 0};
-        read_all(&loop, threads);
-        if (denoiser_add(d, &layer, error) < 0)
-            return false;
-    }
-    return true;
 }
 
 /* The result. */
 typedef struct out_loop {
     const film *f;
-    const float *light; /* a filtered layer */
     float *out;
 } out_loop;
 
@@ -254,49 +207,32 @@ static void put_lights(size_t begin, size_t end, unsigned thread, void *data)
         film_lights_in_sight(loop->f, i, loop->out + 3 * i);
 }
 
-static void add_light(size_t begin, size_t end, unsigned thread, void *data)
-{
-    (void)thread;
-    const out_loop *loop = data;
-    for (size_t i = 3 * begin; i < 3 * end; i++)
-        loop->out[i] += loop->light[i];
-}
-
 /* A render that was planned for less than two passes, and goes on, has more. */
 bool film_filters_together(const film *f)
 {
     return f->together && f->n_passes < MOST_PASSES_TOGETHER;
 }
 
-/* Filters a light and adds it, if there is any. */
-static bool filter_light(const out_loop *all, const denoiser *d, int which,
-                         layer_room *room, unsigned threads, GError **error)
+/* Filters a light and adds it. */
+static bool filter_light(const film *f, const denoiser *d, int which, float *out,
+                         GError **error)
 {
-    atomic_bool shines = false;
     bool is_seen_by_way = which == LAYER_SPECULAR || which == GLINTS;
-    read_loop loop = {all->f, room, NULL, which, &shines};
-    const denoise_layer layer = {3,
-                                 {room->half[0], room->half[1]},
-                                 which == GLINTS ? NULL : room->variance,
-                                 which == GLINTS ? BESIDE_GLINT : 0};
-    read_all(&loop, threads);
-    if (!atomic_load(&shines))
-        return true;
-    if (!denoiser_filter(d, &layer, is_seen_by_way ? -1 : ALBEDO, room->out, error))
-        return false;
-    parallel_for(n_pixels(all->f), ITEMS_AT_ONCE, threads, NULL, add_light, (void *)all);
-    return true;
+    const film_light one = {f, which};
+    const denoise_source from = {read_light, &one};
+    return denoiser_filter(d, &from, which == GLINTS ? BESIDE_GLINT : 0,
+                           is_seen_by_way ? -1 : ALBEDO, out, error);
 }
 
-static bool filter_lights(const film *f, const denoiser *d, layer_room *room,
-                          unsigned threads, float *out, GError **error)
+static bool filter_lights(const film *f, const denoiser *d, unsigned threads, float *out,
+                          GError **error)
 {
-    out_loop all = {f, room->out, out};
+    out_loop all = {f, out};
     parallel_for(n_pixels(f), ITEMS_AT_ONCE, threads, NULL, put_lights, &all);
     if (film_filters_together(f))
-        return filter_light(&all, d, ALL_LIGHTS, room, threads, error);
+        return filter_light(f, d, ALL_LIGHTS, out, error);
     for (int l = 0; l < N_FILTERED; l++) {
-        if (!filter_light(&all, d, l, room, threads, error))
+        if (!filter_light(f, d, l, out, error))
             return false;
     }
     return true;
@@ -374,73 +310,60 @@ static half_shares shares_of(const film *f, unsigned threads)
 /* Processes that deal passes out may have given all to one half. */
 #define LEAST_SHARE 0.05f
 
-bool film_can_denoise(const film *f, unsigned threads)
+/* Whether there are halves. */
+static bool find_shares(const film *f, unsigned threads, half_shares *out)
 {
     if (!f->halves || !halves_have(f) || f->no_time)
         return false;
-    float even = shares_of(f, threads).even;
-    return even > LEAST_SHARE && even < 1.0f - LEAST_SHARE;
+    *out = shares_of(f, threads);
+    return out->even > LEAST_SHARE && out->even < 1.0f - LEAST_SHARE;
 }
 
-static bool open_room(const film *f, layer_room *room, GError **error)
+bool film_can_denoise(const film *f, unsigned threads)
 {
-    size_t n = n_pixels(f), size = 3 * sizeof(float);
-    room->half[0] = big_alloc(n, size, "denoising", error);
-    room->half[1] = room->half[0] ? big_alloc(n, size, "denoising", error) : NULL;
-    room->out = room->half[1] ? big_alloc(n, size, "denoising", error) : NULL;
-    room->variance = room->out ? big_alloc(n, sizeof(float), "denoising", error) : NULL;
-    return room->variance != NULL;
-}
-
-static void close_room(layer_room *room)
-{
-    big_free(room->half[0]);
-    big_free(room->half[1]);
-    big_free(room->out);
-    big_free(room->variance);
+    half_shares shares;
+    return find_shares(f, threads, &shares);
 }
 
 static float *denoise(const film *f, const denoise_size *size, GError **error)
 {
-    layer_room room = {0};
-    float *out = NULL;
+    const denoise_source features = {read_features, f};
     g_autoptr(denoiser) d = denoiser_new(size, error);
-    bool done = d && open_room(f, &room, error) &&
-                add_features(f, d, &room, size->threads, error) &&
-                (out = big_alloc(n_pixels(f), 3 * sizeof *out, "denoising", error)) &&
-                filter_lights(f, d, &room, size->threads, out, error);
-    close_room(&room);
+    float *out = NULL;
+    bool done =
+        d &&
+        denoiser_add(d, &features, n_channels, G_N_ELEMENTS(n_channels), error) >= 0 &&
+        (out = big_alloc(n_pixels(f), 3 * sizeof *out, "denoising", error)) &&
+        filter_lights(f, d, size->threads, out, error);
     if (!done)
         g_clear_pointer(&out, big_free);
     return out;
 }
 
-float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
-                    GError **error)
+bool film_denoise(const film *f, unsigned threads, const cancel_flag *cancel, float **out,
+                  GError **error)
 {
-    const half_shares shares = shares_of(f, threads);
+    half_shares shares;
+    *out = NULL;
+    if (!find_shares(f, threads, &shares))
+        return true;
     const denoise_size size = {.width = f->width,
                                .height = f->height,
-                               .share =
-                                   clampf(shares.even, LEAST_SHARE, 1.0f - LEAST_SHARE),
+                               .share = shares.even,
                                .distinct = shares.distinct,
                                .brightness = shares.luminance,
                                .threads = threads,
                                .cancel = cancel,
                                .coarse = f->coarse};
     memory_release(f->denoise_size);
-    float *out = denoise(f, &size, error);
+    *out = denoise(f, &size, error);
     memory_count(f->denoise_size);
-    return out;
+    return *out != NULL;
 }
 
 size_t film_denoise_bytes(int width, int height)
 {
-    const int n_features = G_N_ELEMENTS(features);
-    size_t pixel = sizeof(float) * (size_t)(4 * 3 + 1); /* layer_room, and the result */
-    int n = 0;
-    for (int k = 0; k < n_features; k++)
-        n += features[k].n_channels;
-    return (size_t)width * (size_t)height * pixel +
-           denoise_bytes(width, height, n_features, n);
+    size_t out = (size_t)width * (size_t)height * 3 * sizeof(float);
+    return out + denoise_bytes(width, height, G_N_ELEMENTS(n_channels),
+                               SURFACES * SURFACE_CHANNELS);
 }

@@ -9,9 +9,11 @@
 /** @brief Whether there is enough for film_denoise: halves_have. */
 bool film_can_denoise(const film *f, unsigned threads);
 /** @brief The picture without noise, [pixel][3], in the film's colours.
- * @param cancel may be NULL @return the caller's (big_free) */
-float *film_denoise(const film *f, unsigned threads, const cancel_flag *cancel,
-                    GError **error);
+ * @param cancel may be NULL
+ * @param out the caller's (big_free); NULL where there is not enough
+ * @return false when out of memory or cancelled */
+bool film_denoise(const film *f, unsigned threads, const cancel_flag *cancel, float **out,
+                  GError **error);
 /** @brief What film_denoise has to do, in pixels of one light. 0 where it can not though
  * a pass is done.
  * @param gets_more passes of other processes are to come, so that it will be possible

@@ -12,8 +12,8 @@
  *   sample ─► guide_sum (of one pixel in one pass) ─► pass[] ── halves_end_pass ─►
  * pixels[]
  *
- * Guides are of the surface that a sample sees by way of mirrors and glass; they are
- * listed once, in film_denoise.c: one more is a field of light_guide and a row there.
+ * Guides are of the surface that a sample sees by way of mirrors and glass; which of them
+ * are features film_denoise.c says: one more is a field of light_guide, and one there.
  */
 #pragma once
 

@@ -103,8 +103,11 @@ double film_denoise_work(const film *f, unsigned threads, bool gets_more)
 static void denoise_trial(size_t begin, size_t end, unsigned thread, void *data)
 {
     (void)thread;
-    for (size_t i = begin; i < end; i++)
-        big_free(film_denoise(data, 1, NULL, NULL));
+    for (size_t i = begin; i < end; i++) {
+        float *out;
+        film_denoise(data, 1, NULL, &out, NULL);
+        big_free(out);
+    }
 }
 
 /* One on each thread at once, since two on one core take longer; the least of some
