@@ -169,14 +169,16 @@ static uint32_t passes_halved(const render *r)
 }
 
 /* Whether how long writing and denoising take is to be tried: at the start, and, unless
-   that would take much of the time, of the first pictures and again when half of the time
-   is over, since it depends on what the picture shows and what else the machine does. */
+   that would take much of the time or there is none left, of the first pictures and again
+   when half of the time is over, since it depends on what the picture shows and what else
+   the machine does. */
 static bool trial_is_due(const render *r, double elapsed)
 {
     double time = r->plan.how.time;
     if (!(r->timing > 0.0))
         return true;
-    if (elapsed - r->timed_at < r->timing / TIMING_SHARE)
+    bool is_over = elapsed + render_seconds_after(r) > time;
+    if (is_over || elapsed - r->timed_at < r->timing / TIMING_SHARE)
         return false;
     return r->passes_done < 1 || r->passes_done == passes_halved(r) ||
            (elapsed > 0.5 * time && r->timed_at < 0.5 * time);
@@ -194,17 +196,16 @@ void render_leave_noise(render *r)
     r->denoising = 0.0;
 }
 
-/* How long it takes at least until there is enough to be denoised: as the cells so far,
-   or as the trial told if they are few, which may have been slow by chance. */
+/* How long it takes at least until there is enough to be denoised: as the last cells, or
+   as the trial told if they are few, which may have been slow by chance. */
 static double seconds_to_halves(const render *r)
 {
     int done = r->film.n_cells;
     if (!r->film.lends || !r->look || done == 0)
         return 0.0;
-    double cell = look_seconds(r->look) / done, told = r->expected_pass / FILM_CELLS;
-    if (done < HALVES_CELLS / 2 && told > 0.0)
-        cell = fmin(cell, told);
-    return MAX(HALVES_CELLS - done, 0) * cell;
+    double told = r->expected_pass / FILM_CELLS;
+    bool is_slow = done < HALVES_CELLS / 2 && told > 0.0 && told < r->cell;
+    return MAX(HALVES_CELLS - done, 0) * (is_slow ? told : r->cell);
 }
 
 /* Noise is left where taking it out would end far too late, by the least that was told so
@@ -276,8 +277,7 @@ static int next_cells(const render *r, int done, int wanted)
                       .wanted = wanted,
                       .least = least_cells(r),
                       .is_first = r->passes_done == 0};
-    part.cell = done > 0 ? look_seconds(r->look) / done
-                         : (now.last_pass - now.last_photons) / FILM_CELLS;
+    part.cell = done > 0 ? r->cell : (now.last_pass - now.last_photons) / FILM_CELLS;
     return stop_next_cells(&r->plan.how, &now, &part);
 }
 
@@ -286,8 +286,10 @@ static int next_cells(const render *r, int done, int wanted)
 static bool look_on(render *r, int wanted, int *done)
 {
     for (int n; (n = next_cells(r, *done, wanted)) > 0; *done += n) {
+        double before = look_seconds(r->look);
         if (!look_cells(r->look, *done, *done + n))
             return r->given_up;
+        r->cell = (look_seconds(r->look) - before) / n;
         if (r->passes_done == 0 && *done + n < wanted)
             tell_coarse(r, *done + n);
     }

@@ -50,6 +50,7 @@ struct render {
     double last_pass;    /* s that the last one took, or would have if it were as large */
     double photon_share; /* of it, before the camera looked */
     look *look;          /* NULL: the camera does not look yet */
+    double cell; /* s that one of the last cells took: the first touch new memory */
 };
 
 /* ---- pass.c ---- */

@@ -19,7 +19,7 @@ typedef struct stop_state {
 
 /** Denoising that a picture counted on may end so much later than asked for, s; and once
  * its passes are rendered, so much later than other work. */
-#define LATE_DENOISING 0.2
+#define LATE_DENOISING 0.3
 
 /** @brief Why to stop now, or RENDER_GOES_ON. One pass is always rendered. */
 render_stop stop_decide(const settings *how, const stop_state *now);

@@ -169,30 +169,46 @@ static void test_shown(void)
     }
 }
 
-/* What the trial tells of paths, of places that are alike, when pairs elsewhere met so
-   much more. */
-static double told_of_paths(const char *words, gather_place place, double elsewhere)
+/* What the trial tells of places that are alike. */
+typedef struct told_costs {
+    plan_cost paths, maps;
+    bool fit;
+} told_costs;
+
+/* @param elsewhere variance of pairs of paths that others met
+   @param map_rays of a sample by maps; by paths it is one
+   @param photon_rays of a pass, for each pixel */
+static told_costs tell(const char *words, gather_place place, double elsewhere,
+                       double map_rays, double photon_rays)
 {
     enum { N = 64 };
     static gather_place places[N];
     for (int i = 0; i < N; i++)
         places[i] = place;
     const scene lit = {.radius = 1.0f, .settings = settings_default()};
-    const view from = {.film = {.width = 64, .height = 64}};
+    const view from = {.film = {.width = SIDE, .height = SIDE}};
     const transport_plan plan = {.scene = &lit,
                                  .view = &from,
                                  .how = settings_with(&lit, words),
                                  .path_noise = elsewhere};
+    double spp = (double)plan.how.spp;
     const gather_trial t = {.plan = plan,
                             .area = 1.0,
                             .fewer = 1.0,
                             .n = N,
                             .places = places,
                             .path_rays = 1.0,
-                            .first_rays = 4.0};
-    plan_cost without, with;
-    gather_costs(&plan, &t, &without, &with);
-    return without.variance;
+                            .first_rays = map_rays,
+                            .later_rays = map_rays,
+                            .photon_rays = photon_rays * SIDE * SIDE * spp};
+    told_costs out;
+    out.fit = gather_costs(&plan, &t, &out.paths, &out.maps);
+    return out;
+}
+
+static double told_of_paths(const char *words, gather_place place, double elsewhere)
+{
+    return tell(words, place, elsewhere, 1.0, 0.0).paths.variance;
 }
 
 /* Where paths see what maps do and some noise. */
@@ -237,6 +253,35 @@ static void test_in_media(void)
     g_assert_cmpfloat(told[0][0], ==, told[0][1]);
     g_assert_cmpfloat(fabs(told[1][0] - 1.0), <, 1e-6);
     g_assert_cmpfloat(fabs(added - (blotches - 1.0) * common), <, 1e-6);
+}
+
+/* Of a pass that is not whole the photons are all there. */
+static void test_part_of_a_pass(void)
+{
+    const char *whole = "integrator=auto spp=1 passes=4 denoise=on";
+    const char *part = "integrator=auto spp=1 passes=1 denoise=on";
+    told_costs four = tell(whole, noisy, 1.0, 1.0, 0.25);
+    told_costs one = tell(part, noisy, 1.0, 1.0, 0.25);
+    told_costs dear = tell(part, noisy, 1.0, 1.0, 0.75);
+    g_assert_cmpfloat(fabs(four.maps.rays - 1.25), <, 1e-6);
+    g_assert_cmpfloat(fabs(one.maps.rays - (1.0 + 0.25 / 0.75)), <, 1e-6);
+    g_assert_cmpfloat(fabs(dear.maps.rays - (1.0 + 0.75 / 0.5)), <, 1e-6);
+    g_assert_true(four.fit && one.fit && !dear.fit);
+}
+
+/* Where not even half a pass fits noise stays, that of media with it. */
+static void test_no_time(void)
+{
+    const char *words = "integrator=auto spp=1 passes=1 denoise=on";
+    const double blotches = 32.0, common = 0.5 * 0.1 * 0.1 * relative_weight(1.0, 1.0);
+    gather_place hazy = noisy;
+    hazy.scattered[1] = 0.1;
+    told_costs fits = tell(words, hazy, 1.0, 1.9, 0.0);
+    told_costs does_not = tell(words, hazy, 1.0, 2.1, 0.0);
+    double added = does_not.maps.variance - fits.maps.variance;
+    g_assert_true(fits.fit && !does_not.fit);
+    g_test_message("%g, without time %g", fits.maps.variance, does_not.maps.variance);
+    g_assert_cmpfloat(added, >, 0.9 * (blotches - 1.0) * common);
 }
 
 /* A room in haze, and in sight the beam of a spot lamp, all that lights it. */
@@ -409,6 +454,8 @@ int main(int argc, char **argv)
     g_test_add_func("/gather/told", test_told);
     g_test_add_func("/gather/shown", test_shown);
     g_test_add_func("/gather/in-media", test_in_media);
+    g_test_add_func("/gather/part-of-a-pass", test_part_of_a_pass);
+    g_test_add_func("/gather/no-time", test_no_time);
     g_test_add_func("/gather/haze", test_haze);
     g_test_add_func("/gather/met-elsewhere", test_met_elsewhere);
     g_test_add_func("/gather/gaps", test_gaps);

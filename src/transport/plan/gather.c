@@ -98,10 +98,10 @@ static void take(transport_plan *plan, gather_trial *t)
 }
 
 /* What maps must beat: of noise that stays paths' is even and disturbs least; where it is
-   taken out, that is in the costs. */
-static double least_of_paths(const transport_plan *plan, plan_cost paths)
+   taken out, that is in the costs, unless there is no time for it. */
+static double least_of_paths(const transport_plan *plan, plan_cost paths, bool fit)
 {
-    double least = plan_takes_noise_out(plan) ? 1.0 : CLEARLY_BETTER;
+    double least = fit && plan_takes_noise_out(plan) ? 1.0 : CLEARLY_BETTER;
     return least * paths.variance * paths.rays;
 }
 
@@ -113,8 +113,8 @@ static bool compare(transport_plan *plan, const path_pass *paths, gather_trial *
         !gather_trial_run(t, plan, paths, cancel, error))
         return false;
     plan_cost without, with;
-    gather_costs(plan, t, &without, &with);
-    bool pays = with.variance * with.rays < least_of_paths(plan, without);
+    bool fit = gather_costs(plan, t, &without, &with);
+    bool pays = with.variance * with.rays < least_of_paths(plan, without, fit);
     plan_note(plan, "gathered indirect light", without, with, pays);
     if (pays)
         take(plan, t);

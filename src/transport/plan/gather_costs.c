@@ -150,12 +150,13 @@ static double share_of_samples(const transport_plan *plan, double n)
 /* Squared error of n samples a pixel, times n, that paths and maps have in common: light
    straight from lamps is as noisy in both. On surfaces that is where shadows end, which
    no feature tells: it weighs as what is alike in neighbouring pixels does. In media it
-   is grain. n is told within a factor of two: of the pixels for which half as many do not
-   suffice all may stay empty, and show the next. */
-static double common_error(const transport_plan *plan, const gather_errors *e, double n)
+   is grain, which weighs as it is said to. n is told within a factor of two: of the
+   pixels for which half as many do not suffice all may stay empty, and show the next. */
+static double common_error(const transport_plan *plan, const gather_errors *e, double n,
+                           double grain)
 {
     double weight = plan_weight_alike(plan), empty = fmax(1.0 - 0.5 * n, 0.0);
-    double samples = e->in_media + weight * (e->samples - e->in_media);
+    double samples = grain * e->in_media + weight * (e->samples - e->in_media);
     return share_of_samples(plan, n) * samples + weight * n * empty * e->contrast;
 }
 
@@ -169,10 +170,29 @@ static double error_of_maps(const transport_plan *plan, const gather_errors *e,
            (e->photons * variance_of_passes(alpha, whole) + e->bias2 * bias * bias);
 }
 
+/* What a picture by maps takes: passes, and rays of a sample with its part of the
+   photons, which of a pass that is not whole are all there. Where half a pass does not
+   fit it is as of one; what noise would be taken out stays. */
+typedef struct maps_in_time {
+    double passes, sample_rays;
+    bool fit;
+} maps_in_time;
+
+/* @param rays that the passes by paths take, as of one sample */
+static maps_in_time fit_maps(double rays, double sample_rays, double photon_rays)
+{
+    double passes = rays / (sample_rays + photon_rays);
+    if (passes < 1.0)
+        passes = (rays - photon_rays) / sample_rays;
+    bool fit = passes >= 0.5;
+    passes = fmax(passes, 0.5);
+    return (maps_in_time){passes, sample_rays + photon_rays / fmin(passes, 1.0), fit};
+}
+
 /* All is comparable to the variance of one sample. Where noise is taken out it is grain
    that goes, and what maps have of their own weighs as it is alike in neighbouring
    pixels. */
-void gather_costs(const transport_plan *plan, const gather_trial *t, plan_cost *without,
+bool gather_costs(const transport_plan *plan, const gather_trial *t, plan_cost *without,
                   plan_cost *with)
 {
     const gather_errors e = errors_of(t, plan);
@@ -180,10 +200,13 @@ void gather_costs(const transport_plan *plan, const gather_trial *t, plan_cost *
     without->rays = t->path_rays + plan->photon_rays;
     without->variance =
         share_of_samples(plan, passes * spp) * fmax(e.path - e.samples, 0.0) +
-        common_error(plan, &e, passes * spp);
-    with->rays =
-        gather_trial_sample_rays(t) + t->photon_rays * passes / plan_samples(plan);
-    double in_time = passes * without->rays / with->rays;
-    with->variance = common_error(plan, &e, in_time * spp) +
-                     plan_weight_alike(plan) * spp * error_of_maps(plan, &e, in_time);
+        common_error(plan, &e, passes * spp, 1.0);
+    const maps_in_time maps =
+        fit_maps(passes * without->rays, gather_trial_sample_rays(t),
+                 t->photon_rays * passes / plan_samples(plan));
+    double weight = plan_weight_alike(plan);
+    with->rays = maps.sample_rays;
+    with->variance = common_error(plan, &e, maps.passes * spp, maps.fit ? 1.0 : weight) +
+                     weight * spp * error_of_maps(plan, &e, maps.passes);
+    return maps.fit;
 }
