@@ -25,6 +25,9 @@ enum {
 #define TRIAL_SHARE 0.02
 #define TRIAL_SECONDS 0.1
 
+/* A shorter one tells of threads that wake up more than of samples. */
+#define LEAST_SECONDS 0.001
+
 /* Of the time are photons sent at most before the eye looks, where passes are few. */
 #define PHOTON_SHARE 0.08
 
@@ -77,7 +80,7 @@ static double time_samples(trial_look *all, double budget, const cancel_flag *ca
         all->first += n;
         now = clock_seconds();
         least = fmin(least, (now - start) / (double)n);
-        if (n >= LEAST_SAMPLES && now - begun > 0.5 * budget)
+        if (n >= LEAST_SAMPLES && now - begun > fmax(0.5 * budget, LEAST_SECONDS))
             break;
     }
     return least;
