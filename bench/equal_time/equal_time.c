@@ -397,14 +397,17 @@ static void measure_kind(const NephScene *scene, const char *name, const kind *k
     }
 }
 
-/* The algorithms take turns, so that all have of what the machine does beside them. */
+/* The algorithms take turns, so that all have of what the machine does beside them, and
+   with each seed another is first: what it finds of memory depends on who was before. */
 static void measure_all(const NephScene *scene, const char *name, const truth *reference,
                         bool media, const options *o)
 {
     for (int seed = FIRST_SEED; seed < FIRST_SEED + o->seeds; seed++)
-        for (int i = 0; i < o->n_kinds; i++)
-            if (!media || strcmp(o->kinds[i].name, "vcm") != 0)
-                measure_kind(scene, name, &o->kinds[i], seed, reference, o);
+        for (int i = 0; i < o->n_kinds; i++) {
+            const kind *k = &o->kinds[(i + seed) % o->n_kinds];
+            if (!media || strcmp(k->name, "vcm") != 0)
+                measure_kind(scene, name, k, seed, reference, o);
+        }
 }
 
 /* Of a name, or of a name and settings in one word, as "few indirect_photons=1000". */
