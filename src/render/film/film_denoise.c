@@ -60,30 +60,34 @@ enum {
 
 static const int n_channels[] = {3, 3, 1, 3, 3, 1};
 
-static surface_guide first_of(const film *f, const half_view *v)
+/* Sums over a half of a pixel. */
+typedef struct surface_sums {
+    double albedo[3], normal[3], depth;
+} surface_sums;
+
+static surface_guide guide_of(const film *f, const surface_sums *sum, double weight)
 {
     surface_guide out;
-    double albedo[3], normal[3], depth = half_number(v, HALF_AT(depth));
-    double weight = weight_of(v);
-    get_numbers(v, HALF_AT(color[N_LAYERS]), 3, albedo);
-    get_numbers(v, HALF_AT(normal), 3, normal);
-    film_to_rgb(f, albedo, weight, out.albedo);
-    mean_of(normal, weight, 3, out.normal);
-    mean_of(&depth, weight, 1, &out.depth);
+    film_to_rgb(f, sum->albedo, weight, out.albedo);
+    mean_of(sum->normal, weight, 3, out.normal);
+    mean_of(&sum->depth, weight, 1, &out.depth);
     return out;
+}
+
+static surface_guide first_of(const film *f, const half_view *v)
+{
+    surface_sums sum = {.depth = half_number(v, HALF_AT(depth))};
+    get_numbers(v, HALF_AT(color[N_LAYERS]), 3, sum.albedo);
+    get_numbers(v, HALF_AT(normal), 3, sum.normal);
+    return guide_of(f, &sum, weight_of(v));
 }
 
 static surface_guide seen_of(const film *f, const half_view *v)
 {
-    surface_guide out;
-    double albedo[3], normal[3], depth = (double)half_guide(v, GUIDE_AT(depth));
-    double weight = weight_of(v);
-    get_guides(v, GUIDE_AT(albedo), 3, albedo);
-    get_guides(v, GUIDE_AT(normal), 3, normal);
-    film_to_rgb(f, albedo, weight, out.albedo);
-    mean_of(normal, weight, 3, out.normal);
-    mean_of(&depth, weight, 1, &out.depth);
-    return out;
+    surface_sums sum = {.depth = (double)half_guide(v, GUIDE_AT(depth))};
+    get_guides(v, GUIDE_AT(albedo), 3, sum.albedo);
+    get_guides(v, GUIDE_AT(normal), 3, sum.normal);
+    return guide_of(f, &sum, weight_of(v));
 }
 
 /* Of what is seen in a mirror only how it differs from the mirror counts: elsewhere it

@@ -16,7 +16,9 @@
  * the paths' falls as 1 / passes, the photons' more slowly, since radii shrink (Knaus &
  * Zwicker 2011). So a quick picture is the photons' and one that is given its time the
  * paths', and either goes to the truth. Where noise is taken out it is paths' own grain
- * that goes: all other error, also what both have of lamps' light, weighs more.
+ * that goes: all other error, also what both have of lamps' light, weighs more. Where not
+ * even half a pass by maps fits, out of which noise could be taken, they must be clearly
+ * better.
  */
 #pragma once
 
