@@ -170,9 +170,9 @@ static double error_of_maps(const transport_plan *plan, const gather_errors *e,
            (e->photons * variance_of_passes(alpha, whole) + e->bias2 * bias * bias);
 }
 
-/* What a picture by maps takes: passes, and rays of a sample with its part of the
-   photons, which of a pass that is not whole are all there. Where half a pass does not
-   fit it is as of one; what noise would be taken out stays. */
+/* A picture by maps: its passes, and rays of a sample with its part of the photons, which
+   of a pass that is not whole are all there. Where half a pass does not fit, it is told
+   as one that has as much. */
 typedef struct maps_in_time {
     double passes, sample_rays;
     bool fit;
@@ -191,7 +191,7 @@ static maps_in_time fit_maps(double rays, double sample_rays, double photon_rays
 
 /* All is comparable to the variance of one sample. Where noise is taken out it is grain
    that goes, and what maps have of their own weighs as it is alike in neighbouring
-   pixels. */
+   pixels; where half a pass does not fit grain stays, too. */
 bool gather_costs(const transport_plan *plan, const gather_trial *t, plan_cost *without,
                   plan_cost *with)
 {
